@@ -325,7 +325,7 @@ impl Geometry {
                 bounds.union(hull.transformed(matrix))
             }),
             Self::Mesh(id) => {
-                // A vertex is a corner of six triangles, on average, or of none.
+                // Each vertex once: on average it is a corner of six triangles, but it may be one of none.
                 let Mesh { positions, triangles, .. } = &meshes[id.index()];
                 let mut is_corner = vec![false; positions.len()];
                 for &vertex in triangles.as_flattened() {

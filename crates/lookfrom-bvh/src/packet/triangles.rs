@@ -128,7 +128,8 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             return false;
         }
         for of in LaneMask(triangles) {
-            let edges = TriangleLanes::splat(simd, block, of).edges();
+            let triangle_lanes = TriangleLanes::splat(simd, block, of);
+            let edges = triangle_lanes.edges();
             for index in 0..GROUPS {
                 let rays = meeting[index];
                 if rays == 0 {
@@ -164,8 +165,8 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 // Where only the range is in doubt, as of rays that end at a light, t decides.
                 let crossed = tested.surely_crossed.to_bitmask() as u32 & open;
                 if faces == Faces::Both && crossed != 0 {
-                    let corners = TriangleLanes::splat(simd, block, of).corners;
-                    let [t, ..] = triangle::intersect_sure_lanes(group.origin, group.direction, corners);
+                    let Ray8 { origin, direction, .. } = *group;
+                    let [t, ..] = triangle::intersect_sure_lanes(origin, direction, triangle_lanes.corners);
                     let [t_min, t_max] = group.range;
                     let crossed = mask32x8::from_bitmask(simd, crossed.into());
                     sure |= crossed & t.simd_gt(t_min) & t.simd_lt(t_max);
@@ -217,9 +218,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         if deferred & !(same.to_bitmask() as u32) == 0 {
             // One triangle for all: its corners are loaded once.
             let (block, of) = (&bvh.triangles[number as usize], of as usize);
-            let column = |corner, axis| f32x8::splat(simd, block.coordinate(corner, axis, of));
-            let corner = |corner: usize| [column(corner, 0), column(corner, 1), column(corner, 2)];
-            let corners = [corner(0), corner(1), corner(2)];
+            let TriangleLanes { corners, .. } = TriangleLanes::splat(simd, block, of);
             return self.intersect_corners(index, deferred, corners, [(block, of); LANES]);
         }
         // The other lanes have any triangle.

@@ -96,13 +96,8 @@ fn choose(sums: &[f64], guide: &[u32], u: f32) -> (usize, f64) {
     let goal = f64::from(u) * sums[sums.len() - 1];
     let part = (u * (guide.len() - 1) as f32) as usize;
     let [from, to] = [guide[part] as usize, guide[part + 1] as usize];
-    // The first entry that ends beyond the goal has positive width. Mostly there are only few to choose from.
-    let ends = &sums[from + 1..to + 1];
-    let index = match ends {
-        [] => from,
-        [end] => from + usize::from(*end <= goal),
-        _ => from + ends.partition_point(|&end| end <= goal),
-    };
+    // The first entry that ends beyond the goal has positive width.
+    let index = from + sums[from + 1..to + 1].partition_point(|&end| end <= goal);
     (index, (goal - sums[index]) / (sums[index + 1] - sums[index]))
 }
 

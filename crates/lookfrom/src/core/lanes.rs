@@ -26,6 +26,15 @@ macro_rules! by_lane {
 
 pub(crate) use by_lane;
 
+/// The first eight items; where there are fewer, the last fills the other lanes of `memory`.
+#[inline(always)]
+pub(crate) fn filled<'a, T: Copy>(items: &'a [T], memory: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {
+    match items.first_chunk::<LANES>() {
+        Some(eight) => eight,
+        None => memory.insert(by_lane!(lane => items[lane.min(items.len() - 1)])),
+    }
+}
+
 /// The components of something in eight lanes: for each component the numbers of the lanes.
 pub(crate) type Columns<const N: usize, T = f32> = [[T; LANES]; N];
 
@@ -64,6 +73,12 @@ pub(crate) fn load_spectrum<S: Simd>(simd: S, [a, b, c, d]: &Columns<4>) -> Spec
         f32x8::load_array(simd, *c),
         f32x8::load_array(simd, *d),
     ])
+}
+
+/// The same spectrum in each lane.
+#[inline(always)]
+pub(crate) fn splat_spectrum<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
+    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
 }
 
 /// The columns of vectors.

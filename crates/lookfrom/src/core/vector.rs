@@ -26,6 +26,12 @@ impl<F: Float> Vector<F> {
         Self { x, y, z }
     }
 
+    /// The same vector in each lane, of which there are as many as in `like`.
+    #[inline(always)]
+    pub(crate) fn splat(like: F, [x, y, z]: [F::Scalar; 3]) -> Self {
+        Self { x: like.like(x), y: like.like(y), z: like.like(z) }
+    }
+
     /// The scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> F {

@@ -302,18 +302,12 @@ impl SkyImage {
     #[inline(always)]
     fn axes<R: Real>(&self, like: R) -> [Vector<R>; 3] {
         let [x, y, z] = self.world_from_light.to_cols_array_2d();
-        [splat(like, x), splat(like, y), splat(like, z)]
+        [Vector::splat(like, x), Vector::splat(like, y), Vector::splat(like, z)]
     }
 }
 
 /// The density over solid angle of a uniform one over an octahedral square.
 const OCTAHEDRAL_DENSITY: f32 = 0.25 / PI;
-
-/// The same vector in each lane.
-#[inline(always)]
-fn splat<R: Real>(like: R, [x, y, z]: [f32; 3]) -> Vector<R> {
-    Vector { x: like.like(x), y: like.like(y), z: like.like(z) }
-}
 
 /// The (u, v) of a unit direction in an equirectangular picture, and the factor there from a density over the unit square to
 /// one over solid angle: the sphere's area element is 2π² sin θ times that of the square.

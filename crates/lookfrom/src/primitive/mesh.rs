@@ -123,7 +123,7 @@ impl Mesh {
     }
 
     /// A triangle with what its vertices have.
-    fn triangle(&self, index: usize) -> Triangles<f32> {
+    pub(crate) fn triangle(&self, index: usize) -> Triangles<f32> {
         let vertices = self.triangles[index].map(|vertex| vertex as usize);
         let vector = |[x, y, z]: [f32; 3]| Vector { x, y, z };
         let tangent = |tangent: Vec4| Tangent { along: tangent.truncate().into(), sign: tangent.w };

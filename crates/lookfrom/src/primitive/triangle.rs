@@ -3,7 +3,7 @@
 //! Derivatives by texture coordinates are those of the triangle's plane, as in Pharr, Jakob, Humphreys, Physically
 //! Based Rendering; tangents replace `∂p/∂u` in shading.
 
-use lookfrom_simd::{Float, Mask, Real};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use crate::core::points::{Placement, Points};
 use crate::core::vector::Vector;
@@ -30,6 +30,33 @@ pub(crate) struct Triangles<R: Real> {
     pub(crate) have_tangents: WideMask<R>,
     /// The lanes that need derivatives by texture coordinates; in others they are 0.
     pub(crate) want_derivatives: WideMask<R>,
+}
+
+impl Triangles<f32> {
+    /// The same triangle in each lane.
+    #[inline(always)]
+    pub(crate) fn splat<S: Simd>(&self, simd: S) -> Triangles<f32x8<S>> {
+        let like = f32x8::splat(simd, 0.0);
+        let mut triangles = Triangles {
+            positions: [Vector::splat(like, [0.0; 3]); 3],
+            orientation: f64x8::splat(simd, self.orientation),
+            normals: [Vector::splat(like, [0.0; 3]); 3],
+            uvs: [[like; 2]; 3],
+            tangents: [Tangent { along: Vector::splat(like, [0.0; 3]), sign: like }; 3],
+            have_normals: mask64x8::splat(simd, self.have_normals),
+            have_tangents: mask64x8::splat(simd, self.have_tangents),
+            want_derivatives: mask64x8::splat(simd, self.want_derivatives),
+        };
+        for corner in 0..3 {
+            let ([u, v], Tangent { along, sign }) = (self.uvs[corner], self.tangents[corner]);
+            triangles.positions[corner] = Vector::splat(like, self.positions[corner].into());
+            triangles.normals[corner] = Vector::splat(like, self.normals[corner].into());
+            triangles.uvs[corner] = [f32x8::splat(simd, u), f32x8::splat(simd, v)];
+            triangles.tangents[corner] =
+                Tangent { along: Vector::splat(like, along.into()), sign: f32x8::splat(simd, sign) };
+        }
+        triangles
+    }
 }
 
 /// A tangent in the direction of u, and the sign of the bitangent.

@@ -5,7 +5,7 @@ use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
 use super::{Renderer, SampleId};
-use crate::core::lanes::{LANES, by_lane, scatter};
+use crate::core::lanes::{LANES, by_lane, filled, scatter};
 use crate::core::sampler::lanes::PixelSamplers;
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
@@ -89,14 +89,8 @@ impl Renderer {
     /// [`Self::image_point`] of up to eight samples, each with its random numbers. Unused lanes repeat the last one.
     #[inline(always)]
     fn image_points<S: Simd>(&self, simd: S, ids: &[SampleId]) -> ([f64x8<S>; 2], f32x8<S>) {
-        let repeated;
-        let ids = match ids.first_chunk::<LANES>() {
-            Some(ids) => ids,
-            None => {
-                repeated = by_lane!(lane => ids[lane.min(ids.len() - 1)]);
-                &repeated
-            }
-        };
+        let mut memory = None;
+        let ids = filled(ids, &mut memory);
         let columns = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[0])));
         let rows = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[1])));
         let samples = u32x8::load_array(simd, by_lane!(lane => ids[lane].sample));
@@ -154,7 +148,7 @@ impl Kernel for LinearRays<'_> {
         let Self { renderer, ids, rays, weights } = self;
         rays.reserve(ids.len());
         weights.reserve(ids.len());
-        let eye = Vector::from(renderer.eye.to_array().map(|x| f64x8::splat(simd, x)));
+        let eye = Vector::splat(f64x8::splat(simd, 0.0), renderer.eye.to_array());
         for ids in ids.chunks(LANES) {
             let (point, weight) = renderer.image_points(simd, ids);
             let [a, direction] = renderer.view.camera.linear_ray(point);

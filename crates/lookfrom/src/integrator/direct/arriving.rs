@@ -50,11 +50,11 @@ impl<S: Simd> Arriving<S> {
         let pi = f32x8::splat(simd, PI);
         match source {
             Light::Point { position, intensity, falloff } => {
-                let position = splat(simd, position.to_array());
+                let position = Vector::splat(points.x, position.to_array());
                 let way = position - points;
                 let distance = way.length();
                 let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
-                let intensity = modes.even(simd, |mode| intensity.even(&world.textures, mode));
+                let intensity = modes.emission(simd, world, intensity);
                 Some(Self {
                     wi: Vector::narrow(wi),
                     li: intensity * fade::<f32x8<S>>(*falloff, distance) / pi,
@@ -63,8 +63,8 @@ impl<S: Simd> Arriving<S> {
                 })
             }
             Light::Distant { toward, irradiance } => Some(Self {
-                wi: Vector::narrow(splat(simd, toward.as_dvec3().to_array())),
-                li: modes.even(simd, |mode| irradiance.even(&world.textures, mode)) / pi,
+                wi: Vector::splat(pi, toward.to_array()),
+                li: modes.emission(simd, world, irradiance) / pi,
                 exists: mask32x8::splat(simd, true),
                 target: Ends::Nowhere,
             }),
@@ -84,7 +84,7 @@ impl<S: Simd> Arriving<S> {
     ) -> Option<Self> {
         let (samples, in_lanes) = sample_area_lights(simd, &[Some(light); LANES], u, points);
         let samples = samples?;
-        let li = modes.even(simd, |mode| light.radiance.even(&world.textures, mode));
+        let li = modes.emission(simd, world, &light.radiance);
         let is_front = samples.normal.dot(samples.wi.widen()).lt(f64x8::splat(simd, 0.0));
         let mut exists = samples.is_valid & !li.is_black() & mask32x8::from_bitmask(simd, in_lanes.into());
         if !light.two_sided {
@@ -97,9 +97,4 @@ impl<S: Simd> Arriving<S> {
             target: Ends::Surfaces(samples.points, samples.normal),
         })
     }
-}
-
-#[inline(always)]
-fn splat<S: Simd>(simd: S, [x, y, z]: [f64; 3]) -> Vector<f64x8<S>> {
-    Vector { x: f64x8::splat(simd, x), y: f64x8::splat(simd, y), z: f64x8::splat(simd, z) }
 }

@@ -6,11 +6,12 @@ use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 use super::plain::{PlainHit, PlainShape};
 use super::surfaces::Surfaces;
-use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64};
+use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, splat_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::light::EmissionSpectrum;
 use crate::shading::material::{Coefficients, Whitted};
-use crate::shading::texture::lanes::{TexturePoints, splat};
+use crate::shading::texture::lanes::TexturePoints;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, sphere_uv};
 use crate::world::World;
 
@@ -50,17 +51,30 @@ impl<'a> Modes<'a> {
         self.by_lane[lane]
     }
 
-    /// Spectra that depend on nothing but the mode.
+    /// The spectra of a colour that does not vary.
     #[inline(always)]
-    pub(super) fn even<S: Simd>(
+    pub(super) fn constant<S: Simd>(
         &self,
         simd: S,
-        at: impl Fn(&SpectralMode) -> Spectrum,
+        world: &World,
+        color: &SpectrumTexture,
     ) -> Spectrum<f32x8<S>> {
+        let textures = &world.textures;
         match self.are_rgb {
-            true => splat(simd, at(self.by_lane[0])),
-            false => gather_spectrum(simd, &by_lane!(lane => at(self.by_lane[lane]))),
+            true => splat_spectrum(simd, textures.spectrum(color, &TexturePoint::NOWHERE, self.by_lane[0])),
+            false => textures.constants(simd, &[color; LANES], &self.by_lane),
         }
+    }
+
+    /// The emission of a light whose colour does not vary.
+    #[inline(always)]
+    pub(super) fn emission<S: Simd>(
+        &self,
+        simd: S,
+        world: &World,
+        light: &EmissionSpectrum,
+    ) -> Spectrum<f32x8<S>> {
+        self.constant(simd, world, &light.color) * f32x8::splat(simd, light.scale)
     }
 
     /// The spectra of a texture that is evaluated side by side.
@@ -76,8 +90,8 @@ impl<'a> Modes<'a> {
             return None;
         }
         let position = surfaces.points.position;
-        let [x, y, z] = world.origin.to_array().map(|x| f64x8::splat(simd, x));
-        let at = TexturePoints { uv: surfaces.uv, world: Vector { x, y, z } + position };
+        let origin = Vector::splat(f64x8::splat(simd, 0.0), world.origin.to_array());
+        let at = TexturePoints { uv: surfaces.uv, world: origin + position };
         world.textures.spectra(simd, texture, &at)
     }
 }
@@ -118,7 +132,7 @@ impl<S: Simd> CoefficientColumns<S> {
             ($texture:expr) => {{
                 let texture: &SpectrumTexture = $texture;
                 if !texture.varies() {
-                    modes.even(simd, |mode| world.textures.spectrum(texture, &TexturePoint::NOWHERE, mode))
+                    modes.constant(simd, world, texture)
                 } else if let Some(spectra) = modes.spectra(simd, world, texture, surfaces) {
                     spectra
                 } else {
@@ -172,7 +186,7 @@ impl<S: Simd> CoefficientColumns<S> {
     }
 }
 
-/// Where textures are read, lane by lane.
+/// The texture points of eight surfaces.
 #[inline(always)]
 fn texture_points<'a, S: Simd>(
     world: &World,

@@ -10,7 +10,7 @@ use super::coefficients::{CoefficientColumns, Modes};
 use super::plain::PlainHit;
 use super::surfaces::Surfaces;
 use super::waiting::Waiting;
-use crate::core::lanes::{Columns, LANES, by_lane, gather_spectrum, row, store, store_spectrum};
+use crate::core::lanes::{Columns, LANES, by_lane, filled, gather_spectrum, row, store, store_spectrum};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -133,15 +133,8 @@ impl PlainSteps {
         plain: &[PlainHit<'_>],
         modes: &[SpectralMode],
     ) {
-        let repeated;
-        let eight = match plain.first_chunk::<LANES>() {
-            Some(eight) => eight,
-            // Unused lanes repeat the last hit.
-            None => {
-                repeated = by_lane!(lane => plain[lane.min(plain.len() - 1)]);
-                &repeated
-            }
-        };
+        let mut memory = None;
+        let eight = filled(plain, &mut memory);
         for (lane, plain) in plain.iter().enumerate() {
             self.places[plain.index as usize] = (self.group_count * LANES + lane) as u32;
         }
@@ -264,7 +257,7 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
         let Surfaces { points, ng, ng_facing, ns_facing, wo, front, .. } = surfaces;
         let coefficients = CoefficientColumns::of(simd, world, eight, &surfaces, &modes);
         let beta = gather_spectrum(simd, &by_lane!(lane => eight[lane].throughput(world, modes.lane(lane))));
-        let ambient = beta * coefficients.ambient * modes.even(simd, |mode| world.ambient(mode));
+        let ambient = beta * coefficients.ambient * modes.constant(simd, world, &world.ambient);
         group.ambient = store_spectrum(ambient);
         group.materials = by_lane!(lane => eight[lane].material);
         group.front = front.to_bitmask() as u32;

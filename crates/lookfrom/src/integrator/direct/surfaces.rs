@@ -6,7 +6,7 @@ use super::plain::{PlainHit, PlainShape};
 use crate::core::lanes::{LANES, by_lane, gather};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
-use crate::primitive::{Mesh, Tangent, TrianglePoints, Triangles, gather_triangles};
+use crate::primitive::{Mesh, TrianglePoints, Triangles, gather_triangles};
 
 /// Eight surfaces, as [`World::surface`](crate::world::World::surface) has them.
 pub(super) struct Surfaces<S: Simd> {
@@ -55,7 +55,7 @@ fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -
         lane += 1;
     }
     if is_one {
-        return at(&repeated_triangle(simd, first, indices[0]), u, v);
+        return at(&first.triangle(indices[0] as usize).splat(simd), u, v);
     }
     let meshes = by_lane!(lane => match eight[lane].shape {
         PlainShape::Triangle(mesh) => mesh,
@@ -69,41 +69,6 @@ fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -
 fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
     let TrianglePoints { points, ng, ns, uv, .. } = triangles.points(u, v);
     (points, ng, ns, Some(uv))
-}
-
-/// One triangle in all lanes, without tangents.
-#[inline(always)]
-fn repeated_triangle<S: Simd>(simd: S, mesh: &Mesh, index: u32) -> Triangles<f32x8<S>> {
-    let zero = f32x8::splat(simd, 0.0);
-    let none = Vector { x: zero, y: zero, z: zero };
-    let vertices = mesh.triangles[index as usize];
-    let has_normals = !mesh.normals.is_empty();
-    let corner_uvs = mesh.corner_uvs(index as usize);
-    let (mut positions, mut normals, mut uvs) = ([none; 3], [none; 3], [[zero; 2]; 3]);
-    for corner in 0..3 {
-        let vertex = vertices[corner] as usize;
-        positions[corner] = splat(simd, mesh.positions[vertex]);
-        let [u, v] = corner_uvs[corner].to_array();
-        uvs[corner] = [f32x8::splat(simd, u), f32x8::splat(simd, v)];
-        if has_normals {
-            normals[corner] = splat(simd, mesh.normals[vertex].to_array());
-        }
-    }
-    Triangles {
-        positions,
-        orientation: f64x8::splat(simd, if mesh.flip { -1.0 } else { 1.0 }),
-        normals,
-        uvs,
-        tangents: [Tangent { along: none, sign: zero }; 3],
-        have_normals: mask64x8::splat(simd, has_normals),
-        have_tangents: mask64x8::splat(simd, false),
-        want_derivatives: mask64x8::splat(simd, false),
-    }
-}
-
-#[inline(always)]
-fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> Vector<f32x8<S>> {
-    Vector { x: f32x8::splat(simd, x), y: f32x8::splat(simd, y), z: f32x8::splat(simd, z) }
 }
 
 /// The points of hits on spheres.

@@ -22,7 +22,7 @@ impl AreaLight {
     }
 }
 
-/// What is sampled in each lane, of what is sampled in lanes.
+/// The shapes that the lanes sample.
 struct Chosen<'a> {
     triangles: [Option<&'a LightTriangle>; LANES],
     /// The probabilities of the triangles, and what is left of the numbers that chose them.

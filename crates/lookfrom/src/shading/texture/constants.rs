@@ -35,7 +35,7 @@ struct Lift {
     coefficients: Columns<3>,
     scale: [f32; LANES],
     lambda: [Spectrum; LANES],
-    /// What the sigmoids are multiplied by: of illuminants, daylight; of curves, their values.
+    /// The factors of the sigmoids: daylight for illuminants, the values of curves.
     factor: [Spectrum; LANES],
 }
 

@@ -8,13 +8,14 @@ use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 use super::evaluation::{Evaluation, RgbEvaluation};
 use super::input::{Input, SpectrumTexture};
 use super::look_ups::Picture;
+use super::mapping::{self, bounded};
 use super::node::Node;
-use super::{Textures, mapping, picture};
-use crate::core::lanes::{by_lane, gather_spectrum};
+use super::{Textures, picture};
+use crate::core::lanes::{by_lane, gather_spectrum, splat_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
-/// What textures need to know of eight points.
+/// Inputs of texture evaluation at eight points.
 #[derive(Clone, Copy)]
 pub(crate) struct TexturePoints<S: Simd> {
     /// Texture coordinates, where they are known.
@@ -39,7 +40,7 @@ impl Textures {
                 let is_even = are_even(off_border(mapping, at)?);
                 let is_even = f32x8::splat(simd, 0.0).narrow_mask(is_even);
                 let (even, odd) = (evaluation.constant(even), evaluation.constant(odd));
-                Some(Spectrum::select(is_even, splat(simd, even), splat(simd, odd)))
+                Some(Spectrum::select(is_even, splat_spectrum(simd, even), splat_spectrum(simd, odd)))
             }
             Node::Image { picture, channel: Channel::Rgb, scale, invert } => {
                 let Picture { image, mapping, wraps, filter, .. } = &self.pictures[*picture as usize];
@@ -63,12 +64,6 @@ impl Textures {
     }
 }
 
-/// The same spectrum in each lane.
-#[inline(always)]
-pub(crate) fn splat<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
-    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
-}
-
 /// As [`mapping::coordinates`]; `None` for mappings of other kinds, and where texture coordinates are not known.
 #[inline(always)]
 fn coordinates<S: Simd>(mapping: &Mapping, at: &TexturePoints<S>) -> Option<Vector<f64x8<S>>> {
@@ -77,12 +72,12 @@ fn coordinates<S: Simd>(mapping: &Mapping, at: &TexturePoints<S>) -> Option<Vect
         Mapping::Uv { scale, offset } => {
             let [u, v] = at.uv?;
             let (s, t) = (u * scale[0] + offset[0], v * scale[1] + offset[1]);
-            Some(Vector { x: Real::widen(mapping::bounded(s)), y: Real::widen(mapping::bounded(t)), z: zero })
+            Some(Vector { x: Real::widen(bounded(s)), y: Real::widen(bounded(t)), z: zero })
         }
         Mapping::Affine { set: 0, matrix: [[a, b, c], [d, e, f]] } => {
             let [u, v] = at.uv?;
             let (s, t) = (u * *a + v * *b + *c, u * *d + v * *e + *f);
-            Some(Vector { x: Real::widen(mapping::bounded(s)), y: Real::widen(mapping::bounded(t)), z: zero })
+            Some(Vector { x: Real::widen(bounded(s)), y: Real::widen(bounded(t)), z: zero })
         }
         Mapping::World { texture_from_world } => {
             let Vector { x, y, z } = transformed(texture_from_world, at.world);
@@ -101,13 +96,6 @@ fn off_border<S: Simd>(mapping: &Mapping, at: &TexturePoints<S>) -> Option<Vecto
         Mapping::World { .. } => p + Vector { x: shift, y: shift, z: shift },
         _ => p,
     })
-}
-
-/// As [`mapping::bounded`], in double precision.
-#[inline(always)]
-fn bounded<S: Simd>(x: f64x8<S>) -> f64x8<S> {
-    let number = f64x8::select(Float::eq(x, x), x, Float::like(x, 0.0));
-    Float::clamp(number, -mapping::FARTHEST, mapping::FARTHEST)
 }
 
 /// Whether the sums of the integer parts of bounded numbers are even.

@@ -4,12 +4,12 @@ use std::f32::consts::PI;
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use lookfrom_scene::texture::Mapping;
-use lookfrom_simd::{Float, Real};
+use lookfrom_simd::Float;
 
 use super::TexturePoint;
 
 /// Coordinates are clamped to this; single-precision numbers of this size have long lost their fraction.
-pub(super) const FARTHEST: f64 = 1_073_741_824.0;
+const FARTHEST: f32 = 1_073_741_824.0;
 
 /// The shift of patterns in space, along each axis.
 pub(super) const OFF_BORDER: f64 = 1.0 / 8192.0;
@@ -43,14 +43,14 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
         }
         Mapping::World { texture_from_world } => texture_from_world.transform_point3(at.world),
     };
-    p.to_array().map(|x| if x.is_nan() { 0.0 } else { x.clamp(-FARTHEST, FARTHEST) }).into()
+    p.to_array().map(bounded).into()
 }
 
 /// A coordinate within the bounds of [`coordinates`]; 0 for NaN.
 #[inline(always)]
-pub(super) fn bounded<R: Real>(x: R) -> R {
-    let is_number = Float::eq(x, x);
-    Float::clamp(R::select(is_number, x, x.like(0.0)), -FARTHEST as f32, FARTHEST as f32)
+pub(super) fn bounded<F: Float<Scalar: From<f32>>>(x: F) -> F {
+    let number = F::select(Float::eq(x, x), x, x.like(0.0.into()));
+    Float::clamp(number, (-FARTHEST).into(), FARTHEST.into())
 }
 
 /// [`coordinates`], with patterns in space shifted by a small irregular offset, so that surfaces exactly on the

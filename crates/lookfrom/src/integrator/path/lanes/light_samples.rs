@@ -1,6 +1,6 @@
 //! Next-event estimation for eight paths at once, up to the shadow ray.
 //!
-//! Triangles and spheres of one colour are vectorised; every other light is sampled by scalar code and put into its lane.
+//! Triangles, whole spheres and disks of one colour are vectorised; every other light is sampled by scalar code and put into its lane.
 
 use lookfrom_bvh::{Point, Ray};
 use lookfrom_simd::{Float, LaneMask, Simd, f32x8, prelude::*};
