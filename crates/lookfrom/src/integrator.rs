@@ -9,6 +9,7 @@ mod background;
 mod direct;
 mod event;
 mod first_hit;
+mod first_surface;
 mod light_paths;
 mod occlusion;
 mod path;
@@ -34,6 +35,7 @@ use crate::world::World;
 pub use background::Alpha;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
+pub use first_surface::FirstSurface;
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
@@ -189,6 +191,8 @@ pub struct Queues {
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
     pub shadows: Vec<Shadow>,
+    /// The surfaces that camera rays met, by slot, as far as steps left them; no slots where nothing needs them.
+    pub first_surfaces: Vec<Option<FirstSurface>>,
     /// Light by light-path expressions: for each slot as many layers as there are expressions.
     pub layers: Vec<Spectrum>,
     /// Last scattering events of shadow rays, by [`Shadow::last_scattering`]; none without light-path expressions.
@@ -212,6 +216,7 @@ impl Queues {
         self.paths.clear();
         self.shadows.clear();
         self.layers.clear();
+        self.first_surfaces.clear();
         self.last_scatterings.clear();
     }
 

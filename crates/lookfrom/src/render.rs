@@ -287,6 +287,7 @@ impl Renderer {
         output.queues.start(ids.len(), |slot| start.lanes(slot));
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
+        output.queues.first_surfaces.resize(first_hits.len(), None);
         let interior = self.world.space_of(self.view.medium);
         let Queues { paths: started, lanes, .. } = &mut output.queues;
         started.extend(start.rays.iter().zip(&*lanes).enumerate().map(|(slot, (ray, lanes))| Path {
@@ -434,7 +435,7 @@ impl Renderer {
             batch.first_hits.clear();
             batch.first_hits.resize(wanted, FirstHit::MISS);
             rays += self.integrator.trace(self, &ids, batch);
-            self.add_first_hits(&ids, &batch.first_hits, tile);
+            self.add_first_hits(&ids, batch, tile);
             if tile.is_of_light() {
                 let mut light = std::mem::take(&mut batch.light);
                 light.clear();

@@ -12,7 +12,7 @@ use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::Scene;
-use lookfrom_scene::settings::{Integrator, PixelBounds};
+use lookfrom_scene::settings::{Integrator, Layers, PixelBounds};
 use support::{Compiled, own_scene};
 
 const SCENES: [&str; 6] = [
@@ -260,6 +260,24 @@ fn steps_eight_at_once_are_steps_one_by_one() {
             }
             assert!(lit > 600, "{lit} samples see light of {lights:?}");
         }
+    }
+}
+
+#[test]
+fn aovs_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
+    for name in ["materials.toml", "textures.toml", "instances.toml", "still-life.toml", "cutouts.toml"] {
+        let mut scene = small(name);
+        scene.render.integrator = Integrator::Path;
+        (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);
+        let tracer = PathTracer {
+            depth: scene.render.depth,
+            regularize: scene.render.regularize,
+            light_sampling: LightSampling::MultipleImportance,
+        };
+        let in_lanes = Compiled::new(scene).renderer();
+        let scalar = in_lanes.clone().with_integrator(OneByOne(tracer));
+        let [a, b] = [in_lanes, scalar].map(|renderer| renderer.render(Some(1), &()).unwrap().film);
+        assert!(a == b, "{name}");
     }
 }
 

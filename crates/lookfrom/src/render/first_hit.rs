@@ -1,18 +1,16 @@
 //! First hits of camera rays, recorded once for AOVs and denoiser.
 //!
 //! No probe is needed, so that rendering is not slowed down: first hits are recorded as they are traced, and evaluated
-//! after the batch. Where a ray passes a surface as if it were not there, the hit behind it counts; but where chance decides
+//! after the batch, unless a step had the surface at hand. Where a ray passes a surface as if it were not there, the hit behind it counts; but where chance decides
 //! that, by an alpha between 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise
 //! that light does not have.
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};
 
-use super::{Renderer, SampleId};
+use super::{Batch, Renderer, SampleId};
 use crate::film::{Aovs, FilmTile};
-use crate::integrator::Path;
-use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material;
+use crate::integrator::{FirstSurface, Path};
 
 /// The first hit of a sample.
 #[derive(Clone, Copy, Debug)]
@@ -62,23 +60,33 @@ pub(super) fn note(first_hits: &mut [FirstHit], paths: &[Path], hits: &[Hit]) {
 
 impl Renderer {
     /// Adds the AOVs of samples to a tile, if first hits were recorded.
-    pub(super) fn add_first_hits(&self, ids: &[SampleId], first_hits: &[FirstHit], tile: &mut FilmTile) {
-        if first_hits.is_empty() {
+    pub(super) fn add_first_hits(&self, ids: &[SampleId], batch: &Batch, tile: &mut FilmTile) {
+        if batch.first_hits.is_empty() {
             return;
         }
         let view_from_world = self.view.camera.world_from_view().inverse();
-        for (id, first) in ids.iter().zip(first_hits) {
+        let first_hits = batch.first_hits.iter().zip(&batch.queues.first_surfaces);
+        for (id, (first, surface)) in ids.iter().zip(first_hits) {
             let [x, y] = id.pixel;
-            let aovs = match self.world.has_gaps {
-                true => self.blended_aovs(first, &view_from_world),
-                false => None,
+            let aovs = match surface {
+                Some(surface) => Some(self.aovs(surface, &view_from_world)),
+                None => self.aovs_of_hit(first, &view_from_world),
             };
-            let aovs = aovs.or_else(|| {
-                let RayHit { ray, hit } = first.seen;
-                hit.is_hit().then(|| self.aovs(&self.world.surface(&ray, &hit), &view_from_world))
-            });
             tile.add_first_hit(x, y, id.sample, aovs.as_ref());
         }
+    }
+
+    /// The AOVs of a first hit; `None` for a miss.
+    fn aovs_of_hit(&self, first: &FirstHit, view_from_world: &DMat4) -> Option<Aovs> {
+        let blended = match self.world.has_gaps {
+            true => self.blended_aovs(first, view_from_world),
+            false => None,
+        };
+        blended.or_else(|| {
+            let RayHit { ray, hit } = first.seen;
+            let surface = || FirstSurface::of(&self.world, &self.world.surface(&ray, &hit));
+            hit.is_hit().then(|| self.aovs(&surface(), view_from_world))
+        })
     }
 
     /// The mean albedo and shading normal of all surfaces along a camera ray by what each covers, and the place of the one
@@ -97,7 +105,8 @@ impl Renderer {
             let opacity = world.opacity(&surface);
             is_blended |= opacity > 0.0 && opacity < 1.0;
             if opacity > 0.0 {
-                let (aovs, part) = (self.aovs(&surface, view_from_world), left * opacity);
+                let aovs = self.aovs(&FirstSurface::of(world, &surface), view_from_world);
+                let part = left * opacity;
                 albedo += part * Vec3::from(aovs.albedo);
                 ns += part * Vec3::from(aovs.ns);
                 if most.is_none_or(|(greatest, _)| part > greatest) {
@@ -115,24 +124,22 @@ impl Renderer {
         Some(Aovs { albedo: (albedo + left).to_array(), ns: ns.normalize_or_zero().to_array(), ..aovs })
     }
 
-    fn aovs(&self, surface: &SurfaceInteraction, view_from_world: &DMat4) -> Aovs {
-        let world = &self.world;
-        let point = world.texture_point(surface);
+    fn aovs(&self, surface: &FirstSurface, view_from_world: &DMat4) -> Aovs {
+        let FirstSurface { position, ng, ns, wo, uv, albedo } = *surface;
         // The view space of the notes (u, v, w) has x to the left, that of AOVs to the right.
         let mirrored = |v: DVec3| [-v.x as f32, v.y as f32, v.z as f32];
         let toward_viewer = |n: Vec3| {
-            let n = if n.dot(surface.wo) < 0.0 { -n } else { n };
+            let n = if n.dot(wo) < 0.0 { -n } else { n };
             Vec3::from(mirrored(view_from_world.transform_vector3(n.as_dvec3())))
                 .normalize_or_zero()
                 .to_array()
         };
-        let position = world.origin + DVec3::from_array(surface.point.position);
         Aovs {
-            albedo: material::albedo(&world.materials, &world.textures, surface, &point),
-            ng: toward_viewer(surface.ng.as_vec3()),
-            ns: toward_viewer(material::normal(&world.materials, &world.textures, surface, &point)),
-            position: mirrored(view_from_world.transform_point3(position)),
-            uv: surface.uv.to_array(),
+            albedo,
+            ng: toward_viewer(ng),
+            ns: toward_viewer(ns),
+            position: mirrored(view_from_world.transform_point3(self.world.origin + position)),
+            uv: uv.to_array(),
         }
     }
 }

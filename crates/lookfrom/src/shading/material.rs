@@ -279,9 +279,9 @@ pub fn normal(
     while let MaterialKind::Mix { materials: [first, _], .. } = &material.kind {
         material = &materials[*first as usize];
     }
-    match material.bump_mapping {
-        BumpMapping::None => surface.ns,
-        _ => material.frame(textures, &surface.shading_geometry(), point).n,
+    match material.has_bumps() {
+        true => material.frame(textures, &surface.shading_geometry(), point).n,
+        false => surface.ns,
     }
 }
 

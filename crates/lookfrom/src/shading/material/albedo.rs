@@ -6,18 +6,16 @@
 use super::{Material, MaterialKind, Metal};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
-use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{SpectrumTexture, TexturePoint, Textures};
 
 /// Linear Rec. 709, at least 0; white where a surface has no colour of its own.
 pub fn albedo(
     materials: &[Material],
     textures: &Textures,
-    surface: &SurfaceInteraction,
+    material: &Material,
     point: &TexturePoint,
 ) -> [f32; 3] {
-    let index = surface.material as usize;
-    of_kind(&materials[index].kind, materials, textures, point).rgb().map(|c| c.max(0.0))
+    of_kind(&material.kind, materials, textures, point).rgb().map(|c| c.max(0.0))
 }
 
 fn of_kind(

@@ -27,10 +27,16 @@ impl Material {
         }
     }
 
+    /// Whether it has a bump or normal map.
+    #[inline]
+    pub(crate) fn has_bumps(&self) -> bool {
+        !matches!(self.bump_mapping, BumpMapping::None)
+    }
+
     /// Whether its shading frame is another than that of the surface.
     #[inline]
     pub(crate) fn bends_frames(&self) -> bool {
-        !matches!(self.bump_mapping, BumpMapping::None) || matches!(self.kind, MaterialKind::Principled(_))
+        self.has_bumps() || matches!(self.kind, MaterialKind::Principled(_))
     }
 
     /// The BSDF at a point, as [`super::shading`] has it; `None` where the material is of another class, or

@@ -11,11 +11,11 @@ use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, store};
 use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
 use crate::integrator::path::PathTracer;
-use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::integrator::{Event, FirstSurface, Integrator, Path, Probe, SampleStream, StepOutput};
 use crate::primitive::{Mesh, VertexData, gather_triangles};
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::material::{Material, MaterialRow, ShadingContext, frame_about};
+use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
 
@@ -99,6 +99,25 @@ impl MeshHit<'_> {
         let VertexData { more_uvs, opacity } = self.mesh.vertex_data(primitive as usize, b1, b2);
         TexturePoint { more_uvs, opacity, ..point }
     }
+
+    /// The surface in a lane, for AOVs.
+    fn first_surface(
+        &self,
+        world: &World,
+        (surfaces, bent): (&SurfaceColumns, &BentFrames),
+        uv: &Columns<2>,
+        point: &TexturePoint,
+        lane: usize,
+    ) -> FirstSurface {
+        FirstSurface {
+            position: DVec3::from_array(surfaces.position(lane)),
+            ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
+            ns: if self.material.has_bumps() { surfaces.ns(lane) } else { row(&bent.ns, lane) }.into(),
+            wo: surfaces.wo(lane).into(),
+            uv: row(uv, lane).into(),
+            albedo: material::albedo(&world.materials, &world.textures, self.material, point),
+        }
+    }
 }
 
 impl PathTracer {
@@ -117,7 +136,9 @@ impl PathTracer {
             None => return,
         });
         let Memory { points: mesh_points, scattered } = memory;
-        MeshKernel { hits: &hits, points: mesh_points }.set_points();
+        let varies = hits.iter().any(|hit| hit.material.varies);
+        let leaves_surfaces = !output.queues.first_surfaces.is_empty();
+        MeshKernel { hits: &hits, varies, leaves_surfaces, points: mesh_points }.set_points();
         let MeshPoints { surfaces, uv, front, bent } = mesh_points;
         let front = *front;
 
@@ -141,7 +162,7 @@ impl PathTracer {
         let pictures = by_lane!(lane => &hits[lane].material.pictures);
         let mut varying = None;
         let look_ups;
-        if hits.iter().any(|hit| hit.material.varies) {
+        if varies {
             let points = varying.insert([TexturePoint::NOWHERE; LANES]);
             for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
                 points[lane] = hit.texture_point(world, surfaces, row(uv, lane), lane);
@@ -154,7 +175,8 @@ impl PathTracer {
             }
         }
         let mut rows = [None; LANES];
-        for (lane, MeshHit { path, material, .. }) in hits.iter().enumerate() {
+        for (lane, hit) in hits.iter().enumerate() {
+            let MeshHit { path, material, .. } = hit;
             let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
             let mut throughput = path.beta;
             let context = ShadingContext {
@@ -176,6 +198,10 @@ impl PathTracer {
                 row.iter_mut().for_each(B::regularize);
             }
             rows[lane] = row;
+            if leaves_surfaces && path.address == Path::ROOT && active & 1 << lane != 0 {
+                output.queues.first_surfaces[path.slot as usize] =
+                    Some(hit.first_surface(world, (surfaces, bent), uv, point, lane));
+            }
         }
         let Some(first) = &rows[0] else { return };
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
@@ -267,6 +293,10 @@ impl BentFrames {
 /// Finds the points of hits.
 struct MeshKernel<'a> {
     hits: &'a [MeshHit<'a>; LANES],
+    /// Whether any material varies.
+    varies: bool,
+    /// Whether AOVs may need the surfaces.
+    leaves_surfaces: bool,
     points: &'a mut MeshPoints,
 }
 
@@ -282,12 +312,12 @@ impl Kernel for MeshKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { hits, points } = self;
+        let Self { hits, varies, leaves_surfaces, points } = self;
         let triangles = gather_triangles(
             simd,
             &by_lane!(lane => hits[lane].mesh),
             &by_lane!(lane => hits[lane].hit.primitive),
-            hits.iter().any(|hit| hit.material.varies),
+            varies || leaves_surfaces,
         );
         let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.u));
         let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.v));
@@ -308,7 +338,7 @@ impl Kernel for MeshKernel<'_> {
         points.surfaces.set(at.points, at.ng, [s, t, n], wo);
         points.uv = [at.uv[0].into(), at.uv[1].into()];
         points.front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
-        if hits.iter().any(|hit| hit.material.bends_frames()) {
+        if leaves_surfaces || hits.iter().any(|hit| hit.material.bends_frames()) {
             let dpdv = Vector::narrow(at.shading_dpdv);
             points.bent = BentFrames { ns: store(ns), dpdu: store(dpdu), dpdv: store(dpdv) };
         }

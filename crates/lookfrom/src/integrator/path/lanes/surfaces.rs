@@ -85,6 +85,12 @@ impl SurfaceColumns {
         row(&self.ng, lane)
     }
 
+    /// The shading normal of a lane.
+    #[inline]
+    pub(super) fn ns(&self, lane: usize) -> [f32; 3] {
+        row(&self.frame[2], lane)
+    }
+
     /// The surfaces in vectors.
     #[inline(always)]
     pub(super) fn load<S: Simd>(&self, simd: S) -> Surfaces<S> {
