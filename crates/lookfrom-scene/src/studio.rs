@@ -53,11 +53,6 @@ pub const MODEL_SAMPLES: u32 = 64;
 const THUMBNAIL_SAMPLES: u32 = 8;
 /// Maximum number of pixels of a thumbnail.
 const THUMBNAIL_PIXELS: u64 = 256 * 256;
-/// The same with denoising: fewer in small pictures, but not in thumbnails, whose shadows are a few pixels wide.
-const DENOISED_SAMPLES: u32 = 16;
-const SMALL_DENOISED_SAMPLES: u32 = 6;
-const SMALL_DENOISED_PIXELS: u64 = 512 * 512;
-const DENOISED_THUMBNAIL_PIXELS: u64 = 160 * 160;
 
 /// Adds a camera that shows the scene from a viewpoint, if there is none. It frames `bounds`, or without them what is in the
 /// scene. `up` as in [`add_lights_and_camera`].
@@ -111,10 +106,20 @@ pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
 pub fn samples_for_models(image: &ImageSettings) -> u32 {
     let pixels = u64::from(image.width) * u64::from(image.height);
     if image.denoise {
-        let is_small = (DENOISED_THUMBNAIL_PIXELS + 1..=SMALL_DENOISED_PIXELS).contains(&pixels);
-        return if is_small { SMALL_DENOISED_SAMPLES } else { DENOISED_SAMPLES };
+        return denoised_samples(pixels);
     }
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
+}
+
+/// The same with denoising: small pictures are there at once, middle ones within about a second; but thumbnails need more,
+/// since their shadows are a few pixels wide.
+fn denoised_samples(pixels: u64) -> u32 {
+    let fits = |side: u64| pixels <= side * side;
+    match (fits(160), fits(320), fits(512)) {
+        (false, true, _) => 6,
+        (_, false, true) => 11,
+        _ => 16,
+    }
 }
 
 /// A camera that shows the box from the right, above and front, as large as it fits into an image of this aspect ratio

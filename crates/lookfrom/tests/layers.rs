@@ -29,7 +29,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("exposure", &["film", "math"]),
     ("noise", &["hash"]),
     ("filter", &["sampler"]),
-    ("distribution", &["sampler"]),
+    ("distribution", &["sampler", "lanes"]),
     ("camera", &["math", "vector", "warp"]),
     ("interior_stack", &[]),
     ("texture", &["color", "hash", "lanes", "noise", "spectrum", "vector"]),

@@ -18,6 +18,7 @@ fn models_are_denoised_until_somebody_says_otherwise() {
     };
     assert_eq!(summary("--size 24"), (true, 16));
     assert_eq!(summary("--size 164"), (true, 6));
+    assert_eq!(summary("--width 103 --height 1000"), (true, 11));
     assert_eq!(summary("--size 24 --samples 3"), (true, 3));
     assert_eq!(summary("--size 24 --samples 3 --denoise"), (true, 3));
     assert_eq!(summary("--size 24 --samples 3 --denoise off"), (false, 3));

@@ -10,6 +10,9 @@ mod window;
 pub use piecewise::Piecewise2D;
 pub use window::{Window, Windowed2D};
 
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, prelude::*};
+
+use crate::core::lanes::{LANES, by_lane};
 use crate::core::sampler::ONE_MINUS_EPSILON;
 
 /// A discrete distribution: entries of a list with probabilities proportional to their weights.
@@ -48,11 +51,32 @@ impl Discrete {
         (index, self.pdf(index), (rest as f32).min(ONE_MINUS_EPSILON))
     }
 
+    /// The entries that [`Discrete::sample`] chooses for eight numbers in [0, 1).
+    #[inline(always)]
+    pub(crate) fn entries<S: Simd>(&self, simd: S, u: f32x8<S>) -> [usize; LANES] {
+        let [_, ends @ .., total] = &self.sums[..] else { return [0; LANES] };
+        if ends.len() > MOST_COMPARED {
+            let u: [f32; LANES] = u.into();
+            return by_lane!(lane => choose(&self.sums, &self.guide, u[lane]).0);
+        }
+        // All intervals that end before the goal are before the entry.
+        let goal = Real::widen(Float::clamp(u, 0.0, ONE_MINUS_EPSILON)) * *total;
+        let (one, zero) = (f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0));
+        let mut entries = zero;
+        for &end in ends {
+            entries += goal.simd_ge(end).select(one, zero);
+        }
+        by_lane!(lane => entries[lane] as usize)
+    }
+
     /// The probability of an entry; 0 for one of weight 0 or an index out of range.
     pub fn pdf(&self, index: usize) -> f32 {
         self.probabilities.get(index).copied().unwrap_or(0.0)
     }
 }
+
+/// The length of lists that are compared with all of their sums at once.
+const MOST_COMPARED: usize = 16;
 
 /// The weight, or 0 if it is not a positive finite number.
 fn usable(weight: f32) -> f64 {

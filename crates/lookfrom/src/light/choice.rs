@@ -10,7 +10,7 @@ use lookfrom_simd::{Float, LaneMask, Simd, f32x8, f64x8, prelude::*};
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
-use crate::core::lanes::{LANES, row, store, store_f64};
+use crate::core::lanes::{LANES, by_lane, row, store, store_f64};
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::vector::Vector;
 
@@ -85,7 +85,14 @@ impl LightChoice {
         u: f32x8<S>,
         mask: u32,
     ) -> [Option<(u32, f32)>; LANES] {
-        let is_listed = self.tree.is_empty() || self.weights.is_some();
+        if let Some(weights) = &self.weights {
+            let places = weights.entries(simd, u);
+            return by_lane!(lane => match mask & 1 << lane {
+                0 => None,
+                _ => Some((self.listed[places[lane]], weights.pdf(places[lane]))),
+            });
+        }
+        let is_listed = self.tree.is_empty();
         let (in_list, mut listed, mut chosen) = (self.share_of_list(), mask, [None; LANES]);
         if !is_listed {
             listed &= u.simd_lt(in_list).to_bitmask() as u32;
@@ -110,7 +117,11 @@ impl LightChoice {
     /// The only light that is sampled, if there is only one.
     #[inline]
     pub(crate) fn only(&self) -> Option<u32> {
-        if self.weights.is_none() && self.listed.is_empty() { self.tree.only() } else { None }
+        match *self.listed {
+            [] => self.tree.only(),
+            [light] if self.tree.is_empty() => Some(light),
+            _ => None,
+        }
     }
 
     /// The probability with which [`LightChoice::sample`] chooses a light at a point.

@@ -1,9 +1,9 @@
 //! First hits of camera rays, recorded once for AOVs and denoiser.
 //!
 //! No probe is needed, so that rendering is not slowed down: first hits are recorded as they are traced, and evaluated
-//! after the batch, unless a step had the surface at hand. Where a ray passes a surface as if it were not there, the hit behind it counts; but where chance decides
-//! that, by an alpha between 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise
-//! that light does not have.
+//! after the batch, unless a step had the surface at hand. Where a ray passes a surface as if it were not there, the hit
+//! behind it counts; but where chance decides that, by an alpha between 0 and 1, all surfaces along the ray count by what
+//! they cover, so that features have no noise that light does not have.
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};

@@ -4,6 +4,7 @@ use super::*;
 use crate::core::hash::mix;
 use crate::core::sampler::Sampler;
 use crate::core::statistics::chi_square_deviate;
+use lookfrom_simd::{Kernel, dispatch, level};
 use proptest::prelude::*;
 
 fn random(i: u32) -> [f32; 2] {
@@ -34,9 +35,24 @@ fn entries_are_chosen_as_often_as_they_weigh() {
     assert_eq!(discrete.pdf(8), 0.0);
 }
 
+/// The entries for eight numbers.
+struct Entries<'a> {
+    discrete: &'a Discrete,
+    numbers: [f32; LANES],
+}
+
+impl Kernel for Entries<'_> {
+    type Output = [usize; LANES];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        self.discrete.entries(simd, f32x8::load_array(simd, self.numbers))
+    }
+}
+
 proptest! {
     #[test]
-    fn choosing_agrees_with_walking_along(weights in prop::collection::vec(any_weight(), 1..300), u in 0.0_f32..1.0) {
+    fn choosing_agrees_with_walking_along(weights in prop_oneof![prop::collection::vec(any_weight(), 1..20), prop::collection::vec(any_weight(), 1..300)], u in 0.0_f32..1.0) {
         let discrete = Discrete::new(&weights);
         let (index, probability, rest) = discrete.sample(u);
         // Slow reference: linear search until the sum passes the goal.
@@ -54,6 +70,9 @@ proptest! {
         prop_assert_eq!(index, walked);
         prop_assert!(usable[index] > 0.0 && probability > 0.0 && (0.0..1.0).contains(&rest));
         prop_assert_eq!(probability, discrete.pdf(index));
+        let numbers = std::array::from_fn(|lane| (u + 0.125 * lane as f32).fract());
+        let alone = numbers.map(|u| discrete.sample(u).0);
+        prop_assert_eq!(dispatch(level(), Entries { discrete: &discrete, numbers }), alone);
         // The new number determines the old one.
         let back = (sum + f64::from(rest) * usable[index]) / total;
         prop_assert!((back - f64::from(u)).abs() < 1e-6, "{} {}", back, u);

@@ -169,6 +169,18 @@ impl Shares {
 /// Precision of stored wavelengths: steps per nm.
 const WAVELENGTH_STEPS: f32 = 64.0;
 
+/// Weights in 255ths; a positive one stays positive.
+#[inline]
+fn packed_weights(weights: Spectrum) -> [u8; 4] {
+    weights.0.map(|w| (w.clamp(0.0, 1.0) * 255.0).ceil() as u8)
+}
+
+/// Wavelengths in steps; 0 for none.
+#[inline]
+fn packed_wavelengths(wavelengths: Option<[f32; 4]>) -> [u16; 4] {
+    wavelengths.map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16))
+}
+
 /// glTF's surface. Numbers are packed into two bytes each, to keep the size of all BSDFs small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principled {
@@ -210,12 +222,8 @@ impl Principled {
             f0: Shares::new(p.f0),
             sheen_color: Shares::new(p.sheen_color),
             diffuse_transmission_color: Shares::new(p.diffuse_transmission_color),
-            // A positive weight stays positive.
-            lane_weights: p.lane_weights.0.map(|w| (w.clamp(0.0, 1.0) * 255.0).ceil() as u8),
-            wavelengths: p
-                .film
-                .wavelengths
-                .map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16)),
+            lane_weights: packed_weights(p.lane_weights),
+            wavelengths: packed_wavelengths(p.film.wavelengths),
             roughness: p.roughness,
             eta: if p.eta > 0.0 { fresnel::valid_eta(p.eta) } else { 0.0 },
             f0_greatest: Share::new(p.f0_greatest),
@@ -232,6 +240,26 @@ impl Principled {
             sheen_roughness: Share::new(p.sheen_roughness),
             iridescence: Share::new(p.iridescence),
             is_solid: p.is_solid,
+        }
+    }
+
+    /// The surface with other values of what mostly varies, and for another path: as [`Principled::new`] has it.
+    #[inline]
+    pub(crate) fn varied(
+        &self,
+        base_color: Spectrum,
+        metallic: f32,
+        roughness: TrowbridgeReitz,
+        lane_weights: Spectrum,
+        wavelengths: Option<[f32; 4]>,
+    ) -> Self {
+        Self {
+            base_color: Shares::new(base_color),
+            metallic: Share::new(metallic),
+            roughness,
+            lane_weights: packed_weights(lane_weights),
+            wavelengths: packed_wavelengths(wavelengths),
+            ..*self
         }
     }
 

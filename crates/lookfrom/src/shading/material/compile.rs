@@ -6,7 +6,7 @@ use lookfrom_scene::scene::TextureId;
 
 use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
-use super::{Material, approximate, pictures};
+use super::{Material, approximate, pictures, principled};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
@@ -145,7 +145,7 @@ impl<'a> Compiler<'a> {
             sin_cos: libm::sincosf(grain.rotation).into(),
             texture: grain.texture.map(|texture| self.directions(texture)),
         });
-        Principled {
+        let compiled = Principled {
             base_color: self.albedo(look.base_color),
             metallic: look.metallic.into(),
             roughness: look.roughness.into(),
@@ -166,7 +166,9 @@ impl<'a> Compiler<'a> {
             iridescence: look.iridescence.into(),
             iridescence_ior: look.iridescence_ior,
             iridescence_thickness: look.iridescence_thickness.into(),
-        }
+            template: None,
+        };
+        Principled { template: principled::template(&compiled, self.textures), ..compiled }
     }
 }
 

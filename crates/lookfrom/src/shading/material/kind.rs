@@ -4,6 +4,7 @@ use glam::Vec3;
 use lookfrom_scene::scene::CurveId;
 
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::principled as bsdf;
 use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
 
 /// The types of materials.
@@ -245,6 +246,8 @@ pub struct Principled {
     pub iridescence_ior: f32,
     /// The film's thickness in nm.
     pub iridescence_thickness: FloatTexture,
+    /// The BSDF, where all of it but base colour, metalness and roughness is the same everywhere outside of bodies.
+    pub(super) template: Option<bsdf::Principled>,
 }
 
 /// Anisotropy of a specular lobe along a direction of the surface.

@@ -10,13 +10,14 @@
 use glam::Vec3;
 
 use super::kind::Principled as PrincipledMaterial;
-use super::{Evaluator, Frame, MaterialKind, bump};
+use super::{Evaluator, Frame, MaterialKind, ShadingContext, bump};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled::film::Film;
 use crate::shading::bsdf::principled::{Parameters, Principled};
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::texture::{SpectralMode, SpectrumTexture};
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
 /// Reflectance of a dielectric at normal incidence by its index; an index of 0 means infinite.
 fn straight(ior: f32) -> f32 {
@@ -51,6 +52,33 @@ fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) ->
     }
 }
 
+/// The BSDF of a material with any base colour, metalness and roughness, which [`Evaluator::principled`] replaces; `None`
+/// where more of it varies, or depends on the surface or on wavelengths.
+pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option<Principled> {
+    let is_even = [look.specular, look.transmission, look.clearcoat_roughness, look.sheen_roughness]
+        .into_iter()
+        .chain([look.iridescence_thickness])
+        .all(|number| !number.varies());
+    let is_plain = look.specular_color.is_gray(1.0)
+        && look.sheen_color.is_gray(0.0)
+        && [look.clearcoat, look.diffuse_transmission, look.iridescence].iter().all(|weight| weight.is(0.0));
+    if look.is_solid || look.anisotropy.is_some() || !is_even || !is_plain {
+        return None;
+    }
+    let surface =
+        ShadingGeometry { ng: Vec3::Z, ns: Vec3::Z, dpdu: Vec3::X, dpdv: Vec3::Y, wo: Vec3::Z, front: true };
+    let (mut lanes, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
+    let interior = InteriorStack::default();
+    let context = ShadingContext { lanes: &mut lanes, throughput: &mut throughput, interior, u: 0.0 };
+    let mut evaluator = Evaluator::new(&[], textures, &TexturePoint::NOWHERE, context);
+    Some(evaluator.principled(look, 0, &surface, bump::plain(&surface)).0)
+}
+
+/// The microfacet distribution's α of a roughness.
+fn alpha(roughness: f32) -> f32 {
+    roughness * roughness
+}
+
 impl Evaluator<'_> {
     /// The BSDF, and the frame rotated to the direction of anisotropy.
     pub(super) fn principled(
@@ -60,17 +88,20 @@ impl Evaluator<'_> {
         surface: &ShadingGeometry,
         mut frame: Frame,
     ) -> (Principled, Frame) {
-        let share = |at: &Self, texture| at.float(texture).clamp(0.0, 1.0);
-        let transmission = share(self, look.transmission);
-        let metallic = share(self, look.metallic);
+        if let Some(template) = &look.template
+            && self.interior.material().is_none()
+        {
+            return (self.of_template(look, template), frame);
+        }
+        let transmission = self.share(look.transmission);
+        let metallic = self.share(look.metallic);
         let ior = self.index(look, transmission * (1.0 - metallic));
         let around = self.around(look, material, surface.front);
         let is_hidden = around.is_none();
         let eta = around.map_or(1.0, |around| ior / around);
 
         // Roughness, stretched along the direction of anisotropy.
-        let alpha = |roughness: f32| roughness * roughness;
-        let across = alpha(share(self, look.roughness));
+        let across = alpha(self.share(look.roughness));
         let mut along = across;
         if let Some(grain) = &look.anisotropy {
             let mut strength = grain.strength;
@@ -88,24 +119,24 @@ impl Evaluator<'_> {
         }
 
         // Specular reflection of the dielectric.
-        let specular = if is_hidden { 0.0 } else { share(self, look.specular) };
+        let specular = if is_hidden { 0.0 } else { self.share(look.specular) };
         let (color, greatest) = self.with_greatest(&look.specular_color);
         let mirrored = straight(eta);
         let f0 = color.map(|lane| (mirrored * lane).clamp(0.0, 1.0) * specular);
 
-        let clearcoat = if is_hidden { 0.0 } else { share(self, look.clearcoat) };
+        let clearcoat = if is_hidden { 0.0 } else { self.share(look.clearcoat) };
         let mut clearcoat_normal = Vec3::Z;
         if clearcoat > 0.0 {
             let bent =
                 look.clearcoat_normal.map(|map| bump::mapped(&map, self.textures, surface, self.point));
             clearcoat_normal = frame.local(bump::valid(bent.unwrap_or(surface.ns), surface));
         }
-        let coat_alpha = alpha(share(self, look.clearcoat_roughness));
+        let coat_alpha = alpha(self.share(look.clearcoat_roughness));
         let (sheen_color, sheen_greatest) = match &look.sheen_color {
             color if is_hidden || color.is_gray(0.0) => (Spectrum::BLACK, 0.0),
             color => self.with_greatest(color),
         };
-        let diffuse_transmission = share(self, look.diffuse_transmission);
+        let diffuse_transmission = self.share(look.diffuse_transmission);
         let parameters = Parameters {
             base_color: self.albedo(&look.base_color),
             metallic,
@@ -127,23 +158,45 @@ impl Evaluator<'_> {
             clearcoat_normal,
             sheen_color,
             sheen_greatest,
-            sheen_roughness: share(self, look.sheen_roughness),
+            sheen_roughness: self.share(look.sheen_roughness),
             iridescence: if look.iridescence.is(0.0) || is_hidden {
                 0.0
             } else {
-                share(self, look.iridescence)
+                self.share(look.iridescence)
             },
             film: Film {
                 eta: look.iridescence_ior,
                 thickness: self.float(look.iridescence_thickness),
-                wavelengths: match self.lanes {
-                    SpectralMode::Rgb => None,
-                    SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
-                },
+                wavelengths: self.wavelengths(),
             },
             lane_weights: self.lane_weights(),
         };
         (Principled::new(&parameters), frame)
+    }
+
+    /// The BSDF by that of a [`template`].
+    fn of_template(&self, look: &PrincipledMaterial, template: &Principled) -> Principled {
+        let alpha = alpha(self.share(look.roughness));
+        template.varied(
+            self.albedo(&look.base_color),
+            self.share(look.metallic),
+            TrowbridgeReitz::new(alpha, alpha),
+            self.lane_weights(),
+            self.wavelengths(),
+        )
+    }
+
+    /// A number of 0 … 1.
+    fn share(&self, number: FloatTexture) -> f32 {
+        self.float(number).clamp(0.0, 1.0)
+    }
+
+    /// The wavelengths of the sample's lanes; `None` in RGB.
+    fn wavelengths(&self) -> Option<[f32; 4]> {
+        match &*self.lanes {
+            SpectralMode::Rgb => None,
+            SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
+        }
     }
 
     /// The weights of the lanes in the choice of lobes: the path's throughput, so that a lobe whose colour can no longer
@@ -199,5 +252,89 @@ impl Evaluator<'_> {
             SpectralMode::Spectral(_) => self.textures.spectrum(color, self.point, self.lanes),
         };
         (lanes, rgb.into_iter().fold(0.0, f32::max))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lookfrom_scene::material::{self as written, Color, Scalar};
+    use lookfrom_scene::scene::TextureId;
+    use lookfrom_scene::settings::ColorMode;
+    use lookfrom_scene::texture::{Mapping, TextureKind};
+
+    use super::*;
+    use crate::core::color::Wavelengths;
+    use crate::core::hash;
+    use crate::shading::material::compile::Compiler;
+
+    #[test]
+    fn a_template_is_the_whole_evaluation() {
+        let mut count = 0;
+        let mut number = || {
+            count += 1;
+            (hash::pair(count, 5) >> 40) as f32 / 16_777_216.0
+        };
+        let mut templates = 0;
+        for round in 0..400 {
+            let mode = if round % 2 == 0 { ColorMode::Rgb } else { ColorMode::Spectral };
+            let checker = TextureKind::Checker {
+                even: Color::Value([number(), number(), number()]),
+                odd: Color::Value([1.2 * number(); 3]),
+                mapping: Mapping::UV,
+            };
+            let textures = Textures::new(&[checker], Vec::new(), Vec::new(), mode);
+            let texture = TextureId(0);
+            let mut scalar = |rare: f32| match number() {
+                u if u < 0.3 => Scalar::Texture(texture),
+                u if u < rare => Scalar::Value(0.0),
+                u => Scalar::Value(u),
+            };
+            let look = written::Principled {
+                metallic: scalar(0.0),
+                roughness: scalar(0.0),
+                clearcoat: scalar(0.95),
+                iridescence: Scalar::Value(0.0),
+                ..written::Principled::default()
+            };
+            let base_color =
+                if number() < 0.5 { Color::Texture(texture) } else { Color::Value([number(); 3]) };
+            let look = written::Principled {
+                base_color,
+                transmission: Scalar::Value((2.0 * number() - 1.0).max(0.0)),
+                ior: 1.0 + number(),
+                is_solid: number() < 0.1,
+                ..look
+            };
+            let kind = written::MaterialKind::Principled(Box::new(look));
+            let written = written::Material::new("", lookfrom_scene::Location::default(), kind);
+            let (material, _) = Compiler::new(&textures).compile(&written);
+            let MaterialKind::Principled(look) = &material.kind else { panic!("{:?}", material.kind) };
+            let whole = PrincipledMaterial { template: None, ..(**look).clone() };
+            let uv = glam::Vec2::new(4.0 * number(), 4.0 * number());
+            let point = TexturePoint { uv, ..TexturePoint::NOWHERE };
+            let surface = ShadingGeometry {
+                ng: Vec3::Z,
+                ns: Vec3::new(0.0, 0.6, 0.8),
+                dpdu: Vec3::X,
+                dpdv: Vec3::Y,
+                wo: Vec3::Z,
+                front: true,
+            };
+            let mut lanes = match mode {
+                ColorMode::Rgb => SpectralMode::Rgb,
+                ColorMode::Spectral => SpectralMode::Spectral(Wavelengths::sample_visible(number())),
+            };
+            let throughput = Spectrum([number(), number(), number(), number()]);
+            let mut evaluate = |look: &PrincipledMaterial| {
+                let (interior, mut throughput) = (InteriorStack::default(), throughput);
+                let (lanes, throughput) = (&mut lanes, &mut throughput);
+                let context = ShadingContext { lanes, throughput, interior, u: 0.5 };
+                let mut evaluator = Evaluator::new(&[], &textures, &point, context);
+                evaluator.principled(look, 0, &surface, bump::plain(&surface)).0
+            };
+            assert_eq!(evaluate(look), evaluate(&whole), "{look:?}");
+            templates += usize::from(look.template.is_some());
+        }
+        assert!((100..350).contains(&templates), "{templates} of 400");
     }
 }
