@@ -55,10 +55,8 @@ fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) ->
 /// The BSDF of a material with any base colour, metalness and roughness, which [`Evaluator::principled`] replaces; `None`
 /// where more of it varies, or depends on the surface or on wavelengths.
 pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option<Principled> {
-    let is_even = [look.specular, look.transmission, look.clearcoat_roughness, look.sheen_roughness]
-        .into_iter()
-        .chain([look.iridescence_thickness])
-        .all(|number| !number.varies());
+    let (roughnesses, film) = ([look.clearcoat_roughness, look.sheen_roughness], look.iridescence_thickness);
+    let is_even = ![look.specular, look.transmission, film].iter().chain(&roughnesses).any(|x| x.varies());
     let is_plain = look.specular_color.is_gray(1.0)
         && look.sheen_color.is_gray(0.0)
         && [look.clearcoat, look.diffuse_transmission, look.iridescence].iter().all(|weight| weight.is(0.0));
