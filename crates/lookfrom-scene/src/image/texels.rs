@@ -37,6 +37,11 @@ enum Stored {
     Floats([[f32; 4]; 4]),
 }
 
+impl Quad {
+    /// Four black texels without opacity.
+    pub const BLACK: Self = Self(Stored::Bytes([[0; 4]; 4]));
+}
+
 impl Default for Texels {
     fn default() -> Self {
         Self::Floats { texels: Vec::new(), alpha: Vec::new() }
@@ -153,7 +158,7 @@ impl Image {
         match (quad.0, &self.texels) {
             (Stored::Bytes(quad), Texels::Bytes { table, .. }) => quad.map(|[r, g, b, a]| {
                 let [r, g, b] = [r, g, b].map(|byte| table[usize::from(byte)]);
-                [r, g, b, f32::from(a) / 255.0]
+                [r, g, b, if self.has_alpha { f32::from(a) / 255.0 } else { 1.0 }]
             }),
             (Stored::Bytes(quad), _) => quad.map(|texel| texel.map(|byte| f32::from(byte) / 255.0)),
             (Stored::Floats(quad), _) => quad,

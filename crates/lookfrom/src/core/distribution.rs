@@ -54,19 +54,36 @@ impl Discrete {
     /// The entries that [`Discrete::sample`] chooses for eight numbers in [0, 1).
     #[inline(always)]
     pub(crate) fn entries<S: Simd>(&self, simd: S, u: f32x8<S>) -> [usize; LANES] {
-        let [_, ends @ .., total] = &self.sums[..] else { return [0; LANES] };
+        let [_, ends @ .., _] = &self.sums[..] else { return [0; LANES] };
         if ends.len() > MOST_COMPARED {
             let u: [f32; LANES] = u.into();
             return by_lane!(lane => choose(&self.sums, &self.guide, u[lane]).0);
         }
         // All intervals that end before the goal are before the entry.
-        let goal = Real::widen(Float::clamp(u, 0.0, ONE_MINUS_EPSILON)) * *total;
+        let goal = self.goals(u);
         let (one, zero) = (f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0));
         let mut entries = zero;
         for &end in ends {
             entries += goal.simd_ge(end).select(one, zero);
         }
         by_lane!(lane => entries[lane] as usize)
+    }
+
+    /// [`Discrete::sample`] for eight numbers in [0, 1).
+    #[inline(always)]
+    pub(crate) fn sample_lanes<S: Simd>(&self, simd: S, u: f32x8<S>) -> ([usize; LANES], f32x8<S>, f32x8<S>) {
+        let entries = self.entries(simd, u);
+        let probabilities = by_lane!(lane => self.pdf(entries[lane]));
+        let starts = f64x8::load_array(simd, by_lane!(lane => self.sums[entries[lane]]));
+        let ends = f64x8::load_array(simd, by_lane!(lane => self.sums[entries[lane] + 1]));
+        let rest: f32x8<S> = Real::narrow((self.goals(u) - starts) / (ends - starts));
+        (entries, f32x8::load_array(simd, probabilities), Float::min(rest, rest.like(ONE_MINUS_EPSILON)))
+    }
+
+    /// The numbers in proportion to the sum of all weights.
+    #[inline(always)]
+    fn goals<S: Simd>(&self, u: f32x8<S>) -> f64x8<S> {
+        Real::widen(Float::clamp(u, 0.0, ONE_MINUS_EPSILON)) * self.sums[self.sums.len() - 1]
     }
 
     /// The probability of an entry; 0 for one of weight 0 or an index out of range.

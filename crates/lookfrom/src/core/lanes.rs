@@ -157,6 +157,26 @@ pub(crate) fn gather<S: Simd>(simd: S, rows: &[[f32; 3]; LANES]) -> Vector<f32x8
     Vector { x, y, z }
 }
 
+/// Vectors from their rows; the fourth numbers are not used.
+#[inline(always)]
+pub(crate) fn from_rows<S: Simd>(simd: S, rows: [f32x4<S>; LANES]) -> Vector<f32x8<S>> {
+    let [x, y, z, _] = transposed(simd, rows);
+    Vector { x, y, z }
+}
+
+/// A vector of a list as a row, with any fourth number.
+#[inline(always)]
+pub(crate) fn row_at<S: Simd>(simd: S, list: &[[f32; 3]], index: u32) -> f32x4<S> {
+    let index = index as usize;
+    // With the first component of the next vector, if there is one, it is one load: stores of single numbers would be
+    // waited for.
+    if let Some(four) = list.as_flattened().get(3 * index..3 * index + 4) {
+        return f32x4::from_slice(simd, four);
+    }
+    let [x, y, z] = list[index];
+    f32x4::load_array(simd, [x, y, z, 0.0])
+}
+
 /// A vector of double precision in each lane.
 #[inline(always)]
 pub(crate) fn gather_f64<S: Simd>(simd: S, rows: &[[f64; 3]; LANES]) -> Vector<f64x8<S>> {

@@ -34,7 +34,7 @@ use crate::shading::texture::{
 };
 
 pub use albedo::albedo;
-pub(crate) use bump::frame_about;
+pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use kind::{
     Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Roughness, Whitted,

@@ -35,18 +35,21 @@ fn entries_are_chosen_as_often_as_they_weigh() {
     assert_eq!(discrete.pdf(8), 0.0);
 }
 
-/// The entries for eight numbers.
-struct Entries<'a> {
+/// The entries for eight numbers, and the samples.
+struct Eight<'a> {
     discrete: &'a Discrete,
     numbers: [f32; LANES],
 }
 
-impl Kernel for Entries<'_> {
-    type Output = [usize; LANES];
+impl Kernel for Eight<'_> {
+    type Output = ([usize; LANES], [(usize, f32, f32); LANES]);
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        self.discrete.entries(simd, f32x8::load_array(simd, self.numbers))
+        let u = f32x8::load_array(simd, self.numbers);
+        let (entries, probability, rest) = self.discrete.sample_lanes(simd, u);
+        let samples = by_lane!(lane => (entries[lane], probability[lane], rest[lane]));
+        (self.discrete.entries(simd, u), samples)
     }
 }
 
@@ -71,8 +74,9 @@ proptest! {
         prop_assert!(usable[index] > 0.0 && probability > 0.0 && (0.0..1.0).contains(&rest));
         prop_assert_eq!(probability, discrete.pdf(index));
         let numbers = std::array::from_fn(|lane| (u + 0.125 * lane as f32).fract());
-        let alone = numbers.map(|u| discrete.sample(u).0);
-        prop_assert_eq!(dispatch(level(), Entries { discrete: &discrete, numbers }), alone);
+        let (entries, samples) = dispatch(level(), Eight { discrete: &discrete, numbers });
+        prop_assert_eq!(samples, numbers.map(|u| discrete.sample(u)));
+        prop_assert_eq!(entries, samples.map(|(entry, ..)| entry));
         // The new number determines the old one.
         let back = (sum + f64::from(rest) * usable[index]) / total;
         prop_assert!((back - f64::from(u)).abs() < 1e-6, "{} {}", back, u);

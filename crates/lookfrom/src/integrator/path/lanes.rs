@@ -6,6 +6,7 @@
 //!
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
+mod bent_frames;
 mod kernel;
 mod light_samples;
 mod mesh_hits;

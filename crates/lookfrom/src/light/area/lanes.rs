@@ -3,7 +3,7 @@
 use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, mask64x8, prelude::*};
 
 use super::{
-    AreaLight, AreaSamples, DiskLights, LightShape, LightTriangle, SphereLights, gather_disks,
+    AreaLight, AreaSamples, DiskLights, LightShape, LightTriangle, MeshLight, SphereLights, gather_disks,
     gather_spheres, sample_triangles,
 };
 use crate::core::lanes::{LANES, bitmask, by_lane};
@@ -62,6 +62,15 @@ impl<'a> Chosen<'a> {
     }
 }
 
+/// The mesh of uniform emission that is the only light in all lanes that have one.
+#[inline(always)]
+fn only_mesh<'a>(lights: &[Option<&'a AreaLight>; LANES]) -> Option<&'a MeshLight> {
+    let first = *lights.iter().flatten().next()?;
+    let LightShape::Mesh(mesh) = &first.shape else { return None };
+    let are_same = bitmask(&by_lane!(lane => lights[lane].is_none_or(|light| std::ptr::eq(light, first))));
+    (are_same == (1 << LANES) - 1 && first.is_uniform()).then_some(mesh)
+}
+
 /// Points of the area lights that are sampled in lanes, and which those are: triangles, whole spheres and whole disks of
 /// uniform emission.
 #[inline(always)]
@@ -71,6 +80,13 @@ pub(crate) fn sample_area_lights<S: Simd>(
     [u0, u1]: [f32x8<S>; 2],
     from: Vector<f64x8<S>>,
 ) -> (Option<AreaSamples<f32x8<S>>>, u32) {
+    // Most often all lanes sample one mesh.
+    if let Some(mesh) = only_mesh(lights)
+        && let Some((of, probability, rest)) = mesh.triangles(simd, u0)
+    {
+        let lanes = bitmask(&by_lane!(lane => lights[lane].is_some()));
+        return (Some(sample_triangles(simd, &of, probability, [rest, u1], from)), lanes);
+    }
     let Chosen { triangles, probability, rest, spheres, disks } = Chosen::new(lights, &u0.into());
     let (mut samples, mut in_lanes) = (None, 0);
     if let Some(first) = triangles.iter().flatten().next() {

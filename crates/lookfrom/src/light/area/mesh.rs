@@ -10,10 +10,12 @@ use std::sync::Arc;
 use glam::{DVec3, Vec2, Vec3};
 pub(crate) use lanes::sample_triangles;
 use lookfrom_bvh::Point;
+use lookfrom_simd::{Simd, f32x8};
 use spherical_triangle::SphericalTriangles;
 
 use super::{Cone, LightPoint, seen};
 use crate::core::distribution::Discrete;
+use crate::core::lanes::{LANES, by_lane};
 use crate::core::parallel;
 use crate::core::vector::Vector;
 use crate::core::warp;
@@ -69,6 +71,20 @@ impl MeshLight {
         let (index, probability, u0) = self.choice.sample(u0);
         let triangle = &self.triangles[index];
         triangle.normal.is_some().then_some((triangle, probability, u0))
+    }
+
+    /// [`MeshLight::triangle`] for eight numbers.
+    #[inline(always)]
+    pub(super) fn triangles<S: Simd>(
+        &self,
+        simd: S,
+        u0: f32x8<S>,
+    ) -> Option<([&Triangle; LANES], f32x8<S>, f32x8<S>)> {
+        if !self.is_flat {
+            return None;
+        }
+        let (indices, probability, u0) = self.choice.sample_lanes(simd, u0);
+        Some((by_lane!(lane => &self.triangles[indices[lane]]), probability, u0))
     }
 
     /// Whether [`MeshLight::triangle`] is known for every number.

@@ -1,10 +1,9 @@
 //! Triangles of eight meshes side by side.
 
-use glam::Vec2;
-use lookfrom_simd::{LaneMask, Simd, f32x8, f64x8, mask64x8, prelude::*};
+use lookfrom_simd::{LaneMask, Simd, f32x4, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::Mesh;
-use crate::core::lanes::{LANES, load, set_row};
+use crate::core::lanes::{LANES, by_lane, from_rows, load, row_at, set_row};
 use crate::core::vector::Vector;
 use crate::primitive::triangle::{Tangent, Triangles};
 
@@ -20,21 +19,21 @@ pub(crate) fn gather_triangles<S: Simd>(
     let zero = f32x8::splat(simd, 0.0);
     let none = Vector { x: zero, y: zero, z: zero };
     let mut corners = [[0; 3]; LANES];
-    let mut positions = [[[0.0; LANES]; 3]; 3];
     let mut orientation = [1.0; LANES];
     let (mut have_normals, mut have_tangents, mut want_derivatives) = (0, 0, 0);
     for (lane, mesh) in meshes.iter().enumerate() {
         corners[lane] = mesh.triangles[indices[lane] as usize];
-        for (corner, vertex) in corners[lane].into_iter().enumerate() {
-            set_row(&mut positions[corner], lane, mesh.positions[vertex as usize]);
-        }
         orientation[lane] = if mesh.flip { -1.0 } else { 1.0 };
         have_normals |= u32::from(!mesh.normals.is_empty()) << lane;
         have_tangents |= u32::from(!mesh.tangents.is_empty()) << lane;
         want_derivatives |= u32::from(mesh.wants_derivatives) << lane;
     }
     let mut triangles = Triangles {
-        positions: [load(simd, &positions[0]), load(simd, &positions[1]), load(simd, &positions[2])],
+        positions: [
+            from_rows(simd, by_lane!(lane => row_at(simd, &meshes[lane].positions, corners[lane][0]))),
+            from_rows(simd, by_lane!(lane => row_at(simd, &meshes[lane].positions, corners[lane][1]))),
+            from_rows(simd, by_lane!(lane => row_at(simd, &meshes[lane].positions, corners[lane][2]))),
+        ],
         orientation: f64x8::load_array(simd, orientation),
         normals: [none; 3],
         uvs: [[zero; 2]; 3],
@@ -44,26 +43,23 @@ pub(crate) fn gather_triangles<S: Simd>(
         want_derivatives: mask64x8::from_bitmask(simd, want_derivatives.into()),
     };
     if have_normals != 0 {
-        let mut normals = [[[0.0; LANES]; 3]; 3];
-        for lane in LaneMask(have_normals) {
-            for (columns, vertex) in normals.iter_mut().zip(corners[lane]) {
-                set_row(columns, lane, meshes[lane].normals[vertex as usize].to_array());
-            }
-        }
-        triangles.normals = [load(simd, &normals[0]), load(simd, &normals[1]), load(simd, &normals[2])];
+        triangles.normals = [
+            from_rows(simd, by_lane!(lane => normal_row(simd, meshes[lane], corners[lane][0]))),
+            from_rows(simd, by_lane!(lane => normal_row(simd, meshes[lane], corners[lane][1]))),
+            from_rows(simd, by_lane!(lane => normal_row(simd, meshes[lane], corners[lane][2]))),
+        ];
     }
     if wants_uvs || want_derivatives != 0 {
-        let mut uvs = [[[0.0; LANES]; 2]; 3];
-        for (lane, mesh) in meshes.iter().enumerate() {
-            for (corner, vertex) in corners[lane].into_iter().enumerate() {
-                let uv = mesh.uvs.get(vertex as usize).map_or(Mesh::NO_UVS[corner], Vec2::to_array);
-                set_row(&mut uvs[corner], lane, uv);
-            }
-        }
         let mut corner = 0;
         while corner < 3 {
-            let [u, v] = uvs[corner];
-            triangles.uvs[corner] = [f32x8::load_array(simd, u), f32x8::load_array(simd, v)];
+            let uvs = by_lane!(lane => match meshes[lane].uvs.get(corners[lane][corner] as usize) {
+                Some(uv) => [uv.x, uv.y],
+                None => Mesh::NO_UVS[corner],
+            });
+            triangles.uvs[corner] = [
+                f32x8::load_array(simd, by_lane!(lane => uvs[lane][0])),
+                f32x8::load_array(simd, by_lane!(lane => uvs[lane][1])),
+            ];
             corner += 1;
         }
     }
@@ -85,9 +81,18 @@ pub(crate) fn gather_triangles<S: Simd>(
     triangles
 }
 
+/// The normal of a vertex as a row; zero where the mesh has none.
+#[inline(always)]
+fn normal_row<S: Simd>(simd: S, mesh: &Mesh, vertex: u32) -> f32x4<S> {
+    match mesh.normals.get(vertex as usize) {
+        Some(n) => f32x4::load_array(simd, [n.x, n.y, n.z, 0.0]),
+        None => f32x4::splat(simd, 0.0),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::{Vec3, Vec4};
+    use glam::{Vec2, Vec3, Vec4};
     use lookfrom_simd::{Kernel, Level, dispatch};
 
     use super::*;

@@ -1,6 +1,6 @@
 //! Bump and normal maps: the shading frame.
 //!
-//! pbrt's materials take the perturbed normal as it is. glTF's take one that is [`valid`], so that reflected
+//! pbrt's materials take the perturbed normal as it is. glTF's take one that is [`valid`](Bending::valid), so that reflected
 //! directions leave the surface: the surface neither turns black where a reflection would point inside nor is lit
 //! through itself.
 //!
@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
-use lookfrom_simd::{Mask, Real};
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;
@@ -36,7 +36,7 @@ pub(super) fn frame(
     around(side, surface.dpdu)
 }
 
-/// The same for glTF's material, with a normal that is [`valid`].
+/// The same for glTF's material, with a normal that is [`valid`](Bending::valid).
 pub(super) fn valid_frame(
     bump_mapping: &BumpMapping,
     textures: &Textures,
@@ -72,8 +72,7 @@ fn bent(
 /// The directions of u and v at a surface, perpendicular to its shading normal and to each other, of
 /// unit length.
 pub(super) fn tangents(surface: &ShadingGeometry) -> [Vec3; 2] {
-    let Frame { s, t, .. } = around(surface.ns, surface.dpdu);
-    [s, if t.dot(surface.dpdv) < 0.0 { -t } else { t }]
+    Bending::from(surface).tangents().map(Vec3::from)
 }
 
 /// The normal of a normal map, of unit length.
@@ -83,43 +82,105 @@ pub(super) fn mapped(
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Vec3 {
-    let texel = textures.rgb(&map.texture, at);
-    let [x, y, z] = texel.map(|c| 2.0 * c - 1.0);
-    let [s, t] = tangents(surface);
-    (map.scale * x * s + map.scale * y * t + z * surface.ns).normalize_or(surface.ns)
+    Bending::from(surface).mapped(local_normal(map, textures, at).into()).into()
 }
 
-/// The nearest normal to `n`, turned toward the geometric one, that reflects `wo` to the outside of the surface.
-///
-/// Let the geometric normal on the side of `wo` be g, and t the direction perpendicular to it toward which `n`
-/// leans by an angle θ. The reflected direction then has the height `x sin 2θ + z cos 2θ` over the surface, where
-/// `wo` has x along t and z along g: a sinusoid in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to
-/// a height h at `2θ = atan2(x, z) + acos(h / A)`. This is the largest lean allowed.
+/// The normal of a normal map along the tangents and the shading normal; not of unit length.
+pub(super) fn local_normal(map: &NormalTexture, textures: &Textures, at: &TexturePoint) -> [f32; 3] {
+    let [x, y, z] = textures.rgb(&map.texture, at).map(|c| 2.0 * c - 1.0);
+    [map.scale * x, map.scale * y, z]
+}
+
+/// [`Bending::valid`].
 pub(super) fn valid(n: Vec3, surface: &ShadingGeometry) -> Vec3 {
-    let facing = if surface.front { 1.0 } else { -1.0 };
-    let (n, g, wo) = (facing * n, surface.ng_facing(), surface.wo);
-    let z = wo.dot(g);
-    // For a grazing `wo` the reflected direction stays nearly grazing.
-    let least = (0.9 * z).min(0.01);
-    let leans = n.dot(g);
-    if leans > 0.0 && 2.0 * n.dot(wo) * leans - z >= least {
-        return facing * n;
+    Bending::from(surface).valid(n.into()).into()
+}
+
+/// The directions at a surface by which a normal map bends its shading frame, at any width. Of unit length but for the
+/// derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bending<R> {
+    /// The geometric normal on the side of `wo`.
+    pub(crate) ng_facing: Vector<R>,
+    /// 1 where that is the outside, −1 elsewhere.
+    pub(crate) facing: R,
+    /// The shading normal of the surface without the map, to the outside.
+    pub(crate) ns: Vector<R>,
+    pub(crate) dpdu: Vector<R>,
+    pub(crate) dpdv: Vector<R>,
+    pub(crate) wo: Vector<R>,
+}
+
+impl From<&ShadingGeometry> for Bending<f32> {
+    fn from(surface: &ShadingGeometry) -> Self {
+        Self {
+            ng_facing: surface.ng_facing().into(),
+            facing: if surface.front { 1.0 } else { -1.0 },
+            ns: surface.ns.into(),
+            dpdu: surface.dpdu.into(),
+            dpdv: surface.dpdv.into(),
+            wo: surface.wo.into(),
+        }
     }
-    let Some(t) = (n - leans * g).try_normalize() else { return facing * g };
-    let x = wo.dot(t);
-    let amplitude = (x * x + z * z).sqrt();
-    if !(amplitude > 0.0) {
-        return facing * g;
+}
+
+impl<R: Real> Bending<R> {
+    /// The directions of u and v, perpendicular to the shading normal and to each other, of unit length.
+    #[inline(always)]
+    fn tangents(&self) -> [Vector<R>; 2] {
+        let (s, t) = frame_about(self.ns, self.dpdu);
+        [s, t.negate_where(t.dot(self.dpdv).lt(self.facing.like(0.0)))]
     }
-    let (height, wave) = (least / amplitude, [x / amplitude, z / amplitude]);
-    let rest = (1.0 - height * height).max(0.0).sqrt();
-    let cos_twice = height * wave[1] - rest * wave[0];
-    let sin_twice = height * wave[0] + rest * wave[1];
-    // The half angle, by the root that does not cancel.
-    let greater = (0.5 * (1.0 + cos_twice.abs())).sqrt();
-    let smaller = 0.5 * sin_twice / greater;
-    let (cos, sin) = if cos_twice > 0.0 { (greater, smaller) } else { (smaller, greater) };
-    facing * (cos * g + sin * t).normalize_or(g)
+
+    /// The normal of a normal map, of unit length, by its [`local_normal`].
+    #[inline(always)]
+    pub(crate) fn mapped(&self, local: Vector<R>) -> Vector<R> {
+        let [s, t] = self.tangents();
+        normalized_or(s * local.x + t * local.y + self.ns * local.z, self.ns)
+    }
+
+    /// The nearest normal to `n`, turned toward the geometric one, that reflects `wo` to the outside of the surface.
+    ///
+    /// Let the geometric normal on the side of `wo` be g, and t the direction perpendicular to it toward which `n`
+    /// leans by an angle θ. The reflected direction then has the height `x sin 2θ + z cos 2θ` over the surface, where
+    /// `wo` has x along t and z along g: a sinusoid in 2θ of amplitude `A = √(x² + z²)`, which begins at z and falls to
+    /// a height h at `2θ = atan2(x, z) + acos(h / A)`. This is the largest lean allowed.
+    #[inline(always)]
+    pub(crate) fn valid(&self, n: Vector<R>) -> Vector<R> {
+        let (n, g, wo) = (n * self.facing, self.ng_facing, self.wo);
+        let (zero, one) = (self.facing.like(0.0), self.facing.like(1.0));
+        let z = wo.dot(g);
+        // For a grazing `wo` the reflected direction stays nearly grazing.
+        let least = Float::min(z * 0.9, zero.like(0.01));
+        let leans = n.dot(g);
+        let height = n.dot(wo) * 2.0 * leans - z;
+        let is_valid = leans.gt(zero) & (height.gt(least) | Float::eq(height, least));
+        if is_valid.all() {
+            return n * self.facing;
+        }
+        let (t, has_lean) = (n - g * leans).try_normalize();
+        let x = wo.dot(t);
+        let amplitude = Float::sqrt(x * x + z * z);
+        let leans = has_lean & amplitude.gt(zero);
+        let (height, wave) = (least / amplitude, [x / amplitude, z / amplitude]);
+        let rest = Float::sqrt(Float::max(one - height * height, zero));
+        let cos_twice = height * wave[1] - rest * wave[0];
+        let sin_twice = height * wave[0] + rest * wave[1];
+        // The half angle, by the root that does not cancel.
+        let greater = Float::sqrt((one + Float::abs(cos_twice)) * 0.5);
+        let smaller = sin_twice * 0.5 / greater;
+        let is_acute = cos_twice.gt(zero);
+        let (cos, sin) = (R::select(is_acute, greater, smaller), R::select(is_acute, smaller, greater));
+        let turned = Vector::select(leans, normalized_or(g * cos + t * sin, g), g);
+        Vector::select(is_valid, n, turned) * self.facing
+    }
+}
+
+/// A vector of unit length, or another where there is none.
+#[inline(always)]
+fn normalized_or<R: Real>(v: Vector<R>, other: Vector<R>) -> Vector<R> {
+    let (unit, exists) = v.try_normalize();
+    Vector::select(exists, unit, other)
 }
 
 /// The normal of the surface displaced along its shading normal; not of unit length.

@@ -173,7 +173,7 @@ impl Evaluator<'_> {
     }
 
     /// The BSDF by that of a [`template`].
-    fn of_template(&self, look: &PrincipledMaterial, template: &Principled) -> Principled {
+    pub(super) fn of_template(&self, look: &PrincipledMaterial, template: &Principled) -> Principled {
         let alpha = alpha(self.share(look.roughness));
         template.varied(
             self.albedo(&look.base_color),

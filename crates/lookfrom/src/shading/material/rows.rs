@@ -1,7 +1,7 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
 use super::principled::disperses;
-use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, ShadingContext};
+use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, ShadingContext, bump};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
@@ -37,6 +37,24 @@ impl Material {
     #[inline]
     pub(crate) fn bends_frames(&self) -> bool {
         self.has_bumps() || matches!(self.kind, MaterialKind::Principled(_))
+    }
+
+    /// Whether its frames are bent in lanes: glTF's material with a normal map or none, whose BSDF does not depend on the
+    /// frame.
+    #[inline]
+    pub(crate) fn bends_in_lanes(&self) -> bool {
+        matches!(&self.kind, MaterialKind::Principled(look) if look.template.is_some())
+            && matches!(self.bump_mapping, BumpMapping::None | BumpMapping::NormalTexture(_))
+    }
+
+    /// The normal of its normal map at a point, along the tangents and the shading normal of the surface; not of unit
+    /// length.
+    #[inline]
+    pub(crate) fn local_normal(&self, textures: &Textures, point: &TexturePoint) -> Option<[f32; 3]> {
+        match &self.bump_mapping {
+            BumpMapping::NormalTexture(map) => Some(bump::local_normal(map, textures, point)),
+            _ => None,
+        }
     }
 
     /// The BSDF at a point, as [`super::shading`] has it; `None` where the material is of another class, or
@@ -86,8 +104,10 @@ pub(crate) trait MaterialRow: RowBsdf {
 }
 
 impl MaterialRow for Principled {
-    fn at(_: &mut Evaluator<'_>, _: &MaterialKind) -> Option<Self> {
-        None
+    #[inline]
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+        let MaterialKind::Principled(look) = kind else { return None };
+        look.template.as_ref().map(|template| evaluator.of_template(look, template))
     }
 
     fn in_frame(

@@ -5,7 +5,7 @@ use lookfrom_simd::{Simd, f32x8, prelude::*};
 use super::input::{Constant, Input};
 use super::{SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures};
 use crate::core::color::{Sigmoid, Unbounded};
-use crate::core::lanes::{Columns, LANES, gather_spectrum, load, load_spectrum, set_row};
+use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather_spectrum, load, load_spectrum, set_row};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
@@ -18,6 +18,10 @@ impl Textures {
         colors: &[&SpectrumTexture; LANES],
         modes: &[&SpectralMode; LANES],
     ) -> Spectrum<f32x8<S>> {
+        let is_one = bitmask(&by_lane!(lane => std::ptr::eq(colors[lane], colors[0]))) == (1 << LANES) - 1;
+        if is_one && let Some(spectra) = uplifted(simd, colors[0], modes) {
+            return spectra;
+        }
         if let Some(lift) = Lift::new(self, colors, modes) {
             return lift.spectra(simd);
         }
@@ -28,6 +32,32 @@ impl Textures {
         }
         load_spectrum(simd, &spectra)
     }
+}
+
+/// One colour for all samples; `None` where it varies or was not uplifted, and in RGB.
+#[inline(always)]
+fn uplifted<S: Simd>(
+    simd: S,
+    color: &SpectrumTexture,
+    modes: &[&SpectralMode; LANES],
+) -> Option<Spectrum<f32x8<S>>> {
+    let Input::Constant(Constant { uplifts: Some(uplifts), .. }) = &color.input else { return None };
+    let SpectralMode::Spectral(first) = modes[0] else { return None };
+    let wavelengths = by_lane!(lane => match modes[lane] {
+        SpectralMode::Spectral(wavelengths) => wavelengths,
+        SpectralMode::Rgb => first,
+    });
+    let lambda = gather_spectrum(simd, &by_lane!(lane => Spectrum(wavelengths[lane].lambda)));
+    let Unbounded { scale, sigmoid: Sigmoid([a, b, c]) } = *uplifts.of(color.spectrum_type);
+    let [a, b, c] = [f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c)];
+    let lift = Unbounded { scale: f32x8::splat(simd, scale), sigmoid: Sigmoid([a, b, c]) };
+    let spectra = lift.at(&lambda.0);
+    Some(match color.spectrum_type {
+        SpectrumType::Illuminant => {
+            spectra * gather_spectrum(simd, &by_lane!(lane => wavelengths[lane].daylight))
+        }
+        SpectrumType::Albedo | SpectrumType::Unbounded => spectra,
+    })
 }
 
 /// Scaled sigmoids in lanes, and the wavelengths at which they are evaluated.
@@ -98,7 +128,7 @@ mod tests {
     use super::*;
     use crate::core::color::Wavelengths;
     use crate::core::hash;
-    use crate::core::lanes::{by_lane, scatter_spectrum};
+    use crate::core::lanes::scatter_spectrum;
 
     struct Eight<'a> {
         textures: &'a Textures,

@@ -6,14 +6,15 @@
 
 mod places;
 
+use lookfrom_scene::image::Quad;
 use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
 
 use self::places::{Places, UvMap};
 use super::input::{FloatTexture, Input, SpectrumTexture};
 use super::node::Node;
-use super::picture::Footprint;
+use super::picture::{Footprint, blended};
 use super::{TexturePoint, Textures, mapping};
-use crate::core::lanes::LANES;
+use crate::core::lanes::{LANES, row};
 
 /// A picture on a surface: what is looked up there for all textures that read it in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,28 +125,40 @@ impl Textures {
         let pictures: [_; LANES] =
             std::array::from_fn(|lane| self.pictures.get(sets[lane].0[place] as usize));
         // Footprints of texture coordinates are computed side by side.
-        let mut places = Places::NONE;
+        let is_one = sets.iter().all(|set| set.0[place] == sets[0].0[place]);
+        let mut places = match pictures[0] {
+            Some(Picture { image, uv_map: Some(map), wraps, .. }) if is_one => {
+                Places::of_one(map, &self.images[*image], *wraps)
+            }
+            _ => Places::NONE,
+        };
         for (lane, picture) in pictures.iter().enumerate() {
             if let Some(Picture { image, uv_map: Some(map), wraps, .. }) = picture {
-                places.set(lane, map, &points[lane], &self.images[*image], *wraps);
+                if !is_one {
+                    places.set(lane, map, &self.images[*image], *wraps);
+                }
+                places.set_uv(lane, map, &points[lane]);
             }
         }
         let cells = places.cells();
-        let footprints: [_; LANES] = std::array::from_fn(|lane| match pictures[lane] {
-            Some(Picture { image, uv_map: Some(_), wraps, .. }) => {
-                let (cell, weights) = (cells.cell.map(|of| of[lane]), cells.weights.map(|of| of[lane]));
-                Footprint::of_cell(&self.images[*image], cell, weights, *wraps)
-            }
-            Some(picture) => self.footprint(picture, &points[lane]),
-            None => Footprint::NONE,
-        });
-        // All texels are fetched before they are decoded.
-        let quads: [_; LANES] = std::array::from_fn(|lane| {
-            pictures[lane].map(|picture| footprints[lane].fetch(&self.images[picture.image]))
-        });
+        // All texels are fetched before any is decoded.
+        let mut fetched = [(Quad::BLACK, [0.0; 4]); LANES];
         for (lane, picture) in pictures.iter().enumerate() {
-            if let (Some(picture), Some(quad)) = (picture, &quads[lane]) {
-                texels[lane] = footprints[lane].blend_quad(&self.images[picture.image], quad);
+            let Some(picture) = picture else { continue };
+            let image = &self.images[picture.image];
+            let footprint = match picture.uv_map {
+                Some(_) => {
+                    let (cell, weights) = (row(&cells.cell, lane), row(&cells.weights, lane));
+                    Footprint::of_cell(image, cell, weights, picture.wraps)
+                }
+                None => self.footprint(picture, &points[lane]),
+            };
+            fetched[lane] = (footprint.fetch(image), footprint.weights);
+        }
+        for (lane, picture) in pictures.iter().enumerate() {
+            if let Some(picture) = picture {
+                let (quad, weights) = &fetched[lane];
+                texels[lane] = blended(&self.images[picture.image], quad, weights);
             }
         }
     }

@@ -34,7 +34,7 @@ pub(crate) fn look_up_lanes<S: Simd>(
     // All texels are fetched together, so that the waits for memory overlap.
     let quads = by_lane!(lane => footprints[lane].fetch(image));
     by_lane!(lane => {
-        let [r, g, b, _] = footprints[lane].blend_quad(image, &quads[lane]);
+        let [r, g, b, _] = blended(image, &quads[lane], &footprints[lane].weights);
         [r, g, b]
     })
 }
@@ -43,13 +43,10 @@ pub(crate) fn look_up_lanes<S: Simd>(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Footprint {
     places: [usize; 4],
-    weights: [f32; 4],
+    pub(super) weights: [f32; 4],
 }
 
 impl Footprint {
-    /// Of nothing.
-    pub(super) const NONE: Self = Self { places: [0; 4], weights: [0.0; 4] };
-
     /// The texels at `(s, t)`. Those beyond the edges of [`Wrap::Black`] have the weight 0.
     #[inline]
     pub(super) fn new(image: &Image, [s, t]: [f32; 2], wraps: [Wrap; 2], filter: TexelFilter) -> Self {
@@ -109,19 +106,18 @@ impl Footprint {
         image.quad(self.places)
     }
 
-    /// The blended colour and opacity of texels that were fetched.
-    #[inline(always)]
-    pub(super) fn blend_quad(&self, image: &Image, quad: &Quad) -> [f32; 4] {
-        let [a, b, c, d] = image.decoded(quad);
-        let w = &self.weights;
-        std::array::from_fn(|i| w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i])
-    }
-
     /// The blended colour and opacity.
     #[inline]
     pub(super) fn blend(&self, image: &Image) -> [f32; 4] {
-        self.blend_quad(image, &self.fetch(image))
+        blended(image, &self.fetch(image), &self.weights)
     }
+}
+
+/// The colour and opacity of texels of an image that were fetched, blended by weights.
+#[inline(always)]
+pub(super) fn blended(image: &Image, quad: &Quad, w: &[f32; 4]) -> [f32; 4] {
+    let [a, b, c, d] = image.decoded(quad);
+    std::array::from_fn(|i| w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i])
 }
 
 /// The column and row, as whole numbers, of the first of the four texels around (x, y), measured in texels, and the weights

@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Hit, OriginPrimitive};
-use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, level, mask64x8, prelude::*};
+use lookfrom_simd::{Float, Kernel, LaneMask, Simd, dispatch, f32x8, level, mask64x8, prelude::*};
 
+use super::bent_frames::BentFrames;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
 use super::{Item, Memory};
@@ -14,7 +15,6 @@ use crate::integrator::path::PathTracer;
 use crate::integrator::{Event, FirstSurface, Integrator, Path, Probe, SampleStream, StepOutput};
 use crate::primitive::{Mesh, VertexData, gather_triangles};
 use crate::shading::bsdf::lanes::BsdfClass;
-use crate::shading::interaction::ShadingGeometry;
 use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
@@ -185,7 +185,10 @@ impl PathTracer {
                 interior: path.interior,
                 u: 0.0,
             };
-            let mut row: Option<B> = if material.bends_frames() {
+            let mut row: Option<B> = if material.bends_in_lanes() {
+                bent.note(lane, material.local_normal(&world.textures, point));
+                material.row(&world.textures, point, context)
+            } else if material.bends_frames() {
                 let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
                 material.bent_row(&world.textures, &geometry, point, context).map(|(row, axes)| {
                     surfaces.set_frame(lane, axes);
@@ -198,9 +201,16 @@ impl PathTracer {
                 row.iter_mut().for_each(B::regularize);
             }
             rows[lane] = row;
-            if leaves_surfaces && path.address == Path::ROOT && active & 1 << lane != 0 {
-                output.queues.first_surfaces[path.slot as usize] =
-                    Some(hit.first_surface(world, (surfaces, bent), uv, point, lane));
+        }
+        bent.bend(surfaces, front);
+        if leaves_surfaces {
+            for lane in LaneMask(active) {
+                let hit = &hits[lane];
+                if hit.path.address == Path::ROOT {
+                    let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
+                    output.queues.first_surfaces[hit.path.slot as usize] =
+                        Some(hit.first_surface(world, (surfaces, bent), uv, point, lane));
+                }
             }
         }
         let Some(first) = &rows[0] else { return };
@@ -260,34 +270,8 @@ pub(super) struct MeshPoints {
 
 impl MeshPoints {
     /// None yet.
-    pub(super) const NONE: Self = Self {
-        surfaces: SurfaceColumns::NONE,
-        uv: [[0.0; LANES]; 2],
-        front: 0,
-        bent: BentFrames { ns: [[0.0; LANES]; 3], dpdu: [[0.0; LANES]; 3], dpdv: [[0.0; LANES]; 3] },
-    };
-}
-
-/// The directions from which bent frames are made.
-struct BentFrames {
-    ns: Columns<3>,
-    dpdu: Columns<3>,
-    dpdv: Columns<3>,
-}
-
-impl BentFrames {
-    /// The geometry of a lane.
-    #[inline]
-    fn geometry(&self, surfaces: &SurfaceColumns, lane: usize, front: bool) -> ShadingGeometry {
-        ShadingGeometry {
-            ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
-            ns: row(&self.ns, lane).into(),
-            dpdu: row(&self.dpdu, lane).into(),
-            dpdv: row(&self.dpdv, lane).into(),
-            wo: surfaces.wo(lane).into(),
-            front,
-        }
-    }
+    pub(super) const NONE: Self =
+        Self { surfaces: SurfaceColumns::NONE, uv: [[0.0; LANES]; 2], front: 0, bent: BentFrames::NONE };
 }
 
 /// Finds the points of hits.
@@ -340,7 +324,8 @@ impl Kernel for MeshKernel<'_> {
         points.front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
         if leaves_surfaces || hits.iter().any(|hit| hit.material.bends_frames()) {
             let dpdv = Vector::narrow(at.shading_dpdv);
-            points.bent = BentFrames { ns: store(ns), dpdu: store(dpdu), dpdv: store(dpdv) };
+            (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
+            points.bent.dpdv = store(dpdv);
         }
     }
 }

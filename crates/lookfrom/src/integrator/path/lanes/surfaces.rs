@@ -1,6 +1,6 @@
 //! Eight surfaces side by side, in memory and in vectors.
 
-use lookfrom_simd::{Simd, f32x8, f64x8};
+use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
 use crate::core::points::Points;
@@ -65,6 +65,29 @@ impl SurfaceColumns {
         for (columns, axis) in self.frame.iter_mut().zip(axes) {
             set_row(columns, lane, axis);
         }
+    }
+
+    /// Replaces the axes of frames in the lanes of a mask.
+    #[inline(always)]
+    pub(super) fn set_frames<S: Simd>(&mut self, simd: S, lanes: u32, axes: [Vector<f32x8<S>>; 3]) {
+        let is_new = mask32x8::from_bitmask(simd, lanes.into());
+        let mut k = 0;
+        while k < 3 {
+            self.frame[k] = store(Vector::select(is_new, axes[k], load(simd, &self.frame[k])));
+            k += 1;
+        }
+    }
+
+    /// The geometric normals.
+    #[inline(always)]
+    pub(super) fn load_ng<S: Simd>(&self, simd: S) -> Vector<f32x8<S>> {
+        Vector::narrow(load_f64(simd, &self.ng))
+    }
+
+    /// The directions back along the rays.
+    #[inline(always)]
+    pub(super) fn load_wo<S: Simd>(&self, simd: S) -> Vector<f32x8<S>> {
+        load(simd, &self.wo)
     }
 
     /// The direction back along a lane's ray.

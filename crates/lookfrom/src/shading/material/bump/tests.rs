@@ -1,7 +1,10 @@
 //! Tests of shading normals: reflections stay outside, valid normals stay as they are.
 
+use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
+
 use super::*;
 use crate::core::hash;
+use crate::core::lanes::{LANES, by_lane, gather, scatter};
 use crate::core::math;
 
 fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> ShadingGeometry {
@@ -36,4 +39,73 @@ fn mirrored_directions_stay_outside() {
         }
     }
     assert!(kept > 2000, "{kept}");
+}
+
+/// Bends eight frames, by the normals of normal maps.
+struct Eight<'a> {
+    surfaces: &'a [ShadingGeometry; LANES],
+    locals: &'a [[f32; 3]; LANES],
+}
+
+impl Kernel for Eight<'_> {
+    type Output = [[[f32; 3]; LANES]; 3];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let alone = by_lane!(lane => Bending::from(&self.surfaces[lane]));
+        let bending = Bending {
+            ng_facing: gather(simd, &by_lane!(lane => alone[lane].ng_facing.into())),
+            facing: f32x8::load_array(simd, by_lane!(lane => alone[lane].facing)),
+            ns: gather(simd, &by_lane!(lane => alone[lane].ns.into())),
+            dpdu: gather(simd, &by_lane!(lane => alone[lane].dpdu.into())),
+            dpdv: gather(simd, &by_lane!(lane => alone[lane].dpdv.into())),
+            wo: gather(simd, &by_lane!(lane => alone[lane].wo.into())),
+        };
+        let n = bending.valid(bending.mapped(gather(simd, self.locals)));
+        let (s, t) = frame_about(n, bending.dpdu);
+        [scatter(s), scatter(t), scatter(n)]
+    }
+}
+
+#[test]
+fn eight_frames_at_once_are_eight_one_by_one() {
+    let mut levels = vec![Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    for round in 0..4000 {
+        let number =
+            |lane: usize, k: u64| (hash::pair(8 * round + lane as u64, k) >> 40) as f32 / 16_777_216.0;
+        let direction = |lane: usize, k: u64| warp::uniform_sphere([number(lane, k), number(lane, k + 1)]);
+        // Derivatives of any size, also none and along the normal; map normals of no length.
+        let size = |lane: usize, k: u64| libm::exp2f(60.0 * number(lane, k) - 30.0);
+        let surfaces: [_; LANES] = std::array::from_fn(|lane| {
+            let (wo, ng) = (direction(lane, 0), direction(lane, 2));
+            let ns = if number(lane, 4) < 0.7 {
+                (ng + 0.5 * direction(lane, 5)).normalize()
+            } else {
+                direction(lane, 5)
+            };
+            let dpdu = match number(lane, 7) {
+                u if u < 0.1 => Vec3::ZERO,
+                u if u < 0.2 => ns,
+                _ => size(lane, 8) * direction(lane, 9),
+            };
+            let dpdv = size(lane, 11) * direction(lane, 12);
+            ShadingGeometry { ng, ns, dpdu, dpdv, wo, front: ng.dot(wo) > 0.0 }
+        });
+        let locals: [[f32; 3]; LANES] = std::array::from_fn(|lane| match number(lane, 14) {
+            u if u < 0.1 => [0.0; 3],
+            u if u < 0.3 => [0.0, 0.0, 1.0],
+            _ => [15, 16, 17].map(|k| 2.0 * number(lane, k) - 1.0),
+        });
+        for &level in &levels {
+            let [s, t, n] = dispatch(level, Eight { surfaces: &surfaces, locals: &locals });
+            for lane in 0..LANES {
+                let surface = &surfaces[lane];
+                let mapped = Bending::from(surface).mapped(locals[lane].into());
+                let alone = around(valid(mapped.into(), surface), surface.dpdu);
+                assert_eq!([s[lane], t[lane], n[lane]], alone.axes(), "{surface:?} {:?}", locals[lane]);
+            }
+        }
+    }
 }

@@ -39,28 +39,37 @@ impl Places {
         repeats: [[0.0; LANES]; 2],
     };
 
-    /// Sets a lane.
+    /// In all lanes the same map to the same image.
     #[inline]
-    pub(super) fn set(
-        &mut self,
-        lane: usize,
-        map: &UvMap,
-        at: &TexturePoint<'_>,
-        image: &Image,
-        wraps: [Wrap; 2],
-    ) {
-        let uv = match map.set {
-            0 => at.uv,
-            set => at.more_uvs.get(set - 1).copied().unwrap_or_default(),
-        };
+    pub(super) fn of_one(map: &UvMap, image: &Image, wraps: [Wrap; 2]) -> Self {
+        Self {
+            uv: [[0.0; LANES]; 2],
+            matrix: map.matrix.map(|row| row.map(|number| [number; LANES])),
+            size: [image.width, image.height].map(|size| [size as f32; LANES]),
+            repeats: wraps.map(|wrap| [repeats(wrap); LANES]),
+        }
+    }
+
+    /// Sets the map and the image of a lane.
+    #[inline]
+    pub(super) fn set(&mut self, lane: usize, map: &UvMap, image: &Image, wraps: [Wrap; 2]) {
         for (axis, size) in [image.width, image.height].into_iter().enumerate() {
-            self.uv[axis][lane] = uv[axis];
             self.size[axis][lane] = size as f32;
-            self.repeats[axis][lane] = if wraps[axis] == Wrap::Repeat { 1.0 } else { 0.0 };
+            self.repeats[axis][lane] = repeats(wraps[axis]);
             for k in 0..3 {
                 self.matrix[axis][k][lane] = map.matrix[axis][k];
             }
         }
+    }
+
+    /// Sets the texture coordinates of a lane.
+    #[inline]
+    pub(super) fn set_uv(&mut self, lane: usize, map: &UvMap, at: &TexturePoint<'_>) {
+        let uv = match map.set {
+            0 => at.uv,
+            set => at.more_uvs.get(set - 1).copied().unwrap_or_default(),
+        };
+        (self.uv[0][lane], self.uv[1][lane]) = (uv.x, uv.y);
     }
 
     /// The texels around the places.
@@ -96,6 +105,12 @@ impl Kernel for &Places {
             weights: [weights[0].into(), weights[1].into(), weights[2].into(), weights[3].into()],
         }
     }
+}
+
+/// 1 where an image repeats, otherwise 0.
+#[inline]
+fn repeats(wrap: Wrap) -> f32 {
+    if wrap == Wrap::Repeat { 1.0 } else { 0.0 }
 }
 
 /// A column (or row) of an image that repeats, as a whole number within the image; as it is where the image does not repeat, or
