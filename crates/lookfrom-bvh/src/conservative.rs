@@ -4,11 +4,13 @@
 //! exact test (see `triangle`). Any way of computing it is allowed that has an error bound. Lanes hold eight
 //! triangles and one ray, or, in packets, eight rays and one triangle.
 
+use std::marker::PhantomData;
+
 use crate::aabb::Aabb;
 use crate::prepared::{self, PreparedRay};
 use crate::ray::NONE;
-use crate::ray8::least_of_each;
-use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
+use crate::ray8::{combined, least_of_each};
+use lookfrom_simd::{LaneMask, Simd, f32x8, f32x16, prelude::*};
 use prefetch_index::prefetch_index;
 
 /// Number of triangles in a block.
@@ -49,33 +51,38 @@ pub(crate) struct TriangleBlock {
 /// The extent that marks unused lanes.
 const UNUSED: f32 = -1.0;
 
-/// The result of a test of eight lanes.
-pub(crate) struct ConservativeTest<S: Simd> {
+/// Numbers side by side: eight, or sixteen where vectors are that wide.
+pub(crate) trait Numbers<S: Simd>: SimdFloat<S, Element = f32> {}
+
+impl<S: Simd, F: SimdFloat<S, Element = f32>> Numbers<S> for F {}
+
+/// The result of a test, lane by lane.
+pub(crate) struct ConservativeTest<S: Simd, F: Numbers<S> = Lanes<S>> {
     /// Triangles that are not surely missed.
     pub(crate) kept: LaneMask,
     /// Triangles that are surely hit in the ray's range.
     pub(crate) surely_hit: LaneMask,
     /// The surely hit triangles as a SIMD mask.
-    pub(crate) sure: mask32x8<S>,
+    pub(crate) sure: F::Mask,
     /// Triangles that the ray's line surely passes through, in its range or not.
-    pub(crate) surely_crossed: mask32x8<S>,
-    distance: Lanes<S>,
-    distance_room: Lanes<S>,
-    size: Lanes<S>,
-    size_room: Lanes<S>,
-    determinant: Lanes<S>,
+    pub(crate) surely_crossed: F::Mask,
+    distance: F,
+    distance_room: F,
+    size: F,
+    size_room: F,
+    determinant: F,
 }
 
-impl<S: Simd> ConservativeTest<S> {
+impl<S: Simd, F: Numbers<S>> ConservativeTest<S, F> {
     /// The front faces among the sure hits.
     #[inline(always)]
-    pub(crate) fn looks_at_front(&self) -> mask32x8<S> {
+    pub(crate) fn looks_at_front(&self) -> F::Mask {
         self.determinant.simd_lt(0.0)
     }
 
     /// Lower and upper bounds of the scaled t of each sure hit.
     #[inline(always)]
-    pub(crate) fn between(&self) -> [Lanes<S>; 2] {
+    pub(crate) fn between(&self) -> [F; 2] {
         [
             (self.distance - self.distance_room) / (self.size + self.size_room),
             (self.distance + self.distance_room) / (self.size - self.size_room),
@@ -86,16 +93,17 @@ impl<S: Simd> ConservativeTest<S> {
 /// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
 pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
 
-/// Rays for the test: one in every lane, or eight.
+/// Rays for the test: one in every lane, or as many as lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct RayLanes<S: Simd> {
-    pub(crate) origin: [Lanes<S>; 3],
-    pub(crate) direction: [Lanes<S>; 3],
-    pub(crate) t_min: Lanes<S>,
-    sure_before: Lanes<S>,
-    error: Lanes<S>,
-    underflow: Lanes<S>,
-    rounding: Lanes<S>,
+pub(crate) struct RayLanes<S: Simd, F: Numbers<S> = Lanes<S>> {
+    pub(crate) origin: [F; 3],
+    pub(crate) direction: [F; 3],
+    pub(crate) t_min: F,
+    sure_before: F,
+    error: F,
+    underflow: F,
+    rounding: F,
+    level: PhantomData<S>,
 }
 
 impl<S: Simd> RayLanes<S> {
@@ -109,21 +117,19 @@ impl<S: Simd> RayLanes<S> {
             error: Lanes::splat(simd, ray.scaled.error),
             underflow: Lanes::splat(simd, ray.scaled.underflow),
             rounding: Lanes::splat(simd, ray.scaled.rounding),
+            level: PhantomData,
         }
     }
+}
 
+impl<S: Simd, F: Numbers<S>> RayLanes<S, F> {
     /// A usual ray of the world in each lane; `error` is [`ERROR`] times the largest component of its direction.
     #[inline(always)]
-    pub(crate) fn of_rays(
-        simd: S,
-        origin: [Lanes<S>; 3],
-        direction: [Lanes<S>; 3],
-        t_min: Lanes<S>,
-        error: Lanes<S>,
-    ) -> Self {
-        let sure_before = Lanes::splat(simd, 1.0 / SURE_AFTER);
-        let underflow = Lanes::splat(simd, prepared::USUAL_UNDERFLOW);
-        Self { origin, direction, t_min, sure_before, error, underflow, rounding: Lanes::splat(simd, 0.0) }
+    pub(crate) fn of_rays(simd: S, origin: [F; 3], direction: [F; 3], t_min: F, error: F) -> Self {
+        let sure_before = F::splat(simd, 1.0 / SURE_AFTER);
+        let underflow = F::splat(simd, prepared::USUAL_UNDERFLOW);
+        let (rounding, level) = (F::splat(simd, 0.0), PhantomData);
+        Self { origin, direction, t_min, sure_before, error, underflow, rounding, level }
     }
 }
 
@@ -277,7 +283,7 @@ impl<S: Simd> TriangleLanes<S> {
             e[2].mul_sub(f[0], e[0] * f[2]),
             e[0].mul_sub(f[1], e[1] * f[0]),
         ];
-        TriangleEdges { corner: a, edges: [e, f], normal, extent }
+        TriangleEdges { corner: a, edges: [e, f], normal, extent, level: PhantomData }
     }
 
     /// Lane by lane, whether the ray may hit the triangle between its `t_min` and an end, and whether
@@ -296,34 +302,50 @@ impl<S: Simd> TriangleLanes<S> {
 
 /// Triangles by their first corner, the edges from it, and their cross product.
 #[derive(Clone, Copy)]
-pub(crate) struct TriangleEdges<S: Simd> {
-    corner: [Lanes<S>; 3],
-    edges: [[Lanes<S>; 3]; 2],
-    normal: [Lanes<S>; 3],
-    extent: Lanes<S>,
+pub(crate) struct TriangleEdges<S: Simd, F: Numbers<S> = Lanes<S>> {
+    corner: [F; 3],
+    edges: [[F; 3]; 2],
+    normal: [F; 3],
+    extent: F,
+    level: PhantomData<S>,
+}
+
+impl<S: Simd> TriangleEdges<S> {
+    /// The same triangles in the other half of vectors twice as wide, too.
+    #[inline(always)]
+    pub(crate) fn twice(&self, simd: S) -> TriangleEdges<S, f32x16<S>> {
+        let Self { corner, edges: [e, f], normal, extent, level } = *self;
+        TriangleEdges {
+            corner: combined(simd, corner, corner),
+            edges: [combined(simd, e, e), combined(simd, f, f)],
+            normal: combined(simd, normal, normal),
+            extent: simd.combine_f32x8(extent, extent),
+            level,
+        }
+    }
 }
 
 /// On which sides of a triangle's edges a ray's line passes.
-pub(crate) struct Sides<S: Simd> {
+pub(crate) struct Sides<S: Simd, F: Numbers<S> = Lanes<S>> {
     /// The vector from the origin to the first corner, and its largest component, rounding included.
-    way: [Lanes<S>; 3],
-    reach: Lanes<S>,
+    way: [F; 3],
+    reach: F,
     /// The sum of the edge functions.
-    determinant: Lanes<S>,
+    determinant: F,
     /// The least and the greatest of the edge functions, and the bound of their errors.
-    least: Lanes<S>,
-    most: Lanes<S>,
-    bound: Lanes<S>,
+    least: F,
+    most: F,
+    bound: F,
     /// The lines that surely pass outside.
-    pub(crate) outside: mask32x8<S>,
+    pub(crate) outside: F::Mask,
 }
 
 /// Möller, Trumbore (1997), "Fast, Minimum Storage Ray/Triangle Intersection", without the division.
-impl<S: Simd> TriangleEdges<S> {
+impl<S: Simd, F: Numbers<S>> TriangleEdges<S, F> {
     /// The first part of the test: the edge functions.
     #[inline(always)]
-    pub(crate) fn test_sides(&self, ray: &RayLanes<S>) -> Sides<S> {
-        let Self { corner, edges: [[ex, ey, ez], [fx, fy, fz]], normal: [nx, ny, nz], extent } = *self;
+    pub(crate) fn test_sides(&self, ray: &RayLanes<S, F>) -> Sides<S, F> {
+        let Self { corner, edges: [[ex, ey, ez], [fx, fy, fz]], normal: [nx, ny, nz], extent, .. } = *self;
         let [dx, dy, dz] = ray.direction;
         let way @ [cx, cy, cz] =
             [corner[0] - ray.origin[0], corner[1] - ray.origin[1], corner[2] - ray.origin[2]];
@@ -355,10 +377,10 @@ impl<S: Simd> TriangleEdges<S> {
     pub(crate) fn test_range(
         &self,
         simd: S,
-        ray: &RayLanes<S>,
-        t_max: Lanes<S>,
-        sides: &Sides<S>,
-    ) -> ConservativeTest<S> {
+        ray: &RayLanes<S, F>,
+        t_max: F,
+        sides: &Sides<S, F>,
+    ) -> ConservativeTest<S, F> {
         let Self { normal: [nx, ny, nz], extent, .. } = *self;
         let Sides { way: [cx, cy, cz], reach, determinant, least, most, bound, outside } = *sides;
         let underflow = ray.underflow;
@@ -368,7 +390,7 @@ impl<S: Simd> TriangleEdges<S> {
 
         // A t surely out of range, where the determinant's sign is sure.
         let size = determinant.abs();
-        let distance = distance * Lanes::splat(simd, 1.0).copysign(determinant);
+        let distance = distance * F::splat(simd, 1.0).copysign(determinant);
         let beyond = distance.simd_gt(t_max.mul_add(size, size_error.mul_add(t_max.abs(), distance_error)));
         let before = distance.simd_lt(ray.t_min.mul_sub(size, size_error.mul_add(ray.t_min, distance_error)));
         let out_of_range = size.simd_gt(size_error) & (beyond | before);
@@ -384,7 +406,7 @@ impl<S: Simd> TriangleEdges<S> {
             & distance.simd_lt(last.mul_sub(size, size_room.mul_add(last, distance_room)));
         let surely_crossed = inside & size.simd_gt(size_room) & !unused;
         let sure = surely_crossed & in_range;
-        let lanes = (1 << BLOCK) - 1;
+        let lanes = (1 << F::LEN) - 1;
         ConservativeTest {
             kept: LaneMask(!excluded.to_bitmask() as u32 & lanes),
             surely_hit: LaneMask(sure.to_bitmask() as u32 & lanes),

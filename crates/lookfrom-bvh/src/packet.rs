@@ -3,13 +3,16 @@
 //! The packet traverses the tree as a whole, through every box that it may hit, by intervals of its rays' origins
 //! and directions: Boulos, Wald, Shirley (2006), "Geometric and Arithmetic Culling Methods for Entire Ray Packets".
 //! In a leaf the rays are processed in groups of eight, a ray in each lane: those that hit the leaf's box are
-//! tested against one triangle or sphere after the other, by the same tests as single rays. From a common origin most
+//! tested against one triangle or sphere after the other, by the same tests as single rays (against triangles two groups
+//! at a time, where vectors are as wide). From a common origin most
 //! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes and instances are left to
 //! the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
 //!
 //! Trees of very few primitives need no traversal: any rays form packets, which are tested against everything.
 
 use std::marker::PhantomData;
+
+use one_triangle::Pairs;
 
 use crate::Bvh;
 use crate::aabb::Aabb;
@@ -73,6 +76,7 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
                 rays,
                 groups: &mut groups,
                 slabs: None,
+                pairs: None,
                 hits,
                 coherence,
                 question: PhantomData,
@@ -110,6 +114,8 @@ struct Packet<'a, 'b, S: Simd, C, V> {
     groups: &'b mut [Ray8<S>; GROUPS],
     /// For the tests of boxes, when the first one comes.
     slabs: Option<[Slabs8<S>; GROUPS]>,
+    /// For the tests of triangles, likewise.
+    pairs: Option<Pairs<S>>,
     /// The closest hits that are exact; empty for any-hit queries.
     hits: &'b mut [Hit],
     coherence: &'b mut Coherence,
@@ -274,6 +280,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     }
 }
 
+mod one_triangle;
 mod spheres;
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@ use crate::conservative::{self, RayLanes};
 use crate::origin_primitive::OriginPrimitive;
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
 use crate::ray::{NONE, Ray};
-use lookfrom_simd::{Simd, f32x8, i32x8, mask32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f32x16, i32x8, mask32x8, prelude::*};
 
 /// Number of rays in a group.
 pub(crate) const LANES: usize = 8;
@@ -118,6 +118,18 @@ impl<S: Simd> Ray8<S> {
         RayLanes::of_rays(simd, self.origin, self.direction, self.start, self.error)
     }
 
+    /// The rays of this group and of another for the conservative test.
+    #[inline(always)]
+    pub(crate) fn beside(&self, simd: S, other: &Self) -> RayLanes<S, f32x16<S>> {
+        RayLanes::of_rays(
+            simd,
+            combined(simd, self.origin, other.origin),
+            combined(simd, self.direction, other.direction),
+            simd.combine_f32x8(self.start, other.start),
+            simd.combine_f32x8(self.error, other.error),
+        )
+    }
+
     /// Sets the origin primitives of the rays, lane by lane.
     #[inline(always)]
     pub(crate) fn set_origins(&mut self, simd: S, origin: impl Fn(usize) -> OriginPrimitive) {
@@ -216,6 +228,12 @@ impl<S: Simd> Slabs8<S> {
         }
         near.simd_le(far).to_bitmask() as u32 & 0xff
     }
+}
+
+/// Two vectors of eight rays, side by side.
+#[inline(always)]
+pub(crate) fn combined<S: Simd>(simd: S, a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x16<S>; 3] {
+    [simd.combine_f32x8(a[0], b[0]), simd.combine_f32x8(a[1], b[1]), simd.combine_f32x8(a[2], b[2])]
 }
 
 /// The largest magnitude, lane by lane.

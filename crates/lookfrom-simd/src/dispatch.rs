@@ -28,8 +28,9 @@ pub trait Kernel {
 
 /// Runs a kernel with the instructions of a level: see [`Kernel`].
 ///
-/// AVX-512 is used for its doubled number of registers; vectors stay 256 bits long. SSE4.2 is not used, since it
-/// has no advantage over SSE2 here. On x86-64 there is no scalar level.
+/// AVX-512 is used for its doubled number of registers; vectors stay 256 bits long, except where a kernel asks for more
+/// (packets of rays against triangles). SSE4.2 is not used, since it has no advantage over SSE2 here. On x86-64 there is
+/// no scalar level.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]

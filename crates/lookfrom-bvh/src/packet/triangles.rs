@@ -1,6 +1,7 @@
 //! Packets against blocks of triangles.
 
 use super::Packet;
+use super::one_triangle::OneTriangle;
 use crate::collector::PacketCollector;
 use crate::common_origin::CommonOriginBlock;
 use crate::conservative::{TriangleBlock, TriangleLanes};
@@ -91,7 +92,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     /// Takes the outcome of a conservative test: the rays of a group that may hit a triangle, and those that surely
     /// do, between two distances. The exact tests of sure hits are deferred.
     #[inline(always)]
-    fn take(
+    pub(super) fn take(
         &mut self,
         simd: S,
         place @ (block, of): (usize, usize),
@@ -127,60 +128,10 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         if *meeting == [0; GROUPS] {
             return false;
         }
+        let faces = if V::SELECTS { visibility.faces() } else { Faces::Both };
         for of in LaneMask(triangles) {
-            let triangle_lanes = TriangleLanes::splat(simd, block, of);
-            let edges = triangle_lanes.edges();
-            for index in 0..GROUPS {
-                let rays = meeting[index];
-                if rays == 0 {
-                    continue;
-                }
-                let group = &mut self.groups[index];
-                let ray_lanes = group.ray_lanes(simd);
-                let sides = edges.test_sides(&ray_lanes);
-                if sides.outside.all_true() {
-                    continue;
-                }
-                let tested = edges.test_range(simd, &ray_lanes, group.end, &sides);
-                let (mut sure, mut kept) = (tested.sure, tested.kept.0 & rays);
-                let faces = if V::SELECTS { visibility.faces() } else { Faces::Both };
-                if faces != Faces::Both {
-                    // The sign of a sure hit's determinant is also sure.
-                    let is_front = tested.looks_at_front();
-                    sure &= if faces == Faces::Front { is_front } else { !is_front };
-                    kept &= !(tested.surely_hit.0 & !(sure.to_bitmask() as u32));
-                }
-                if !C::ANY_HIT {
-                    let kept = mask32x8::from_bitmask(simd, u64::from(kept));
-                    self.take(simd, (number, of), index, kept, sure, tested.between());
-                    continue;
-                }
-                let mut open = kept & !tested.surely_hit.0;
-                if V::HAS_ORIGIN {
-                    let (geometry, primitive) = block.ids(of);
-                    let is_other = !group.start_on(simd, geometry, primitive);
-                    sure &= is_other;
-                    open &= is_other.to_bitmask() as u32;
-                }
-                // Where only the range is in doubt, as of rays that end at a light, t decides.
-                let crossed = tested.surely_crossed.to_bitmask() as u32 & open;
-                if faces == Faces::Both && crossed != 0 {
-                    let Ray8 { origin, direction, .. } = *group;
-                    let [t, ..] = triangle::intersect_sure_lanes(origin, direction, triangle_lanes.corners);
-                    let [t_min, t_max] = group.range;
-                    let crossed = mask32x8::from_bitmask(simd, crossed.into());
-                    sure |= crossed & t.simd_gt(t_min) & t.simd_lt(t_max);
-                    open &= !(crossed.to_bitmask() as u32);
-                }
-                // A ray that is surely occluded is done.
-                group.retire(simd, sure);
-                meeting[index] &= !(sure.to_bitmask() as u32);
-                for lane in LaneMask(open) {
-                    if self.intersect_exact((number, of), index, lane) {
-                        meeting[index] &= !(1 << lane);
-                    }
-                }
-            }
+            let lanes = TriangleLanes::splat(simd, block, of);
+            self.test_one(simd, &OneTriangle { place: (number, of), lanes, faces }, meeting);
         }
         true
     }
@@ -188,7 +139,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
     /// Tests a ray exactly against a triangle that is not its origin primitive. Returns true if the ray is done.
     #[cold]
     #[inline(never)]
-    fn intersect_exact(&mut self, (block, of): (usize, usize), index: usize, lane: usize) -> bool {
+    pub(super) fn intersect_exact(&mut self, (block, of): (usize, usize), index: usize, lane: usize) -> bool {
         let place = index * LANES + lane;
         let ray = ExactRay::new(&self.rays[place]);
         let block = &self.bvh().triangles[block];
