@@ -12,8 +12,6 @@
 
 use std::marker::PhantomData;
 
-use one_triangle::Pairs;
-
 use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::bvh::Leaf;
@@ -32,6 +30,7 @@ use crate::traverse::TraversalState;
 use crate::validate::Statistics;
 use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, prelude::*};
+use one_triangle::Pairs;
 
 /// Traces rays as a packet. Writes closest hits to `hits`, or returns the rays of an any-hit query that hit anything, bit i
 /// for ray i. Returns `None` where the rays are too few, not coherent, or out of the usual range, or meet triangles one
