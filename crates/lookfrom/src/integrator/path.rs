@@ -16,6 +16,7 @@ use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::bsdf::BsdfSample;
+use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Scattering, Shading, ShadingContext};
 use crate::world::World;
@@ -231,7 +232,8 @@ impl PathTracer {
             shading: Box::new(shading),
             beta: path.beta,
         });
-        if path.depth >= self.depth {
+        // Most lamps reflect nothing.
+        if path.depth >= self.depth || shading.bsdf.lobes() == Lobes::NONE {
             return None;
         }
 
