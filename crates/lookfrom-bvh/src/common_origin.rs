@@ -17,13 +17,13 @@ use lookfrom_simd::{Simd, f32x8, mask32x8, prelude::*};
 /// One number per triangle of a block.
 type Row = [f32; BLOCK];
 
-/// A box of directions from one origin, around its center, and the end of the longest ray.
+/// A box of directions from one origin, around its center, and the end of the longest ray: in each lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Beam {
-    pub(crate) center: [f32; 3],
+pub(crate) struct Beams<S: Simd> {
+    pub(crate) center: [f32x8<S>; 3],
     /// Half of the box's extent.
-    pub(crate) half: [f32; 3],
-    pub(crate) end: f32,
+    pub(crate) half: [f32x8<S>; 3],
+    pub(crate) end: f32x8<S>,
 }
 
 /// A triangle block as seen from the common origin of rays.
@@ -94,32 +94,41 @@ impl CommonOriginBlock {
         }
     }
 
-    /// The triangles that some ray of a beam may hit, among those with clear signs.
+    /// The triangles that some ray of a beam may hit, among those with clear signs. The beam is the same in all lanes.
     #[inline(always)]
-    pub(crate) fn enter<S: Simd>(&self, simd: S, beam: &Beam) -> u32 {
-        let Beam { center, half, end } = *beam;
-        let [u, v, w] = [
-            self.most(simd, 0, center, half),
-            self.most(simd, 1, center, half),
-            self.most(simd, 2, center, half),
-        ];
+    pub(crate) fn enter<S: Simd>(&self, simd: S, beam: &Beams<S>) -> u32 {
+        self.clear & self.meet(beam, &|numbers| row(simd, numbers))
+    }
+
+    /// The beams of which some ray may hit a triangle with a clear sign.
+    #[inline(always)]
+    pub(crate) fn beams_that_enter<S: Simd>(&self, simd: S, triangle: usize, beams: &Beams<S>) -> u32 {
+        let triangle = triangle & (BLOCK - 1);
+        self.meet(beams, &|numbers| f32x8::splat(simd, numbers[triangle]))
+    }
+
+    /// Beams and triangles, lane by lane; `lanes` are the triangles' numbers for the lanes.
+    #[inline(always)]
+    fn meet<S: Simd>(&self, beams: &Beams<S>, lanes: &impl Fn(&Row) -> f32x8<S>) -> u32 {
+        let [u, v, w] = [self.most(0, beams, lanes), self.most(1, beams, lanes), self.most(2, beams, lanes)];
         // One error bound for the edge functions, one for the box.
-        let (bound, near) = (row(simd, &self.bound), row(simd, &self.near));
+        let (bound, near) = (lanes(&self.bound), lanes(&self.near));
         let inside = u.min(v).min(w).simd_ge(bound * -2.0);
-        let nearer = near.simd_le((bound.mul_add(8.0, u + v + w)) * end);
-        self.clear & (inside & nearer).to_bitmask() as u32
+        let nearer = near.simd_le((bound.mul_add(8.0, u + v + w)) * beams.end);
+        (inside & nearer).to_bitmask() as u32 & 0xff
     }
 
     /// The greatest edge functions of directions in a box.
     #[inline(always)]
-    fn most<S: Simd>(&self, simd: S, side: usize, center: [f32; 3], half: [f32; 3]) -> f32x8<S> {
+    fn most<S: Simd>(&self, side: usize, beams: &Beams<S>, lanes: &impl Fn(&Row) -> f32x8<S>) -> f32x8<S> {
         let (n, m) = (&self.sides[side], &self.magnitudes[side]);
-        let mut most = row(simd, &n[0]) * center[0];
-        most = row(simd, &n[1]).mul_add(center[1], most);
-        most = row(simd, &n[2]).mul_add(center[2], most);
-        most = row(simd, &m[0]).mul_add(half[0], most);
-        most = row(simd, &m[1]).mul_add(half[1], most);
-        row(simd, &m[2]).mul_add(half[2], most)
+        let Beams { center, half, .. } = beams;
+        let mut most = lanes(&n[0]) * center[0];
+        most = lanes(&n[1]).mul_add(center[1], most);
+        most = lanes(&n[2]).mul_add(center[2], most);
+        most = lanes(&m[0]).mul_add(half[0], most);
+        most = lanes(&m[1]).mul_add(half[1], most);
+        lanes(&m[2]).mul_add(half[2], most)
     }
 
     /// Tests eight rays against a triangle with a clear sign.

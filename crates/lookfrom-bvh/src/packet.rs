@@ -24,12 +24,12 @@ use crate::node::{Child, Content, WIDTH};
 use crate::packet_bounds::{PacketBounds, seem_alike};
 use crate::query::Settings;
 use crate::ray::{Hit, NONE, Ray};
-use crate::ray8::{GROUPS, LANES, NO_BLOCK, RAYS, Ray8, Slabs8, least_of_each};
+use crate::ray8::{GROUPS, LANES, NO_BLOCK, RAYS, Ray8, Slabs8, least, least_of_each};
 use crate::stack::{Stack, TraversalStack};
 use crate::traverse::TraversalState;
 use crate::validate::Statistics;
 use crate::visibility::Visibility;
-use lookfrom_simd::{LaneMask, Simd, prelude::*};
+use lookfrom_simd::{LaneMask, Simd, f32x8, prelude::*};
 use one_triangle::Pairs;
 
 /// Traces rays as a packet. Writes closest hits to `hits`, or returns the rays of an any-hit query that hit anything, bit i
@@ -129,10 +129,10 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
 
     /// The end of each group's longest ray; −∞ when all are done.
     #[inline(always)]
-    fn ends(&self) -> [f32; GROUPS] {
+    fn ends(&self) -> f32x8<S> {
         let [a, b, c, d, e, f, g, h] = &*self.groups;
         let ends = [-a.end, -b.end, -c.end, -d.end, -e.end, -f.end, -g.end, -h.end];
-        (-least_of_each(ends)).into()
+        -least_of_each(ends)
     }
 
     /// Returns false, before the end, where the packet does not pay.
@@ -144,9 +144,8 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         stack: &mut TraversalStack<'_>,
         pays_anyway: bool,
     ) -> bool {
-        let longest = |ends: [f32; GROUPS]| ends.into_iter().fold(f32::NEG_INFINITY, f32::max);
         let mut ends = self.ends();
-        let mut end = longest(ends);
+        let mut end = -least(-ends);
         let mut current = Some(Child::ROOT);
         while let Some(child) = current {
             let shortened = match child.content() {
@@ -162,7 +161,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 Content::Triangles(number) => match packet_bounds.common_origin {
                     // Occlusion rays rarely have a common origin.
                     Some(origin) if !C::ANY_HIT => {
-                        self.triangles_from(simd, origin, packet_bounds, number, &ends, end)
+                        self.triangles_from(simd, origin, packet_bounds, number, ends, end)
                     }
                     _ => self.triangles(simd, number),
                 },
@@ -173,7 +172,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             }
             if shortened {
                 ends = self.ends();
-                end = longest(ends);
+                end = -least(-ends);
             }
             current = stack.pop(end);
         }

@@ -2,7 +2,7 @@
 //! Shirley (2006).
 
 use crate::aabb::Aabb;
-use crate::common_origin::Beam;
+use crate::common_origin::Beams;
 use crate::node::{Entered, Node};
 use crate::prepared::{self, SHORT};
 use crate::ray::Ray;
@@ -34,8 +34,8 @@ pub(crate) struct PacketBounds<S: Simd> {
     /// The common origin of all rays, if they have one.
     pub(crate) common_origin: Option<[f32; 3]>,
     /// The center of the directions, and half of their extents: of each group, and of all rays.
-    pub(crate) groups: [[[f32; GROUPS]; 3]; 2],
-    pub(crate) all: [[f32; 3]; 2],
+    groups: [[f32x8<S>; 3]; 2],
+    all: [[f32; 3]; 2],
     /// The largest component of a direction.
     pub(crate) length: f32,
     near_side: [usize; 3],
@@ -93,16 +93,16 @@ impl<S: Simd> PacketBounds<S> {
                 offset[axis] = apart[axis] * least.abs().max(most.abs()) * (1.0 + 2.0 * room);
             }
         }
-        let (mut center, mut half) = ([[0.0; GROUPS]; 3], [[0.0; GROUPS]; 3]);
+        let mut groups = [min, max];
         let (mut middle, mut rest) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
-            let between = (min[axis] + max[axis]) * 0.5;
-            (center[axis], half[axis]) = (between.into(), (max[axis] - between).into());
+            let center = (min[axis] + max[axis]) * 0.5;
+            (groups[0][axis], groups[1][axis]) = (center, max[axis] - center);
             middle[axis] = (directions.min[axis] + directions.max[axis]) * 0.5;
             rest[axis] = directions.max[axis] - middle[axis];
         }
         Some(Self {
-            groups: [center, half],
+            groups,
             all: [middle, rest],
             length: greatest(directions.min).max(greatest(directions.max)),
             origin,
@@ -114,18 +114,23 @@ impl<S: Simd> PacketBounds<S> {
         })
     }
 
-    /// The directions of a group, whose longest ray has an end.
+    /// The directions of each group, given the ends of its longest ray.
     #[inline(always)]
-    pub(crate) fn beam(&self, group: usize, end: f32) -> Beam {
-        let [center, half] = [0, 1].map(|i| [0, 1, 2].map(|axis| self.groups[i][axis][group]));
-        Beam { center, half, end }
+    pub(crate) fn beams(&self, ends: f32x8<S>) -> Beams<S> {
+        let [center, half] = self.groups;
+        Beams { center, half, end: ends }
     }
 
     /// The directions of all rays.
     #[inline(always)]
-    pub(crate) fn whole_beam(&self, end: f32) -> Beam {
-        let [center, half] = self.all;
-        Beam { center, half, end }
+    pub(crate) fn whole_beam(&self, simd: S, end: f32) -> Beams<S> {
+        let [[x, y, z], [to_x, to_y, to_z]] = self.all;
+        let splat = |x: f32| f32x8::splat(simd, x);
+        Beams {
+            center: [splat(x), splat(y), splat(z)],
+            half: [splat(to_x), splat(to_y), splat(to_z)],
+            end: splat(end),
+        }
     }
 
     /// The children that some ray may hit before the end, and a lower bound of the distances. As [`Node::enter`]

@@ -44,7 +44,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         origin: [f32; 3],
         packet_bounds: &PacketBounds<S>,
         number: usize,
-        ends: &[f32; GROUPS],
+        ends: f32x8<S>,
         end: f32,
     ) -> bool {
         let block = &self.bvh().triangles[number];
@@ -58,30 +58,20 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 Faces::Back => !seen.front,
             };
         }
-        let (mut tests, mut rays) = (0, 0);
-        let is_entered = shown & seen.enter(simd, &packet_bounds.whole_beam(end)) != 0;
-        if is_entered {
-            for index in 0..GROUPS {
-                let triangles = shown & seen.enter(simd, &packet_bounds.beam(index, ends[index]));
-                tests += triangles.count_ones();
-                let mut hitting = 0;
-                for of in LaneMask(triangles) {
-                    let group = &self.groups[index];
-                    let tested = seen.test(simd, of, group.direction, group.start, group.end);
-                    hitting |= tested.kept.to_bitmask() & 0xff;
-                    self.take(
-                        simd,
-                        (number, of),
-                        index,
-                        tested.kept,
-                        tested.sure,
-                        [tested.first, tested.last],
-                    );
-                }
-                rays += hitting.count_ones();
+        let entered = shown & seen.enter(simd, &packet_bounds.whole_beam(simd, end));
+        let (beams, mut tests, mut hitting) = (packet_bounds.beams(ends), 0, 0_u64);
+        for of in LaneMask(entered) {
+            let groups = seen.beams_that_enter(simd, of, &beams);
+            tests += groups.count_ones();
+            for index in LaneMask(groups) {
+                let group = &self.groups[index];
+                let tested = seen.test(simd, of, group.direction, group.start, group.end);
+                hitting |= (tested.kept.to_bitmask() & 0xff) << (index * LANES);
+                let between = [tested.first, tested.last];
+                self.take(simd, (number, of), index, tested.kept, tested.sure, between);
             }
         }
-        self.coherence.count_common(is_entered, tests, rays);
+        self.coherence.count_common(entered != 0, tests, hitting.count_ones());
         let mut any = tests != 0;
         if unclear != 0 {
             any |= self.test(simd, number, unclear);
@@ -109,12 +99,39 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             kept &= is_other;
         }
         let nearest = group.defer(simd, place, sure, between);
-        let open = kept & !nearest;
-        if open.any_true() {
-            for lane in LaneMask(open.to_bitmask() as u32 & 0xff) {
-                self.intersect_exact(place, index, lane);
-            }
+        let open = (kept & !nearest).to_bitmask() as u32 & 0xff;
+        if open != 0 {
+            self.intersect_open(simd, place, index, open, sure.to_bitmask() as u32);
         }
+    }
+
+    /// Tests some rays of a group exactly against a triangle, which a mask's rays surely hit: these all at once.
+    #[cold]
+    #[inline(never)]
+    fn intersect_open(
+        &mut self,
+        simd: S,
+        place @ (number, of): (usize, usize),
+        index: usize,
+        open: u32,
+        sure: u32,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let block = &self.bvh().triangles[number];
+                if open & sure != 0 {
+                    let TriangleLanes { corners, .. } = TriangleLanes::splat(simd, block, of);
+                    self.intersect_corners(index, open & sure, corners, [(block, of); LANES]);
+                    for lane in LaneMask(open & sure) {
+                        self.groups[index].shorten(lane, self.hits[index * LANES + lane].t);
+                    }
+                }
+                for lane in LaneMask(open & !sure) {
+                    self.intersect_exact(place, index, lane);
+                }
+            },
+        );
     }
 
     /// Tests some of a block's triangles against those rays that hit its box. Returns false where none does.
