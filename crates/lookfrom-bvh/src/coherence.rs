@@ -9,17 +9,17 @@
 use crate::ray8::GROUPS;
 
 /// Cost per ray with which a packet is about as fast as single rays.
-const WORTHWHILE: f32 = 6.4;
+const WORTHWHILE: f32 = 10.0;
 
 /// Cost of a block for a group of any rays.
-const GROUP: u32 = 16;
+const GROUP: u32 = 25;
 
 /// Cost of a block for rays from a common origin before any triangle is tested: as seen by the packet, and by its groups.
 const SEEN: u32 = 4;
 const ENTERED: u32 = 6;
 
 /// Cost after which a packet is judged, and again after four times as much.
-const FIRST_JUDGEMENT: u32 = 10 * GROUP;
+const FIRST_JUDGEMENT: u32 = 160;
 
 /// Largest number of packets that are left out before another one is tried.
 const MOST_SKIPPED: u32 = 15;

@@ -65,7 +65,8 @@ impl Child {
         match self.0 >> 30 {
             3 => Content::Leaf(number),
             2 => Content::Triangles(number),
-            _ => Content::Node(number),
+            // Bit 30 is not set.
+            _ => Content::Node(self.0 as usize),
         }
     }
 }

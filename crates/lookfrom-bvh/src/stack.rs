@@ -115,10 +115,12 @@ impl<'a> TraversalStack<'a> {
         entered: &Entered<S>,
     ) -> Child {
         let mut children = entered.children;
-        let first = next(node, entered, &mut children);
+        let slot = next_slot(&mut children);
         if children == 0 {
-            return first.child();
+            // Without its distance, for which the next visit would have to wait.
+            return node.child(slot);
         }
+        let first = StackEntry::new(entered.near[slot], node.child(slot));
         let second = next(node, entered, &mut children);
         let (mut nearest, farther) =
             if C::NEAREST_FIRST { (first.min(second), first.max(second)) } else { (first, second) };
@@ -147,7 +149,13 @@ impl<'a> TraversalStack<'a> {
 /// Removes the first child from a set.
 #[inline(always)]
 fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> StackEntry {
+    let slot = next_slot(children);
+    StackEntry::new(entered.near[slot], node.child(slot))
+}
+
+#[inline(always)]
+fn next_slot(children: &mut u32) -> usize {
     let slot = children.trailing_zeros() as usize % WIDTH;
     *children &= children.wrapping_sub(1);
-    StackEntry::new(entered.near[slot], node.child(slot))
+    slot
 }
