@@ -64,7 +64,7 @@ impl Question for ClosestHit {
         coherence: &mut Coherence,
         stack: &mut Stack,
     ) -> bool {
-        hits.len() >= RAYS
+        hits.len() >= rays.len()
             && trace_packet::<S, Self, V>(simd, settings, rays, hits, coherence, stack).is_some()
     }
 }

@@ -11,7 +11,7 @@ use crate::ray8::GROUPS;
 /// Cost per ray with which a packet is about as fast as single rays.
 const WORTHWHILE: f32 = 10.0;
 
-/// Cost of a block for a group of any rays.
+/// Cost of a block, or another leaf, for a group of any rays.
 const GROUP: u32 = 25;
 
 /// Cost of a block for rays from a common origin before any triangle is tested: as seen by the packet, and by its groups.

@@ -32,6 +32,9 @@ use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, f32x8, prelude::*};
 use one_triangle::Pairs;
 
+/// Number of rays from which on a packet is worthwhile that is not full, where any rays form packets.
+const FEWEST: usize = 5;
+
 /// Traces rays as a packet. Writes closest hits to `hits`, or returns the rays of an any-hit query that hit anything, bit i
 /// for ray i. Returns `None` where the rays are too few, not coherent, or out of the usual range, or meet triangles one
 /// by one; `hits` mean nothing then.
@@ -45,30 +48,34 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
     stack: &mut Stack,
 ) -> Option<u64> {
     let bvh = settings.bvh;
-    if rays.len() < RAYS || bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
+    if bvh.nodes.is_empty() || !(bvh.largest < LARGEST_FILTERED) {
         return None;
     }
-    let is_tiny = is_tiny::<C>(bvh);
-    if !(is_tiny || seem_alike(rays) && coherence.start()) {
+    let (is_tiny, is_full) = (is_tiny::<C>(bvh), rays.len() >= RAYS);
+    if !(is_tiny && rays.len() >= FEWEST || is_full && seem_alike(rays) && coherence.start()) {
         return None;
     }
     simd.vectorize(
         #[inline(always)]
         || {
             let mut groups = [Ray8::empty(simd); GROUPS];
-            for (index, (group, rays)) in groups.iter_mut().zip(rays.chunks_exact(LANES)).enumerate() {
-                *group = Ray8::new(simd, rays);
+            let mut are_usual = true;
+            for (index, (group, rays)) in groups.iter_mut().zip(rays.chunks(LANES)).enumerate() {
+                *group = if rays.len() == LANES { Ray8::new(simd, rays) } else { Ray8::of_few(simd, rays) };
+                are_usual &= group.usual == 0xff;
                 if V::HAS_ORIGIN {
                     group.set_origins(simd, |lane| settings.origin_of(index * LANES + lane));
                 }
             }
-            let are_usual = groups.iter().all(|group| group.usual == 0xff);
-            let packet_bounds = PacketBounds::around(simd, &groups, bvh.largest);
+            let packet_bounds = match is_full && !(is_tiny && visits_all::<C>(bvh, rays)) {
+                true => PacketBounds::around(simd, &groups, bvh.largest),
+                false => None,
+            };
             if !are_usual || packet_bounds.is_none() && !is_tiny {
                 return None;
             }
             if !C::ANY_HIT {
-                hits[..RAYS].fill(Hit::MISS);
+                hits[..rays.len()].fill(Hit::MISS);
             }
             let mut packet = Packet::<S, C, V> {
                 settings,
@@ -104,6 +111,12 @@ fn is_tiny<C: PacketCollector>(bvh: &Bvh) -> bool {
     let Statistics { triangles, spheres, procedurals, instances, .. } = bvh.statistics;
     let most = if C::ANY_HIT { 72 } else { 48 };
     triangles + 3 * spheres <= most && procedurals + instances == 0
+}
+
+/// Whether the bounds of a full packet are not worth their cost: rays of several origins in a tree of very few leaves.
+fn visits_all<C: PacketCollector>(bvh: &Bvh, rays: &[Ray]) -> bool {
+    const FEW: usize = 3;
+    bvh.triangles.len() + bvh.leaves.len() <= FEW && (C::ANY_HIT || rays[0].origin != rays[RAYS - 1].origin)
 }
 
 /// A packet during traversal.
@@ -219,6 +232,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 let bvh = self.bvh();
                 let (leaf, bounds) = (&bvh.leaves[number], &bvh.leaf_bounds[number]);
                 let meeting = self.meet(simd, bounds);
+                self.coherence.count(&meeting);
                 if let Leaf::Spheres { first, count } = *leaf {
                     let spheres = &bvh.spheres[first as usize..(first + count) as usize];
                     self.spheres(simd, spheres, &meeting);

@@ -44,7 +44,7 @@ pub(crate) struct Ray8<S: Simd> {
 }
 
 impl<S: Simd> Ray8<S> {
-    /// No rays.
+    /// No rays: all are done.
     #[inline(always)]
     pub(crate) fn empty(simd: S) -> Self {
         let zero = f32x8::splat(simd, 0.0);
@@ -55,7 +55,7 @@ impl<S: Simd> Ray8<S> {
             start: zero,
             usual: 0,
             range: [zero; 2],
-            end: zero,
+            end: f32x8::splat(simd, f32::NEG_INFINITY),
             limit: zero,
             error: zero,
             block: number,
@@ -112,6 +112,17 @@ impl<S: Simd> Ray8<S> {
         }
     }
 
+    /// Fewer than eight rays: the last fills the other lanes, where it is done.
+    #[inline(always)]
+    pub(crate) fn of_few(simd: S, rays: &[Ray]) -> Self {
+        let last = rays.len() - 1;
+        let mut all = [rays[last]; LANES];
+        all[..last].copy_from_slice(&rays[..last]);
+        let mut group = Self::new(simd, &all);
+        group.retire(simd, mask32x8::from_bitmask(simd, 0xff << rays.len() & 0xff));
+        group
+    }
+
     /// The rays for the conservative test.
     #[inline(always)]
     pub(crate) fn ray_lanes(&self, simd: S) -> RayLanes<S> {
@@ -162,6 +173,14 @@ impl<S: Simd> Ray8<S> {
         let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
         self.end[lane] = smaller(end, self.end[lane]);
         self.limit[lane] = smaller(end, self.limit[lane]);
+    }
+
+    /// The same for some rays.
+    #[inline(always)]
+    pub(crate) fn shorten_some(&mut self, rays: mask32x8<S>, t: f32x8<S>) {
+        let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
+        self.end = (rays & end.simd_lt(self.end)).select(end, self.end);
+        self.limit = (rays & end.simd_lt(self.limit)).select(end, self.limit);
     }
 
     /// Takes note of a triangle, the one of a block, that some rays surely hit between `first` and `last`. Returns

@@ -1,11 +1,11 @@
-//! Packets against spheres: eight rays and one sphere in f64.
+//! Packets against spheres: eight rays and one sphere, excluded in f32 and decided in f64.
 
 use super::Packet;
 use crate::bvh::SphereItem;
 use crate::collector::PacketCollector;
 use crate::ray::{Hit, NONE};
 use crate::ray8::{GROUPS, LANES, Ray8};
-use crate::sphere::{self, Line};
+use crate::sphere::{self, Line, SphereFilter};
 use crate::visibility::{Faces, Visibility};
 use lookfrom_simd::{LaneMask, Simd, f64x8, mask32x8, prelude::*};
 
@@ -17,11 +17,20 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             if meeting[index] == 0 {
                 continue;
             }
-            let Ray8 { origin, direction, .. } = &self.groups[index];
-            let lines = sphere::lines(*origin, *direction);
+            let Ray8 { origin, direction, .. } = self.groups[index];
+            let filter = SphereFilter::new(origin, direction);
+            let mut lines = None;
             for item in spheres {
-                if !V::SELECTS || V::of(self.settings, 0).shows(item.geometry, item.primitive) {
-                    self.sphere(simd, item, &lines, index, meeting[index]);
+                if V::SELECTS && !V::of(self.settings, 0).shows(item.geometry, item.primitive) {
+                    continue;
+                }
+                let may_hit = filter.may_hit(simd, &item.shape).to_bitmask() as u32 & meeting[index];
+                if may_hit != 0 {
+                    if lines.is_none() {
+                        lines = Some(sphere::lines(origin, direction));
+                    }
+                    let Some(lines) = &lines else { continue };
+                    self.sphere(simd, item, lines, index, may_hit);
                 }
             }
         }
@@ -48,15 +57,17 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             group.retire(simd, found);
             return;
         }
-        let t: [f32; LANES] = t.into();
+        let by_lane: [f32; LANES] = t.into();
         let SphereItem { geometry, primitive, .. } = *item;
+        let mut nearest = 0;
         for lane in LaneMask(found.to_bitmask() as u32) {
             let place = index * LANES + lane;
-            let hit = Hit { t: t[lane], u: 0.0, v: 0.0, primitive, geometry, instance: NONE };
+            let hit = Hit { t: by_lane[lane], u: 0.0, v: 0.0, primitive, geometry, instance: NONE };
             if hit.precedes(&self.hits[place]) {
                 self.hits[place] = hit;
-                self.groups[index].shorten(lane, hit.t);
+                nearest |= 1 << lane;
             }
         }
+        self.groups[index].shorten_some(mask32x8::from_bitmask(simd, nearest), t);
     }
 }

@@ -277,3 +277,49 @@ fn packets_of_every_query_say_what_single_rays_say() {
     assert!(hits > 10_000 && misses > 10_000, "{hits} hits, {misses} misses");
     assert!(packets > 300 && excluded > 5000, "{packets} packets, {excluded} hits excluded");
 }
+
+#[test]
+fn few_spheres_are_hit_by_any_number_of_rays_as_one_by_one() {
+    let mut random = Random::new(47);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..300 {
+        let (center, size) = (random.point_with_exponents(-6, 6), random.size(-6, 6));
+        let count = 1 + random.below(12);
+        let spheres: Vec<Sphere> = (0..count)
+            .map(|_| Sphere { center: random.near(center, size), radius: size * random.size(-4, 0) })
+            .collect();
+        let mut builder = Builder::new();
+        builder.spheres(&spheres);
+        let mut bvh = builder.build().unwrap();
+        let ray_count = 1 + random.below(150);
+        let ray = |_| {
+            let Sphere { center: c, radius } = spheres[random.below(count) as usize];
+            // Some start on a sphere or inside, some touch one or pass it closely.
+            let from = match random.below(3) {
+                0 => c,
+                1 => [c[0] + radius, c[1], c[2]],
+                _ => random.near(center, 4.0 * size),
+            };
+            let beside = radius * [0.0, 0.5, 0.999_999, 1.0, 1.000_001][random.below(5) as usize];
+            let toward = [c[0] - from[0], c[1] + beside - from[1], c[2] - from[2]];
+            let direction = if random.unit() < 0.8 { toward } else { random.direction() };
+            let t_max = if random.unit() < 0.3 { 1.0 } else { f32::INFINITY };
+            Ray { t_max, ..Ray::new(from, direction) }
+        };
+        let rays: Vec<Ray> = (0..ray_count).map(ray).collect();
+        for level in levels() {
+            bvh.level = level;
+            let (mut together, mut occluded) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
+            bvh.closest_hits(&rays, &mut together);
+            bvh.query().occluded_many(&rays, &mut occluded);
+            for ((ray, hit), occluded) in rays.iter().zip(&together).zip(&occluded) {
+                assert_eq!(*hit, bvh.closest_hit(ray), "{ray:?}");
+                assert_eq!(*occluded, hit.is_hit(), "{ray:?}");
+            }
+            let hit = together.iter().filter(|hit| hit.is_hit()).count();
+            hits += hit;
+            misses += rays.len() - hit;
+        }
+    }
+    assert!(hits > 10_000 && misses > 5_000, "{hits} hits, {misses} misses");
+}
