@@ -16,10 +16,11 @@ mod path;
 mod raycast;
 mod sample_streams;
 mod shadow;
+mod spectral_modes;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_bvh::{Hit, Ray};
 use lookfrom_scene::settings::Background;
 
 use crate::core::hash;
@@ -33,6 +34,7 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 pub use background::Alpha;
+use direct::PlainSteps;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
 pub use first_surface::FirstSurface;
@@ -41,9 +43,10 @@ pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
 pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
-pub use shadow::Shadow;
-pub use shadow::ShadowTransparency;
+use shadow::ShadowLight;
 pub(crate) use shadow::resolve as resolve_shadows;
+pub use shadow::{Shadow, ShadowTransparency, Shadows};
+pub use spectral_modes::SpectralModes;
 pub use whitted::Whitted;
 
 /// A light transport algorithm. Implement it to plug one of your own into a [`Renderer`](crate::render::Renderer): the
@@ -184,33 +187,32 @@ pub struct Queues {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
     /// The spectral mode, by slot.
-    pub lanes: Vec<SpectralMode>,
+    pub lanes: SpectralModes,
     /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
     /// Paths to be traced next.
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
-    pub shadows: Vec<Shadow>,
+    pub shadows: Shadows,
     /// The surfaces that camera rays met, by slot, as far as steps left them; no slots where nothing needs them.
     pub first_surfaces: Vec<Option<FirstSurface>>,
     /// Light by light-path expressions: for each slot as many layers as there are expressions.
     pub layers: Vec<Spectrum>,
     /// Last scattering events of shadow rays, by [`Shadow::last_scattering`]; none without light-path expressions.
     last_scatterings: Vec<LastScattering>,
-    /// The rays of `shadows`, their origin primitives, their hits, and whether they are blocked: memory that is reused.
-    rays: Vec<Ray>,
-    origin_primitives: Vec<OriginPrimitive>,
+    /// The hits of shadow rays, and whether they are blocked: memory that is reused.
     hits: Vec<Hit>,
     blocked: Vec<bool>,
+    /// Steps that were computed side by side: likewise.
+    plain_steps: PlainSteps,
 }
 
 impl Queues {
-    /// Replaces all samples by `count` new ones, whose spectral modes are `lanes` of their slots.
-    pub fn start(&mut self, count: usize, lanes: impl Fn(usize) -> SpectralMode) {
+    /// Replaces all samples by `count` new ones: with a spectral mode for each, or one for all in RGB.
+    pub fn start(&mut self, count: usize, modes: impl Iterator<Item = SpectralMode>) {
         self.radiance.clear();
         self.radiance.resize(count, Spectrum::BLACK);
-        self.lanes.clear();
-        self.lanes.extend((0..count).map(lanes));
+        self.lanes.start(modes);
         self.alpha.clear();
         self.alpha.resize(count, Alpha::Opaque);
         self.paths.clear();
@@ -264,6 +266,7 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// Adds light to a path's sample.
+    #[inline]
     pub fn add(&mut self, path: &Path, term: Term, value: Spectrum) {
         self.add_to(path.slot, path.address, term, value);
         if let Some(light_paths) = self.light_paths {
@@ -272,8 +275,9 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// Adds the light of a shadow ray to its sample.
-    fn add_unoccluded(&mut self, shadow: &Shadow) {
-        let &Shadow { slot, address, term, contribution, last_scattering, .. } = shadow;
+    #[inline]
+    fn add_unoccluded(&mut self, light: &ShadowLight) {
+        let &ShadowLight { slot, address, term, contribution, last_scattering, .. } = light;
         self.add_to(slot, address, term, contribution);
         if let Some(light_paths) = self.light_paths
             && let Some(last) = self.queues.last_scatterings.get(last_scattering as usize).copied()
@@ -302,6 +306,7 @@ impl<P: Probe> StepOutput<'_, P> {
         self.queues.last_scatterings.len() as u32 - 1
     }
 
+    #[inline]
     pub(crate) fn add_to(&mut self, slot: u32, address: u64, term: Term, value: Spectrum) {
         if !value.is_black() {
             self.queues.radiance[slot as usize] += value;

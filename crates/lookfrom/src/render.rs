@@ -284,15 +284,15 @@ impl Renderer {
 
         // Start: a ray from the camera for each sample.
         self.start(ids, start);
-        output.queues.start(ids.len(), |slot| start.lanes(slot));
+        output.queues.start(ids.len(), start.modes());
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
         output.queues.first_surfaces.resize(first_hits.len(), None);
         let interior = self.world.space_of(self.view.medium);
         let Queues { paths: started, lanes, .. } = &mut output.queues;
-        started.extend(start.rays.iter().zip(&*lanes).enumerate().map(|(slot, (ray, lanes))| Path {
+        started.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             ray: *ray,
-            beta: lanes.one(),
+            beta: lanes[slot].one(),
             slot: slot as u32,
             depth: 0,
             address: Path::ROOT,
@@ -305,13 +305,17 @@ impl Renderer {
             // Hit: the nearest surface for every ray of the batch.
             std::mem::swap(paths, &mut output.queues.paths);
             output.queues.paths.clear();
-            rays.clear();
-            rays.extend(paths.iter().map(|path| path.ray));
-            hits.clear();
-            hits.resize(rays.len(), Hit::MISS);
-            origin_primitives.clear();
-            origin_primitives.extend(paths.iter().map(|path| path.previous.origin_primitive));
-            self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+            // All are replaced.
+            hits.resize(paths.len(), Hit::MISS);
+            if paths[0].address == Path::ROOT {
+                self.world.bvh.closest_hits(&start.rays, hits);
+            } else {
+                rays.clear();
+                rays.extend(paths.iter().map(|path| path.ray));
+                origin_primitives.clear();
+                origin_primitives.extend(paths.iter().map(|path| path.previous.origin_primitive));
+                self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+            }
             first_hit::note(first_hits, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
@@ -333,11 +337,28 @@ impl Renderer {
     /// The samples of a batch that was traced.
     fn traced(&self, batch: &Batch) -> impl Iterator<Item = Traced> {
         let Batch { queues: Queues { radiance, lanes, alpha, .. }, start, .. } = batch;
-        let samples = radiance.iter().zip(lanes).zip(alpha).zip(&start.weights);
-        samples.map(|(((&radiance, lanes), &alpha), &weight)| {
-            let (rgb, alpha) = self.with_alpha(radiance, weight, lanes, alpha);
-            Traced { rgb, radiance, lanes: *lanes, weight, alpha }
+        let samples = radiance.iter().zip(alpha).zip(&start.weights).enumerate();
+        samples.map(|(slot, ((&radiance, &alpha), &weight))| {
+            let lanes = lanes[slot];
+            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, alpha);
+            Traced { rgb, radiance, lanes, weight, alpha }
         })
+    }
+
+    /// The colours of the samples of a batch that was traced, as [`Traced::rgb`] has them.
+    fn light(&self, batch: &Batch, light: &mut Vec<[f32; 3]>) {
+        let ImageSettings { background, sensor, .. } = self.image();
+        let is_as_it_is = self.keeps_rgb
+            && !self.is_spectral()
+            && sensor.max_component == f32::INFINITY
+            && *background == Background::Environment;
+        light.clear();
+        if is_as_it_is {
+            let samples = batch.queues.radiance.iter().zip(&batch.start.weights);
+            light.extend(samples.map(|(&radiance, &weight)| (radiance * weight).rgb()));
+        } else {
+            light.extend(self.traced(batch).map(|traced| traced.rgb));
+        }
     }
 
     /// The colours of a sample's layers, by light-path expressions, as the film of its light has them: weighted, and with the
@@ -438,8 +459,7 @@ impl Renderer {
             self.add_first_hits(&ids, batch, tile);
             if tile.is_of_light() {
                 let mut light = std::mem::take(&mut batch.light);
-                light.clear();
-                light.extend(self.traced(batch).map(|traced| traced.rgb));
+                self.light(batch, &mut light);
                 tile.add_samples(&ids, &light, &mut batch.sums);
                 batch.light = light;
                 continue;

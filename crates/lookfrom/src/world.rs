@@ -15,6 +15,8 @@ mod reflectance;
 mod sides;
 
 pub use class::Class;
+pub(crate) use class::Plain;
+use class::PlainMaterials;
 
 use std::sync::Arc;
 
@@ -49,7 +51,9 @@ pub struct World {
     pub(crate) objects: Arc<[Vec<Primitives>]>,
     /// Classes of the primitives that are not instanced, by the kernel's geometry id.
     pub(crate) classes: Arc<[Class]>,
-    /// The same of the objects.
+    /// Materials of their plain surfaces, likewise.
+    plain_materials: Arc<[PlainMaterials]>,
+    /// The classes of the objects.
     pub(crate) object_classes: Arc<[Vec<Class>]>,
     /// Instances, by the kernel's instance id.
     pub(crate) instances: Arc<[Instance]>,
@@ -291,6 +295,14 @@ impl World {
     /// Radiance that arrives along a ray that hits nothing.
     pub fn sky(&self, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
         self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))
+    }
+
+    /// The same where it is the same along all rays.
+    pub(crate) fn even_sky(&self, lanes: &SpectralMode) -> Option<Spectrum> {
+        self.environments.iter().try_fold(Spectrum::BLACK, |sum, &index| match &self.lights[index as usize] {
+            Light::Environment(environment) => Some(sum + environment.even(&self.textures, lanes)?),
+            _ => Some(sum + Spectrum::BLACK),
+        })
     }
 
     /// Radiance of one environment, by its light's index, along a ray that hits nothing.

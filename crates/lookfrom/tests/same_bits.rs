@@ -5,14 +5,14 @@ mod support;
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{SvgView, inspect, svg};
 use lookfrom::integrator::{
-    Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, ShadowTransparency,
+    Event, Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, ShadowTransparency,
     StepOutput, Whitted,
 };
 use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::Scene;
-use lookfrom_scene::settings::{Integrator, Layers, PixelBounds};
+use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds};
 use support::{Compiled, own_scene};
 
 const SCENES: [&str; 6] = [
@@ -184,7 +184,7 @@ fn room(lights: &[&str], settings: &str) -> Scene {
         scene.render.sampler = lookfrom_scene::settings::Sampler::Independent;
     }
     if settings == "spectral" {
-        scene.render.color = lookfrom_scene::settings::ColorMode::Spectral;
+        scene.render.color = ColorMode::Spectral;
     }
     scene
 }
@@ -291,7 +291,7 @@ fn trees_grow_eight_at_once_as_one_by_one() {
             let mut scene = small(name);
             scene.render.integrator = Integrator::Whitted;
             if spectral {
-                scene.render.color = lookfrom_scene::settings::ColorMode::Spectral;
+                scene.render.color = ColorMode::Spectral;
             }
             let whitted = Whitted {
                 depth: scene.render.depth,
@@ -309,5 +309,79 @@ fn trees_grow_eight_at_once_as_one_by_one() {
                 assert_eq!(a.radiance, b.radiance, "{name} {id:?}");
             }
         }
+    }
+}
+
+#[test]
+fn shadow_rays_pass_surfaces_eight_at_once_as_one_by_one() {
+    const BODIES: &str = r#"
+        [image]
+        width = 48
+        height = 40
+        [camera]
+        lookfrom = [0, 1.2, 4]
+        lookat = [0, 0.4, 0]
+        [materials]
+        floor = { diffuse = 0.7 }
+        glass = { diffuse = 0, transmission = 0.9, mirror = 0.1, ior = 1.5, absorption = [0.8, 0.1, 0.3] }
+        bubble = { diffuse = 0, transmission = [0.9, 0.8, 0.7], ior = 0.6667 }
+        pane = { diffuse = 0.1, transmission = { type = "checker", even = [0.9, 0.2, 0.1], odd = 0 } }
+        red = { diffuse = 0.2, transmission = [0.8, 0, 0] }
+        green = { diffuse = 0.2, transmission = [0, 0.8, 0] }
+        [[plane]]
+        size = 20
+        material = "floor"
+        [[sphere]]
+        center = [-0.8, 0.5, 0]
+        radius = 0.5
+        material = "glass"
+        [[sphere]]
+        center = [-0.8, 0.5, 0]
+        radius = 0.3
+        material = "bubble"
+        [[mesh]]
+        material = "glass"
+        positions = [[0.2, 0.1, 0], [1, 0.1, 0.3], [0.7, 0.1, -0.6], [0.6, 0.9, 0]]
+        triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+        [[mesh]]
+        material = "pane"
+        positions = [[-1.5, 1.3, -1], [1.5, 1.3, -1], [1.5, 1.3, 1], [-1.5, 1.3, 1]]
+        triangles = [[0, 1, 2], [0, 2, 3]]
+        [[mesh]]
+        material = "red"
+        positions = [[-1.5, 1.5, -1], [0, 1.5, -1], [0, 1.5, 1], [-1.5, 1.5, 1]]
+        triangles = [[0, 1, 2], [0, 2, 3]]
+        [[mesh]]
+        material = "green"
+        positions = [[-1.2, 1.6, -1], [-0.9, 1.6, -1], [-0.9, 1.6, 1], [-1.2, 1.6, 1]]
+        triangles = [[0, 1, 2], [0, 2, 3]]
+        [[light]]
+        type = "point"
+        position = [0.3, 3, 1]
+        intensity = 5
+        [[light]]
+        type = "distant"
+        from = [-0.5, 1, 0.3]
+        intensity = 0.5
+    "#;
+    for color in [ColorMode::Rgb, ColorMode::Spectral] {
+        let mut scene = support::scene(BODIES);
+        scene.render.integrator = Integrator::Whitted;
+        scene.render.color = color;
+        let compiled = Compiled::new(scene);
+        let renderer = compiled.renderer();
+        let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
+        let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
+        let (together, _) = renderer.trace(&ids);
+        // The shadow rays of watched samples go on one by one.
+        let mut passed = 0;
+        for (id, traced) in ids.iter().zip(&together) {
+            let mut events = Vec::new();
+            let (watched, _) = renderer.trace_events(&[*id], &mut events);
+            assert_eq!(watched[0].radiance, traced.radiance, "{id:?}");
+            let is_crossing = |event: &Event| matches!(event, Event::Shadow { hit, passed, .. } if hit.is_hit() && !passed.is_black());
+            passed += events.iter().filter(|event| is_crossing(event)).count();
+        }
+        assert!(passed > 1000, "{passed} surfaces were passed");
     }
 }

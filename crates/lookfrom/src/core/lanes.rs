@@ -1,5 +1,6 @@
 //! Eight paths side by side: arrays by lane, and their gathering into vectors.
 
+use lookfrom_bvh::Ray;
 use lookfrom_simd::{Simd, f32x4, f32x8, f64x8, prelude::*};
 
 use crate::core::spectrum::Spectrum;
@@ -226,9 +227,104 @@ pub(crate) fn scatter_f64<S: Simd>(v: Vector<f64x8<S>>) -> [[f64; 3]; LANES] {
 }
 
 /// The spectra of the lanes.
-#[cfg(test)]
 #[inline(always)]
 pub(crate) fn scatter_spectrum<S: Simd>(s: Spectrum<f32x8<S>>) -> [Spectrum; LANES] {
-    let [a, b, c, d]: [[f32; LANES]; 4] = [s.0[0].into(), s.0[1].into(), s.0[2].into(), s.0[3].into()];
-    by_lane!(lane => Spectrum([a[lane], b[lane], c[lane], d[lane]]))
+    let [a, b, c, d] = s.0;
+    let [ac, bd] = [a.zip_low(c), b.zip_low(d)];
+    let [more_ac, more_bd] = [a.zip_high(c), b.zip_high(d)];
+    let [first, second] = two_rows(ac.zip_low(bd));
+    let [third, fourth] = two_rows(ac.zip_high(bd));
+    let [fifth, sixth] = two_rows(more_ac.zip_low(more_bd));
+    let [seventh, eighth] = two_rows(more_ac.zip_high(more_bd));
+    [first, second, third, fourth, fifth, sixth, seventh, eighth]
+}
+
+/// Two spectra of which one follows the other.
+#[inline(always)]
+fn two_rows<S: Simd>(rows: f32x8<S>) -> [Spectrum; 2] {
+    let (low, high) = rows.simd.split_f32x8(rows);
+    [Spectrum(low.into()), Spectrum(high.into())]
+}
+
+/// Rays by lane, which start at t = 0.
+#[inline(always)]
+pub(crate) fn scatter_rays<S: Simd>(
+    simd: S,
+    origin: Vector<f32x8<S>>,
+    direction: Vector<f32x8<S>>,
+    t_max: f32,
+) -> [Ray; LANES] {
+    let (zero, end) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
+    let rows =
+        transposed_eight([origin.x, origin.y, origin.z, zero, direction.x, direction.y, direction.z, end]);
+    by_lane!(lane => {
+        let [ox, oy, oz, t_min, dx, dy, dz, t_max]: [f32; LANES] = rows[lane].into();
+        Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max }
+    })
+}
+
+/// The origins and the directions of rays.
+#[inline(always)]
+pub(crate) fn gather_rays<S: Simd>(simd: S, rays: &[&Ray; LANES]) -> [Vector<f32x8<S>>; 2] {
+    let rows = by_lane!(lane => {
+        let Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max } = *rays[lane];
+        f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
+    });
+    let [ox, oy, oz, _, dx, dy, dz, _] = transposed_eight(rows);
+    [Vector { x: ox, y: oy, z: oz }, Vector { x: dx, y: dy, z: dz }]
+}
+
+/// Rows of columns, and columns of rows, by three perfect shuffles.
+#[inline(always)]
+fn transposed_eight<S: Simd>(mut v: [f32x8<S>; LANES]) -> [f32x8<S>; LANES] {
+    let mut round = 0;
+    while round < 3 {
+        let [a, b, c, d, e, f, g, h] = v;
+        v = [
+            a.zip_low(e),
+            a.zip_high(e),
+            b.zip_low(f),
+            b.zip_high(f),
+            c.zip_low(g),
+            c.zip_high(g),
+            d.zip_low(h),
+            d.zip_high(h),
+        ];
+        round += 1;
+    }
+    v
+}
+
+#[cfg(test)]
+mod tests {
+    use lookfrom_simd::{Kernel, Level, dispatch};
+
+    use super::*;
+
+    /// Rays and spectra in lanes and back.
+    struct ThereAndBack<'a>(&'a [Ray; LANES], &'a [Spectrum; LANES]);
+
+    impl Kernel for ThereAndBack<'_> {
+        type Output = ([Ray; LANES], [Spectrum; LANES]);
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let [origin, direction] = gather_rays(simd, &by_lane!(lane => &self.0[lane]));
+            let spectra = gather_spectrum(simd, self.1);
+            (scatter_rays(simd, origin, direction, 7.0), scatter_spectrum(spectra))
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_and_rows_again() {
+        let number = |lane: usize, k: usize| (10 * lane + k) as f32;
+        let three = |lane: usize, first: usize| [0, 1, 2].map(|k| number(lane, first + k));
+        let rays = std::array::from_fn(|lane| Ray::new(three(lane, 0), three(lane, 3)).with_t_max(7.0));
+        let spectra = std::array::from_fn(|lane| Spectrum([0, 1, 2, 3].map(|k| number(lane, k))));
+        let mut levels = vec![Level::baseline(), Level::new()];
+        #[cfg(target_arch = "x86_64")]
+        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        for level in levels {
+            assert_eq!(dispatch(level, ThereAndBack(&rays, &spectra)), (rays, spectra));
+        }
+    }
 }

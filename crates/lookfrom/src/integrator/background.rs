@@ -3,9 +3,11 @@
 //! The background itself is laid behind the picture when that is developed; samples only give its alpha. Rays that come
 //! straight from the camera (or passed surfaces by alpha) see it; mirrors and glass show the environment.
 
+use lookfrom_bvh::Hit;
 use lookfrom_scene::settings::Background;
 
 use super::{Path, Probe, StepOutput, Term};
+use crate::core::spectrum::Spectrum;
 use crate::world::World;
 
 /// Alpha of a sample over the view's own background.
@@ -23,6 +25,7 @@ pub enum Alpha {
 impl<P: Probe> StepOutput<'_, P> {
     /// For a path that hit nothing: whether it shows the view's own background instead of the environment, and so ends.
     /// Its sample is then transparent.
+    #[inline]
     pub fn shows_background(&mut self, path: &Path) -> bool {
         let shows = path.depth == 0 && self.background != Background::Environment;
         if shows {
@@ -34,7 +37,32 @@ impl<P: Probe> StepOutput<'_, P> {
     /// Adds the light of the environments to a path that hit nothing, unless it shows the view's own background.
     pub(super) fn add_surroundings(&mut self, world: &World, path: &Path) {
         if !self.shows_background(path) {
-            self.add(path, Term::Sky, path.beta * world.sky(&path.ray, &self.lanes(path)));
+            self.add(
+                path,
+                Term::Sky,
+                path.beta * world.sky(&path.ray, &self.queues.lanes[path.slot as usize]),
+            );
+        }
+    }
+
+    /// The same, attenuated by the medium that the path is in; `even_sky` is [`World::even_sky`].
+    #[inline]
+    pub(super) fn add_surroundings_behind_medium(
+        &mut self,
+        world: &World,
+        path: &Path,
+        even_sky: Option<Spectrum>,
+    ) {
+        match even_sky {
+            Some(sky) if path.interior.is_empty() => {
+                if !self.shows_background(path) {
+                    self.add(path, Term::Sky, path.beta * sky);
+                }
+            }
+            _ => {
+                let absorbed = self.absorbed(world, path, &Hit::MISS);
+                self.add_surroundings(world, &absorbed);
+            }
         }
     }
 }

@@ -3,8 +3,10 @@
 mod arriving;
 mod branches;
 mod coefficients;
+mod groups;
 mod lanes;
 mod plain;
+mod steps;
 mod surfaces;
 mod waiting;
 
@@ -18,16 +20,16 @@ use crate::shading::material::Coefficients;
 use crate::world::World;
 
 pub(super) use branches::same_side;
-pub(super) use lanes::PlainBranch;
-use lanes::PlainSteps;
-use waiting::Waiting;
+pub(super) use plain::PlainHits;
+pub(super) use steps::{PlainBranch, PlainSteps};
+pub(super) use surfaces::SurfacePoints;
 
 /// Number of paths whose plain hits are shaded before their results are used: enough for groups of eight of one material,
 /// few enough for the cache.
 const TOGETHER: usize = 512;
 
-/// [`Integrator::step`] for all paths of a batch, in their order; plain hits are shaded eight side by side, and `grow` is
-/// called with the branches there. A probe that listens is told of each step by itself.
+/// [`Integrator::step`] for all paths of a batch. Plain hits are shaded eight side by side, and `grow` is called with the
+/// branches there.
 pub(super) fn step_all<I: Integrator, P: Probe>(
     integrator: &I,
     world: &World,
@@ -38,22 +40,43 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
     grow: impl Fn(&Path, &PlainBranch, &mut Vec<Path>),
 ) {
     let in_lanes = !P::LISTENS && output.light_paths.is_none() && PlainSteps::are_for(world);
-    let (mut steps, mut waiting) = (PlainSteps::default(), Waiting::default());
-    for (paths, hits) in paths.chunks(TOGETHER).zip(hits.chunks(TOGETHER)) {
-        steps.clear(paths.len());
-        if in_lanes {
-            steps.compute(world, &stream, (paths, hits), &output.queues.lanes, &mut waiting);
-        }
-        for ((path, hit), plain) in paths.iter().zip(hits).zip(steps.of_each()) {
-            let Some(plain) = plain else {
-                output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-                integrator.step(world, &stream(path), path, hit, output);
-                continue;
-            };
+    let mut steps = std::mem::take(&mut output.queues.plain_steps);
+    // Of samples with several paths, light is added in the order of the paths. Others need no results but those at hand.
+    let in_any_order = in_lanes && steps.are_of_different_samples(paths);
+    let use_step =
+        |steps: &PlainSteps, path: &Path, hit: &Hit, index: usize, output: &mut StepOutput<'_, P>| {
+            let Some(plain) = steps.of(index) else { return };
             plain.add_light(world, path, hit, output);
             plain.for_each_branch(|branch| grow(path, &branch, &mut output.queues.paths));
+        };
+    let even_sky = output.queues.lanes.of_all().and_then(|mode| world.even_sky(mode));
+    let together = if in_any_order { paths.len() } else { TOGETHER };
+    for (paths, hits) in paths.chunks(together).zip(hits.chunks(together)) {
+        steps.clear(paths.len());
+        if in_lanes {
+            steps.compute(world, &stream, (paths, hits), output, |steps, indices, output| {
+                if in_any_order {
+                    for index in indices.iter().map(|&index| index as usize) {
+                        use_step(steps, &paths[index], &hits[index], index, output);
+                    }
+                    steps.remove_groups();
+                }
+            });
+        }
+        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
+            if steps.is_plain(index) {
+                if !in_any_order {
+                    use_step(&steps, path, hit, index, output);
+                }
+            } else if in_lanes && !hit.is_hit() {
+                output.add_surroundings_behind_medium(world, path, even_sky);
+            } else {
+                output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+                integrator.step(world, &stream(path), path, hit, output);
+            }
         }
     }
+    output.queues.plain_steps = steps;
 }
 
 /// Adds the surface's emission and `k_a I_a`, and from every light `k_d (N·L) I_j + k_s (N·H)ⁿ I_j`.

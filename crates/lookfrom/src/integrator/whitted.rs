@@ -49,8 +49,8 @@ impl Integrator for Whitted {
         output: &mut StepOutput<'_, P>,
     ) {
         direct::step_all(self, world, stream, paths, hits, output, |path, branch, paths| {
-            if let Some(child) = self.grown(world, path, branch) {
-                paths.push(child);
+            if self.cut(path, branch.beta).is_none() {
+                paths.push(self.grown(world, path, branch));
             }
         });
     }
@@ -132,20 +132,17 @@ impl Whitted {
         Ok(path.branched(branch, ray, beta, interior))
     }
 
-    /// The path that goes on from a plain surface, if there is one.
-    #[inline]
-    fn grown(&self, world: &World, path: &Path, plain: &PlainBranch) -> Option<Path> {
+    /// The path that goes on from a plain surface.
+    #[inline(always)]
+    fn grown(&self, world: &World, path: &Path, plain: &PlainBranch) -> Path {
         let PlainBranch { branch, beta, ray, material, front } = *plain;
-        if self.cut(path, beta).is_some() {
-            return None;
-        }
         let crosses = branch == Branch::Refracted && world.materials[material as usize].is_body();
         let interior = match (crosses, front) {
             (true, true) => path.interior.entered(material),
             (true, false) => path.interior.left(material),
             (false, _) => path.interior,
         };
-        Some(path.branched(branch, ray, beta, interior))
+        path.branched(branch, ray, beta, interior)
     }
 
     /// The reason why a path does not go on with this throughput.
@@ -163,7 +160,7 @@ impl Whitted {
 
 impl Path {
     /// Its child in the tree of rays.
-    #[inline]
+    #[inline(always)]
     fn branched(&self, branch: Branch, ray: Ray, beta: Spectrum, interior: InteriorStack) -> Self {
         let last_bit = u64::from(branch == Branch::Refracted);
         Self { ray, beta, depth: self.depth + 1, address: self.address << 1 | last_bit, interior, ..*self }

@@ -93,6 +93,14 @@ impl Environment {
         }
     }
 
+    /// The radiance, where it is the same from everywhere.
+    pub(crate) fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Option<Spectrum> {
+        match (&self.sky, &self.portal) {
+            (Sky::Constant(emission_spectrum), None) => Some(emission_spectrum.even(textures, lanes)),
+            _ => None,
+        }
+    }
+
     /// Radiance from a unit direction, ignoring the portal.
     fn color(&self, textures: &Textures, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
         match &self.sky {

@@ -31,10 +31,10 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// The spectral mode of a sample.
-    #[inline]
-    pub(super) fn lanes(&self, slot: usize) -> SpectralMode {
-        self.wavelengths.get(slot).map_or(SpectralMode::Rgb, |u| super::lanes_by(*u))
+    /// The spectral mode of each sample, or one for all in RGB.
+    pub(super) fn modes(&self) -> impl Iterator<Item = SpectralMode> {
+        let rgb = self.wavelengths.is_empty().then_some(SpectralMode::Rgb);
+        rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
     }
 }
 

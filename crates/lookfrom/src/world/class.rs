@@ -1,12 +1,14 @@
 //! Classes of geometries, by the shading that their hits need; known when the world is compiled.
 
+use std::sync::Arc;
+
 use lookfrom_bvh::{Hit, NONE};
 
 use super::World;
 use crate::core::points::StoredPlacement;
-use crate::primitive::{Mesh, Primitives};
+use crate::primitive::{MaterialBinding, Mesh, Primitives};
 use crate::shading::bsdf::lanes::BsdfClass;
-use crate::shading::material::Material;
+use crate::shading::material::{Material, MaterialKind};
 
 /// The class of all hits on a geometry, by which integrator steps are sorted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,7 +20,63 @@ pub enum Class {
     General,
 }
 
+/// The surface of a plain hit: one on a triangle or sphere outside of instances that emits no light and has no alpha or
+/// media of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Plain {
+    /// Index into the world's materials.
+    pub(crate) material: u32,
+    /// Whether it is a sphere.
+    pub(crate) is_sphere: bool,
+}
+
+/// The materials of the plain surfaces of a geometry; [`NOT_PLAIN`] for others.
+#[derive(Clone, Debug)]
+pub(crate) enum PlainMaterials {
+    /// That of a mesh.
+    Mesh(u32),
+    /// Those of spheres.
+    Spheres(Vec<u32>),
+    /// There are none.
+    None,
+}
+
+/// No material of a plain surface.
+const NOT_PLAIN: u32 = u32::MAX;
+
 impl World {
+    /// The materials of the plain surfaces of each geometry.
+    fn plain_materials(&self) -> Arc<[PlainMaterials]> {
+        let material = |binding: &MaterialBinding| {
+            let is_unlit =
+                matches!(self.materials[binding.material as usize].kind, MaterialKind::Unlit { .. });
+            if binding.is_plain() && !is_unlit { binding.material } else { NOT_PLAIN }
+        };
+        let of = |primitives: &Primitives| match primitives {
+            Primitives::Mesh(mesh) => PlainMaterials::Mesh(material(&mesh.binding)),
+            Primitives::Spheres(spheres) => {
+                let of = |binding: &u32| material(&spheres.bindings[*binding as usize].binding);
+                PlainMaterials::Spheres(spheres.binding_of.iter().map(of).collect())
+            }
+            _ => PlainMaterials::None,
+        };
+        self.primitives.iter().map(of).collect()
+    }
+
+    /// The surface of a hit, if it is plain.
+    #[inline(always)]
+    pub(crate) fn plain(&self, hit: &Hit) -> Option<Plain> {
+        if !hit.is_hit() || hit.instance != NONE {
+            return None;
+        }
+        let (material, is_sphere) = match &self.plain_materials[hit.geometry as usize] {
+            PlainMaterials::Mesh(material) => (*material, false),
+            PlainMaterials::Spheres(materials) => (materials[hit.primitive as usize], true),
+            PlainMaterials::None => return None,
+        };
+        (material != NOT_PLAIN).then_some(Plain { material, is_sphere })
+    }
+
     /// The class of each geometry, by its compiled material.
     pub(super) fn classify(&mut self) {
         let class = |primitives: &Primitives| {
@@ -31,6 +89,7 @@ impl World {
         let classes = self.primitives.iter().map(class).collect();
         let object_classes = self.objects.iter().map(|object| object.iter().map(class).collect()).collect();
         (self.classes, self.object_classes) = (classes, object_classes);
+        self.plain_materials = self.plain_materials();
     }
 
     /// The class of a hit on a [`Class::Mesh`]; `None` for others, and for instances with a material of their own.

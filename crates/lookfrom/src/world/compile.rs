@@ -152,6 +152,7 @@ impl World {
             origin,
             bvh: Arc::new(bvh),
             classes: Arc::default(),
+            plain_materials: Arc::default(),
             object_classes: Arc::default(),
             primitives: primitives.into(),
             objects: objects.into(),

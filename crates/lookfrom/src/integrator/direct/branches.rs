@@ -1,31 +1,31 @@
 //! The branches of Whitted's tree at eight plain surfaces side by side. The bits are those of
 //! [`Coefficients::branches`](crate::shading::material::Coefficients::branches).
 
+use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Real, Simd, f32x8, mask32x8, prelude::*};
 
 use super::coefficients::CoefficientColumns;
 use super::surfaces::Surfaces;
-use crate::core::lanes::{Columns, LANES, store, store_spectrum};
+use crate::core::lanes::{LANES, scatter_rays, scatter_spectrum};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
 /// The reflected and the refracted rays of eight surfaces.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Branches {
     pub(super) mirrored: Rays,
     pub(super) refracted: Rays,
 }
 
 /// The rays of one kind.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Rays {
     /// Bit i for lane i: whether there is a ray at all.
     pub(super) exist: u32,
-    /// The throughput of the path that goes on.
-    pub(super) beta: Columns<4>,
-    pub(super) origin: Columns<3>,
-    pub(super) direction: Columns<3>,
+    /// The throughputs of the paths that go on.
+    pub(super) beta: [Spectrum; LANES],
+    pub(super) rays: [Ray; LANES],
 }
 
 impl Branches {
@@ -66,29 +66,30 @@ impl Branches {
             }
             let refracted = same_side(bent.normalize(), surfaces.ng_facing, -one);
             let is_refracted = has_branches & is_bent & !transmission.is_black();
-            self.refracted.set(surfaces, is_refracted, refracted, beta * transmission);
+            self.refracted.set(simd, surfaces, is_refracted, refracted, beta * transmission);
         }
         let mirrored = same_side(optics::reflect(wo, n).normalize(), surfaces.ng_facing, one);
-        self.mirrored.set(surfaces, has_branches, mirrored, beta * mirror);
+        self.mirrored.set(simd, surfaces, has_branches, mirrored, beta * mirror);
     }
 }
 
 impl Rays {
     const NONE: Self =
-        Self { exist: 0, beta: [[0.0; LANES]; 4], origin: [[0.0; LANES]; 3], direction: [[0.0; LANES]; 3] };
+        Self { exist: 0, beta: [Spectrum::BLACK; LANES], rays: [Ray::new([0.0; 3], [0.0; 3]); LANES] };
 
     #[inline(always)]
     fn set<S: Simd>(
         &mut self,
+        simd: S,
         surfaces: &Surfaces<S>,
         exist: mask32x8<S>,
         direction: Vector<f32x8<S>>,
         beta: Spectrum<f32x8<S>>,
     ) {
         self.exist = exist.to_bitmask() as u32;
-        self.beta = store_spectrum(beta);
-        self.origin = store(surfaces.points.leave(surfaces.ng, direction));
-        self.direction = store(direction);
+        self.beta = scatter_spectrum(beta);
+        let origin = surfaces.points.leave(surfaces.ng, direction);
+        self.rays = scatter_rays(simd, origin, direction, f32::INFINITY);
     }
 }
 

@@ -1,14 +1,16 @@
 //! Whitted's coefficients at eight plain hits side by side. The bits are those of [`Coefficients::at`].
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
-use super::plain::{PlainHit, PlainShape};
+use super::lanes::Eight;
+use super::plain;
 use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, splat_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::integrator::SpectralModes;
 use crate::light::EmissionSpectrum;
 use crate::shading::material::{Coefficients, Whitted};
 use crate::shading::texture::lanes::TexturePoints;
@@ -36,12 +38,12 @@ pub(super) struct CoefficientColumns<S: Simd> {
 
 impl<'a> Modes<'a> {
     #[inline(always)]
-    pub(super) fn of(eight: &[PlainHit<'_>; LANES], modes: &'a [SpectralMode]) -> Self {
-        let first = &modes[eight[0].path.slot as usize];
+    pub(super) fn of(eight: &Eight<'_>, modes: &'a SpectralModes) -> Self {
+        let first = &modes[eight.paths[0].slot as usize];
         if matches!(first, SpectralMode::Rgb) {
             return Self { by_lane: [first; LANES], are_rgb: true };
         }
-        let by_lane = by_lane!(lane => &modes[eight[lane].path.slot as usize]);
+        let by_lane = by_lane!(lane => &modes[eight.paths[lane].slot as usize]);
         Self { by_lane, are_rgb: false }
     }
 
@@ -102,13 +104,13 @@ impl<S: Simd> CoefficientColumns<S> {
     pub(super) fn of(
         simd: S,
         world: &World,
-        eight: &[PlainHit<'_>; LANES],
+        eight: &Eight<'_>,
         surfaces: &Surfaces<S>,
         modes: &Modes<'_>,
     ) -> Self {
         let (mut is_one, mut lane) = (true, 0);
         while lane < LANES {
-            is_one &= eight[lane].material == eight[0].material;
+            is_one &= eight.materials[lane] == eight.materials[0];
             lane += 1;
         }
         match is_one {
@@ -119,14 +121,8 @@ impl<S: Simd> CoefficientColumns<S> {
 
     /// Those of one material.
     #[inline(always)]
-    fn of_one(
-        simd: S,
-        world: &World,
-        eight: &[PlainHit<'_>; LANES],
-        surfaces: &Surfaces<S>,
-        modes: &Modes<'_>,
-    ) -> Self {
-        let material = &world.materials[eight[0].material as usize].whitted;
+    fn of_one(simd: S, world: &World, eight: &Eight<'_>, surfaces: &Surfaces<S>, modes: &Modes<'_>) -> Self {
+        let material = &world.materials[eight.materials[0] as usize].whitted;
         let mut points = None;
         macro_rules! spectra {
             ($texture:expr) => {{
@@ -160,16 +156,10 @@ impl<S: Simd> CoefficientColumns<S> {
 
     /// Those of several materials, one by one.
     #[inline(always)]
-    fn of_each(
-        simd: S,
-        world: &World,
-        eight: &[PlainHit<'_>; LANES],
-        surfaces: &Surfaces<S>,
-        modes: &Modes<'_>,
-    ) -> Self {
+    fn of_each(simd: S, world: &World, eight: &Eight<'_>, surfaces: &Surfaces<S>, modes: &Modes<'_>) -> Self {
         let points = texture_points(world, eight, surfaces);
         let rows = by_lane!(lane => {
-            let material = &world.materials[eight[lane].material as usize].whitted;
+            let material = &world.materials[eight.materials[lane] as usize].whitted;
             Coefficients::at(material, &world.textures, &points[lane], modes.by_lane[lane])
         });
         let is_fresnel = by_lane!(lane => if rows[lane].fresnel { 1.0 } else { 0.0 });
@@ -190,15 +180,15 @@ impl<S: Simd> CoefficientColumns<S> {
 #[inline(always)]
 fn texture_points<'a, S: Simd>(
     world: &World,
-    eight: &[PlainHit<'_>; LANES],
+    eight: &Eight<'_>,
     surfaces: &Surfaces<S>,
 ) -> [TexturePoint<'a>; LANES] {
     let positions = scatter_f64(surfaces.points.position);
     let normals = scatter(Vector::<f32x8<S>>::narrow(surfaces.ng));
     let mut points = [TexturePoint::NOWHERE; LANES];
     for (lane, point) in points.iter_mut().enumerate() {
-        if varies(&world.materials[eight[lane].material as usize].whitted) {
-            *point = texture_point(world, &eight[lane], positions[lane], normals[lane]);
+        if varies(&world.materials[eight.materials[lane] as usize].whitted) {
+            *point = texture_point(world, eight.plain.hits[lane], positions[lane], normals[lane]);
         }
     }
     points
@@ -212,23 +202,17 @@ fn varies(material: &Whitted) -> bool {
 }
 
 #[inline(never)]
-fn texture_point<'a>(
-    world: &World,
-    plain: &PlainHit<'_>,
-    position: [f64; 3],
-    ng: [f32; 3],
-) -> TexturePoint<'a> {
-    let (uv, color) = match plain.shape {
-        PlainShape::Triangle(mesh) => {
-            let Hit { u, v, primitive, .. } = *plain.hit;
-            let [uv0, uv1, uv2] = mesh.corner_uvs(primitive as usize);
-            ((1.0 - u - v) * uv0 + u * uv1 + v * uv2, mesh.color(primitive as usize, u, v))
-        }
-        PlainShape::Sphere(_, binding) => {
-            let outward = if binding.flip { ng.map(|x| -x) } else { ng };
-            (sphere_uv(binding.object_from_sphere * Vec3::from(outward)), [1.0; 3])
-        }
-    };
+fn texture_point<'a>(world: &World, hit: &Hit, position: [f64; 3], ng: [f32; 3]) -> TexturePoint<'a> {
+    let (mut uv, mut color) = (Vec2::ZERO, [1.0; 3]);
+    if let Some(mesh) = plain::mesh(world, hit) {
+        let Hit { u, v, primitive, .. } = *hit;
+        let [uv0, uv1, uv2] = mesh.corner_uvs(primitive as usize);
+        uv = (1.0 - u - v) * uv0 + u * uv1 + v * uv2;
+        color = mesh.color(primitive as usize, u, v);
+    } else if let Some((_, binding)) = plain::sphere(world, hit) {
+        let outward = if binding.flip { ng.map(|x| -x) } else { ng };
+        uv = sphere_uv(binding.object_from_sphere * Vec3::from(outward));
+    }
     let world = world.origin + DVec3::from_array(position);
     TexturePoint { uv, world, color, n: ng.into(), ..TexturePoint::NOWHERE }
 }

@@ -1,72 +1,47 @@
-//! Plain hits: those on surfaces of the commonest kinds, which are shaded for eight paths side by side.
+//! Eight plain hits (see [`crate::world::Plain`]) side by side.
 
-use lookfrom_bvh::{Hit, NONE, Sphere};
+use lookfrom_bvh::{Hit, Ray, Sphere};
 
-use crate::core::spectrum::Spectrum;
-use crate::integrator::Path;
-use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
-use crate::shading::material::MaterialKind;
-use crate::shading::texture::SpectralMode;
+use crate::core::lanes::LANES;
+use crate::primitive::{Mesh, Primitives, SphereBinding};
 use crate::world::World;
 
-/// A hit on a triangle or sphere outside of instances that emits no light and has no alpha or media of its own.
-#[derive(Clone, Copy)]
-pub(super) struct PlainHit<'a> {
-    pub(super) path: &'a Path,
-    pub(super) hit: &'a Hit,
-    pub(super) shape: PlainShape<'a>,
-    /// Index into the world's materials.
-    pub(super) material: u32,
-    /// Index of the path among those that are stepped together.
-    pub(super) index: u32,
+/// Eight plain hits on one kind of shape.
+pub(in crate::integrator) struct PlainHits<'a> {
+    pub(in crate::integrator) rays: [&'a Ray; LANES],
+    pub(in crate::integrator) hits: [&'a Hit; LANES],
+    /// Whether they are on spheres, not on triangles.
+    pub(in crate::integrator) are_on_spheres: bool,
 }
 
-/// The primitive that was hit.
-#[derive(Clone, Copy)]
-pub(super) enum PlainShape<'a> {
-    Triangle(&'a Mesh),
-    Sphere(&'a Sphere, &'a SphereBinding),
-}
-
-impl<'a> PlainHit<'a> {
-    /// The hit, if it is plain.
+impl PlainHits<'_> {
+    /// Whether all are on one primitive.
     #[inline(always)]
-    pub(super) fn of(world: &'a World, index: usize, path: &'a Path, hit: &'a Hit) -> Option<Self> {
-        if !hit.is_hit() || hit.instance != NONE {
-            return None;
+    pub(super) fn are_on_one(&self) -> bool {
+        let (first, mut is_one, mut lane) = (self.hits[0], true, 1);
+        while lane < LANES {
+            let hit = self.hits[lane];
+            is_one &= hit.primitive == first.primitive && hit.geometry == first.geometry;
+            lane += 1;
         }
-        let primitive = hit.primitive as usize;
-        let (shape, binding) = match &world.primitives[hit.geometry as usize] {
-            Primitives::Mesh(mesh) => (PlainShape::Triangle(mesh), &mesh.binding),
-            Primitives::Spheres(spheres) => {
-                let of_sphere = &spheres.bindings[spheres.binding_of[primitive] as usize];
-                (PlainShape::Sphere(&spheres.spheres[primitive], of_sphere), &of_sphere.binding)
-            }
-            _ => return None,
-        };
-        let material = binding.material;
-        is_plain(world, binding).then_some(Self { path, hit, shape, material, index: index as u32 })
-    }
-
-    /// The path's throughput, attenuated by the medium on the way.
-    #[inline(always)]
-    pub(super) fn throughput(&self, world: &World, mode: &SpectralMode) -> Spectrum {
-        let Path { beta, interior, .. } = *self.path;
-        match interior.is_empty() {
-            true => beta,
-            false => beta * world.transmittance(interior, self.path.length_to(self.hit), mode),
-        }
-    }
-
-    /// Whether it is on a sphere.
-    #[inline(always)]
-    pub(super) fn is_on_sphere(&self) -> bool {
-        matches!(self.shape, PlainShape::Sphere(..))
+        is_one
     }
 }
 
+/// The mesh of a hit on a triangle.
 #[inline(always)]
-fn is_plain(world: &World, binding: &MaterialBinding) -> bool {
-    binding.is_plain()
-        && !matches!(world.materials[binding.material as usize].kind, MaterialKind::Unlit { .. })
+pub(super) fn mesh<'a>(world: &'a World, hit: &Hit) -> Option<&'a Mesh> {
+    match &world.primitives[hit.geometry as usize] {
+        Primitives::Mesh(mesh) => Some(mesh),
+        _ => None,
+    }
+}
+
+/// The sphere of a hit on one.
+#[inline(always)]
+pub(super) fn sphere<'a>(world: &'a World, hit: &Hit) -> Option<(&'a Sphere, &'a SphereBinding)> {
+    let Primitives::Spheres(spheres) = &world.primitives[hit.geometry as usize] else { return None };
+    let primitive = hit.primitive as usize;
+    let binding = &spheres.bindings[spheres.binding_of[primitive] as usize];
+    Some((&spheres.spheres[primitive], binding))
 }

@@ -1,14 +1,29 @@
 //! Eight plain surfaces side by side, from their hits.
 
+use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
-use super::plain::{PlainHit, PlainShape};
-use crate::core::lanes::{LANES, by_lane, gather};
+use super::plain::{self, PlainHits};
+use crate::core::lanes::{by_lane, gather, gather_rays};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
-use crate::primitive::{Mesh, TrianglePoints, Triangles, gather_triangles};
+use crate::primitive::{Triangles, gather_triangles};
+use crate::world::World;
 
-/// Eight surfaces, as [`World::surface`](crate::world::World::surface) has them.
+/// The geometry of eight surfaces, as [`World::surface`] has it.
+pub(in crate::integrator) struct SurfacePoints<S: Simd> {
+    /// Of the rays.
+    pub(in crate::integrator) direction: Vector<f32x8<S>>,
+    pub(in crate::integrator) points: Points<f32x8<S>>,
+    pub(in crate::integrator) ng: Vector<f64x8<S>>,
+    pub(in crate::integrator) front: mask64x8<S>,
+    wo: Vector<f64x8<S>>,
+    ns: Vector<f64x8<S>>,
+    /// Texture coordinates on triangles.
+    uv: Option<[f32x8<S>; 2]>,
+}
+
+/// Eight surfaces with the directions that shading needs.
 pub(super) struct Surfaces<S: Simd> {
     pub(super) points: Points<f32x8<S>>,
     pub(super) ng: Vector<f64x8<S>>,
@@ -23,17 +38,26 @@ pub(super) struct Surfaces<S: Simd> {
 /// Points, geometric and shading normals, and texture coordinates where they are known.
 type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>, Option<[f32x8<S>; 2]>);
 
-impl<S: Simd> Surfaces<S> {
-    /// The surfaces of hits on one kind of shape.
+impl<S: Simd> SurfacePoints<S> {
+    /// The surfaces of hits; without texture coordinates where they are not wanted.
     #[inline(always)]
-    pub(super) fn of(simd: S, eight: &[PlainHit<'_>; LANES]) -> Self {
-        let direction = gather(simd, &by_lane!(lane => eight[lane].path.ray.direction)).widen();
-        let (points, ng, ns, uv) = match eight[0].shape {
-            PlainShape::Triangle(mesh) => on_triangles(simd, eight, mesh),
-            PlainShape::Sphere(..) => on_spheres(simd, eight, direction),
+    pub(in crate::integrator) fn of(simd: S, world: &World, plain: &PlainHits<'_>, wants_uvs: bool) -> Self {
+        let [origin, direction] = gather_rays(simd, &plain.rays);
+        let wide = direction.widen();
+        let (points, ng, ns, uv) = match plain.are_on_spheres {
+            true => on_spheres(simd, world, plain, [origin.widen(), wide]),
+            false => on_triangles(simd, world, plain, wants_uvs),
         };
-        let wo = -direction.normalize();
-        let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
+        let wo = -wide.normalize();
+        Self { direction, points, ng, front: ng.dot(wo).gt(f64x8::splat(simd, 0.0)), wo, ns, uv }
+    }
+}
+
+impl<S: Simd> Surfaces<S> {
+    /// The surfaces of hits.
+    #[inline(always)]
+    pub(super) fn of(simd: S, world: &World, plain: &PlainHits<'_>) -> Self {
+        let SurfacePoints { points, ng, front, wo, ns, uv, .. } = SurfacePoints::of(simd, world, plain, true);
         let wo = Vector::<f32x8<S>>::narrow(wo);
         let ng_facing = Vector::narrow(ng.negate_where(!front));
         let ns_facing = Vector::<f32x8<S>>::narrow(ns.negate_where(!front));
@@ -45,46 +69,66 @@ impl<S: Simd> Surfaces<S> {
 
 /// The points of hits on triangles of meshes.
 #[inline(always)]
-fn on_triangles<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], first: &Mesh) -> Shapes<S> {
-    let u = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.u));
-    let v = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.v));
-    let indices = by_lane!(lane => eight[lane].hit.primitive);
-    let (mut is_one, mut lane) = (true, 0);
-    while lane < LANES {
-        is_one &= indices[lane] == indices[0] && eight[lane].hit.geometry == eight[0].hit.geometry;
-        lane += 1;
+fn on_triangles<S: Simd>(simd: S, world: &World, plain: &PlainHits<'_>, wants_uvs: bool) -> Shapes<S> {
+    let hits = &plain.hits;
+    let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].u));
+    let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].v));
+    let Some(first) = plain::mesh(world, hits[0]) else { return nowhere(simd) };
+    if plain.are_on_one() {
+        return at(&first.triangle(hits[0].primitive as usize).splat(simd), u, v);
     }
-    if is_one {
-        return at(&first.triangle(indices[0] as usize).splat(simd), u, v);
-    }
-    let meshes = by_lane!(lane => match eight[lane].shape {
-        PlainShape::Triangle(mesh) => mesh,
-        PlainShape::Sphere(..) => first,
-    });
-    at(&gather_triangles(simd, &meshes, &indices, true), u, v)
+    let meshes = by_lane!(lane => plain::mesh(world, hits[lane]).unwrap_or(first));
+    let indices = by_lane!(lane => hits[lane].primitive);
+    at(&gather_triangles(simd, &meshes, &indices, wants_uvs), u, v)
 }
 
 /// The points on triangles.
 #[inline(always)]
 fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
-    let TrianglePoints { points, ng, ns, uv, .. } = triangles.points(u, v);
-    (points, ng, ns, Some(uv))
+    let at = triangles.points(u, v);
+    (at.points, at.ng, at.ns, Some(at.uv))
+}
+
+/// No points, of no hits.
+#[inline(always)]
+fn nowhere<S: Simd>(simd: S) -> Shapes<S> {
+    let none = Vector::splat(f64x8::splat(simd, 0.0), [0.0; 3]);
+    (Points { position: none, error: none }, none, none, None)
 }
 
 /// The points of hits on spheres.
 #[inline(always)]
-fn on_spheres<S: Simd>(simd: S, eight: &[PlainHit<'_>; LANES], direction: Vector<f64x8<S>>) -> Shapes<S> {
-    let rows = by_lane!(lane => match eight[lane].shape {
-        PlainShape::Sphere(sphere, binding) => (sphere.center, sphere.radius, if binding.flip { -1.0 } else { 1.0 }),
-        PlainShape::Triangle(_) => ([0.0; 3], 1.0, 1.0),
-    });
-    let origin = gather(simd, &by_lane!(lane => eight[lane].path.ray.origin)).widen();
-    let t = f32x8::load_array(simd, by_lane!(lane => eight[lane].hit.t));
+fn on_spheres<S: Simd>(
+    simd: S,
+    world: &World,
+    plain: &PlainHits<'_>,
+    [origin, direction]: [Vector<f64x8<S>>; 2],
+) -> Shapes<S> {
+    let hits = &plain.hits;
+    let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
     let near = origin + direction * Real::widen(t);
-    let center = gather(simd, &by_lane!(lane => rows[lane].0)).widen();
-    let radius = Real::widen(f32x8::load_array(simd, by_lane!(lane => rows[lane].1)));
+    let (center, radius, flip) = if plain.are_on_one() {
+        let (center, radius, flip) = sphere_row(world, hits[0]);
+        let like = f64x8::splat(simd, flip);
+        (Vector::splat(like, center.map(f64::from)), f64x8::splat(simd, f64::from(radius)), like)
+    } else {
+        let rows = by_lane!(lane => sphere_row(world, hits[lane]));
+        (
+            gather(simd, &by_lane!(lane => rows[lane].0)).widen(),
+            Real::widen(f32x8::load_array(simd, by_lane!(lane => rows[lane].1))),
+            f64x8::load_array(simd, by_lane!(lane => rows[lane].2)),
+        )
+    };
     let points = Points::<f32x8<S>>::on_spheres(center, radius, near);
-    let flip = f64x8::load_array(simd, by_lane!(lane => rows[lane].2));
     let ng = (points.position - center).normalize() * flip;
     (points, ng, ng, None)
+}
+
+/// The centre and the radius of a sphere, and −1 where its outside is the side of the centre, otherwise 1.
+#[inline(always)]
+fn sphere_row(world: &World, hit: &Hit) -> ([f32; 3], f32, f64) {
+    match plain::sphere(world, hit) {
+        Some((sphere, binding)) => (sphere.center, sphere.radius, if binding.flip { -1.0 } else { 1.0 }),
+        None => ([0.0; 3], 1.0, 1.0),
+    }
 }

@@ -1,0 +1,123 @@
+//! What the kernel computes of eight paths with plain hits: memory that is reused.
+
+use lookfrom_bvh::Ray;
+
+use super::branches::Branches;
+use crate::core::lanes::LANES;
+use crate::core::spectrum::Spectrum;
+
+/// Groups, and the light on them.
+#[derive(Debug, Default)]
+pub(super) struct Groups {
+    groups: Vec<Group>,
+    /// Number of groups that count.
+    count: usize,
+    lights: Vec<FromLight>,
+    /// Number of those that count.
+    light_count: usize,
+}
+
+/// The steps of eight paths.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Group {
+    /// `k_a I_a` times the throughput.
+    pub(super) ambient: [Spectrum; LANES],
+    /// The first of the lights that illuminate any of them, and the end.
+    pub(super) lights: [usize; 2],
+    pub(super) branches: Branches,
+    pub(super) materials: [u32; LANES],
+    /// Bit i for lane i: whether the ray hit the outside.
+    pub(super) front: u32,
+}
+
+/// The light of one source on eight surfaces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FromLight {
+    pub(super) light: u32,
+    /// Bit i for lane i: whether it contributes light, unless it is occluded.
+    pub(super) lit: u32,
+    /// Whether the way to it crosses the surface.
+    pub(super) crosses: u32,
+    pub(super) contribution: [Spectrum; LANES],
+    /// To the light.
+    pub(super) rays: [Ray; LANES],
+}
+
+/// Where lights on a group are added.
+pub(super) struct NextLights<'a> {
+    lights: &'a mut Vec<FromLight>,
+    count: &'a mut usize,
+}
+
+impl NextLights<'_> {
+    /// Number of the next one.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        *self.count
+    }
+
+    /// The next one.
+    #[inline(always)]
+    pub(super) fn add(&mut self) -> &mut FromLight {
+        next(self.lights, self.count, FromLight::NONE)
+    }
+}
+
+impl Groups {
+    /// Removes all.
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        (self.count, self.light_count) = (0, 0);
+    }
+
+    /// Number of groups.
+    #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// A group and the lights on it, if there is one of this number.
+    #[inline(always)]
+    pub(super) fn get(&self, number: usize) -> Option<(&Group, &[FromLight])> {
+        let group = self.groups.get(number)?;
+        let [first, end] = group.lights;
+        Some((group, &self.lights[first..end]))
+    }
+
+    /// The next group to be computed, and the lights on it.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> (&mut Group, NextLights<'_>) {
+        let Self { groups, count, lights, light_count } = self;
+        (next(groups, count, Group::EMPTY), NextLights { lights, count: light_count })
+    }
+}
+
+/// The next of the values of a memory that is reused.
+#[inline(always)]
+fn next<'a, T: Copy>(memory: &'a mut Vec<T>, count: &mut usize, empty: T) -> &'a mut T {
+    if *count == memory.len() {
+        memory.push(empty);
+    }
+    *count += 1;
+    &mut memory[*count - 1]
+}
+
+impl Group {
+    const EMPTY: Self = Self {
+        ambient: [Spectrum::BLACK; LANES],
+        lights: [0; 2],
+        branches: Branches::NONE,
+        materials: [0; LANES],
+        front: 0,
+    };
+}
+
+impl FromLight {
+    const NONE: Self = Self {
+        light: 0,
+        lit: 0,
+        crosses: 0,
+        contribution: [Spectrum::BLACK; LANES],
+        rays: [Ray::new([0.0; 3], [0.0; 3]); LANES],
+    };
+}

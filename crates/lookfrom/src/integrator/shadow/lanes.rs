@@ -1,0 +1,117 @@
+//! Shadow rays that pass plain surfaces (see [`crate::world::Plain`]) of materials that transmit the same everywhere, behind
+//! eight surfaces side by side. The bits are those of one by one.
+
+use lookfrom_bvh::{Hit, Ray};
+use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
+
+use super::ShadowLight;
+use crate::core::lanes::{LANES, by_lane, filled, scatter};
+use crate::integrator::SpectralModes;
+use crate::integrator::direct::{PlainHits, SurfacePoints};
+use crate::shading::material::MaterialKind;
+use crate::shading::texture::{SpectralMode, TexturePoint};
+use crate::world::World;
+
+/// The rays of a round that pass such surfaces, by their places in it.
+#[derive(Default)]
+pub(super) struct Crossings {
+    on_triangles: Vec<u32>,
+    on_spheres: Vec<u32>,
+}
+
+impl Crossings {
+    /// Takes a ray that a surface lets pass, with its hit, unless that is of another kind.
+    #[inline(always)]
+    pub(super) fn take(&mut self, world: &World, place: u32, hit: &Hit) -> bool {
+        let Some(plain) = world.plain(hit) else { return false };
+        let material = &world.materials[plain.material as usize];
+        if material.whitted.transmission.varies() || matches!(material.kind, MaterialKind::Interface) {
+            return false;
+        }
+        let places = if plain.is_sphere { &mut self.on_spheres } else { &mut self.on_triangles };
+        places.push(place);
+        true
+    }
+
+    /// Continues the rays behind their surfaces, and removes them. `modes` are by slot; `chosen` are the lights of the
+    /// round's rays. Returns whether light is left of all rays.
+    #[inline]
+    pub(super) fn go_on(
+        &mut self,
+        world: &World,
+        modes: &SpectralModes,
+        (rays, hits): (&mut [Ray], &[Hit]),
+        lights: &mut [ShadowLight],
+        chosen: &[u32],
+    ) -> bool {
+        let mut are_all_lit = true;
+        for (places, are_on_spheres) in [(&mut self.on_triangles, false), (&mut self.on_spheres, true)] {
+            if !places.is_empty() {
+                let kernel = GoOn { world, places, are_on_spheres, rays, hits, modes, lights, chosen };
+                are_all_lit &= dispatch(level(), kernel);
+                places.clear();
+            }
+        }
+        are_all_lit
+    }
+}
+
+struct GoOn<'a> {
+    world: &'a World,
+    places: &'a [u32],
+    are_on_spheres: bool,
+    rays: &'a mut [Ray],
+    hits: &'a [Hit],
+    modes: &'a SpectralModes,
+    lights: &'a mut [ShadowLight],
+    chosen: &'a [u32],
+}
+
+impl Kernel for GoOn<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> bool {
+        let Self { world, places, are_on_spheres, rays, hits, modes, lights, chosen } = self;
+        let mut are_all_lit = true;
+        for places in places.chunks(LANES) {
+            let mut memory = None;
+            let eight = filled(places, &mut memory);
+            let hits = by_lane!(lane => &hits[eight[lane] as usize]);
+            let plain =
+                PlainHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, are_on_spheres };
+            let SurfacePoints { direction, points, ng, front, .. } =
+                SurfacePoints::of(simd, world, &plain, false);
+            let origins = scatter(points.leave(ng, direction));
+            let front = front.to_bitmask();
+            for (lane, &place) in places.iter().enumerate() {
+                let (ray, hit) = (&mut rays[place as usize], hits[lane]);
+                let light = &mut lights[chosen[place as usize] as usize];
+                light.cross(world, ray, hit, front & 1 << lane != 0, &modes[light.slot as usize]);
+                ray.origin = origins[lane];
+                ray.t_max -= hit.t;
+                are_all_lit &= !light.contribution.is_black();
+            }
+        }
+        are_all_lit
+    }
+}
+
+impl ShadowLight {
+    /// Attenuates the light by a plain surface and by the medium up to it, of which the ray met the outside or the inside,
+    /// and continues in what is behind.
+    #[inline(always)]
+    fn cross(&mut self, world: &World, ray: &Ray, hit: &Hit, is_outside: bool, mode: &SpectralMode) {
+        let Some(plain) = world.plain(hit) else { return };
+        let material = &world.materials[plain.material as usize];
+        let transmission = &material.whitted.transmission;
+        let transmission = world.textures.spectrum(transmission, &TexturePoint::NOWHERE, mode);
+        self.contribution *= transmission * self.transmittance(world, ray, hit.t, mode);
+        if material.is_body() {
+            self.interior = match is_outside {
+                true => self.interior.entered(plain.material),
+                false => self.interior.left(plain.material),
+            };
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Shadow rays that surfaces may attenuate.
+
+use glam::Vec3;
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+
+use super::lanes::Crossings;
+use super::{ShadowLight, ShadowTransparency, Shadows};
+use crate::core::hash;
+use crate::core::spectrum::Spectrum;
+use crate::integrator::{Event, Probe, Queues};
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::material::Coefficients;
+use crate::shading::texture::SpectralMode;
+use crate::world::World;
+
+/// Maximum number of transparent surfaces that a shadow ray may cross before it counts as blocked.
+const MOST_CROSSINGS: u32 = 32;
+
+/// Traces shadow rays that surfaces may attenuate; each ray goes on behind the surface. Returns the number of rays
+/// traced.
+pub(super) fn let_through<P: Probe>(
+    world: &World,
+    shadow_transparency: ShadowTransparency,
+    queues: &mut Queues,
+    probe: &mut P,
+) -> u64 {
+    let Queues { shadows, lanes: modes, hits, .. } = queues;
+    let Shadows { rays, origin_primitives, lights } = shadows;
+    let mut traced = 0;
+    // The lights of the rays that are left.
+    let mut left: Vec<u32> = (0..lights.len() as u32).collect();
+    let mut crossings = Crossings::default();
+    for round in 0.. {
+        hits.clear();
+        hits.resize(rays.len(), Hit::MISS);
+        world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+        traced += rays.len() as u64;
+
+        // Those that go on keep their order.
+        let mut count = 0;
+        for place in 0..rays.len() {
+            let (mut ray, mut origin_primitive, hit) = (rays[place], origin_primitives[place], hits[place]);
+            let light = &mut lights[left[place] as usize];
+            let is_blocked = round >= MOST_CROSSINGS || shadow_transparency.is_blocked(world, &hit);
+            if !P::LISTENS && is_blocked {
+                light.contribution *= Spectrum::BLACK;
+                continue;
+            } else if !P::LISTENS && crossings.take(world, count as u32, &hit) {
+                origin_primitive = OriginPrimitive::of(&hit);
+            } else {
+                let mode = &modes[light.slot as usize];
+                let surface = (hit.is_hit() && !is_blocked).then(|| world.surface(&ray, &hit));
+                let passed = match surface.as_ref() {
+                    Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
+                    None if hit.is_hit() => Spectrum::BLACK,
+                    None => light.reached(world, &ray, mode),
+                };
+                probe.notice(|| Event::Shadow { shadow: light.of(ray, origin_primitive), hit, passed });
+                light.contribution *= passed;
+                let Some(surface) = surface.filter(|_| !light.contribution.is_black()) else { continue };
+                light.go_on_behind(world, &mut ray, &hit, &surface);
+                origin_primitive = surface.origin_primitive;
+            }
+            (rays[count], origin_primitives[count], hits[count]) = (ray, origin_primitive, hit);
+            left[count] = left[place];
+            count += 1;
+        }
+        let are_all_lit = crossings.go_on(world, modes, (rays, hits), lights, &left);
+        if !are_all_lit {
+            let end = count;
+            count = 0;
+            for place in 0..end {
+                if !lights[left[place] as usize].contribution.is_black() {
+                    (rays[count], origin_primitives[count]) = (rays[place], origin_primitives[place]);
+                    left[count] = left[place];
+                    count += 1;
+                }
+            }
+        }
+        rays.truncate(count);
+        origin_primitives.truncate(count);
+        left.truncate(count);
+        if rays.is_empty() {
+            break;
+        }
+    }
+    traced
+}
+
+impl ShadowLight {
+    /// Transmittance of the medium up to `surface` and of the surface.
+    fn passed(
+        &self,
+        world: &World,
+        shadow_transparency: ShadowTransparency,
+        (ray, hit): (&Ray, &Hit),
+        surface: &SurfaceInteraction,
+        mode: &SpectralMode,
+    ) -> Spectrum {
+        let through_medium = self.transmittance(world, ray, hit.t, mode);
+        if !meets(world, ray, hit, surface) || world.has_media && world.is_interface(surface) {
+            return through_medium;
+        }
+        if world.is_open_front(surface) {
+            return through_medium * (1.0 - World::COVERAGE_OF_OPEN_FRONTS);
+        }
+        if shadow_transparency == ShadowTransparency::AlphaTested {
+            return Spectrum::BLACK;
+        }
+        let material = &world.materials[surface.material as usize].whitted;
+        let point = world.texture_point(surface);
+        Coefficients::at(material, &world.textures, &point, mode).transmission * through_medium
+    }
+
+    /// Continues the ray behind a surface that lets light pass.
+    fn go_on_behind(&mut self, world: &World, ray: &mut Ray, hit: &Hit, surface: &SurfaceInteraction) {
+        let direction = Vec3::from_array(ray.direction);
+        ray.origin = surface.origin(direction);
+        ray.t_max -= hit.t;
+        if !world.is_open_front(surface) && meets(world, ray, hit, surface) {
+            self.interior = self.interior.leaving(&world.materials, surface, direction, true);
+        }
+    }
+}
+
+/// Whether the surface exists where a ray hit it: the alpha test.
+fn meets(world: &World, ray: &Ray, hit: &Hit, surface: &SurfaceInteraction) -> bool {
+    surface.alpha.is_none() || world.passes_alpha_test(surface, number(ray, hit))
+}
+
+/// A pseudorandom number in [0, 1): a hash of a ray's direction and its hit.
+fn number(ray: &Ray, hit: &Hit) -> f32 {
+    let [x, y, z] = ray.direction.map(f32::to_bits);
+    let of_ray = hash::pair(u64::from(x) << 32 | u64::from(y), u64::from(z));
+    let of_hit = u64::from(hit.primitive) << 32 | u64::from(hit.t.to_bits());
+    (hash::pair(of_ray, of_hit) >> 40) as f32 * (1.0 / 16_777_216.0)
+}

@@ -1,0 +1,79 @@
+//! Shadow rays that wait to be traced, by their parts, so that the kernel reads rays where they are.
+
+use glam::Vec3;
+use lookfrom_bvh::{OriginPrimitive, Ray};
+
+use super::Shadow;
+use crate::core::spectrum::Spectrum;
+use crate::integrator::Term;
+use crate::shading::interior_stack::InteriorStack;
+use crate::shading::texture::SpectralMode;
+use crate::world::World;
+
+/// Shadow rays of a batch, in the order in which their light is added.
+#[derive(Debug, Default)]
+pub struct Shadows {
+    pub(super) rays: Vec<Ray>,
+    pub(super) origin_primitives: Vec<OriginPrimitive>,
+    pub(super) lights: Vec<ShadowLight>,
+}
+
+/// What a shadow ray carries: see [`Shadow`].
+#[derive(Clone, Copy, Debug)]
+pub(in crate::integrator) struct ShadowLight {
+    pub(in crate::integrator) contribution: Spectrum,
+    pub(in crate::integrator) interior: InteriorStack,
+    pub(in crate::integrator) address: u64,
+    pub(in crate::integrator) term: Term,
+    pub(in crate::integrator) slot: u32,
+    pub(in crate::integrator) last_scattering: u32,
+}
+
+impl Shadows {
+    /// Adds a ray.
+    #[inline(always)]
+    pub fn push(&mut self, shadow: Shadow) {
+        let Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering } =
+            shadow;
+        self.rays.push(ray);
+        self.origin_primitives.push(origin_primitive);
+        self.lights.push(ShadowLight { contribution, interior, address, term, slot, last_scattering });
+    }
+
+    /// Removes all.
+    pub(in crate::integrator) fn clear(&mut self) {
+        self.rays.clear();
+        self.origin_primitives.clear();
+        self.lights.clear();
+    }
+}
+
+impl ShadowLight {
+    /// The whole of the shadow.
+    pub(super) fn of(&self, ray: Ray, origin_primitive: OriginPrimitive) -> Shadow {
+        let Self { contribution, interior, address, term, slot, last_scattering } = *self;
+        Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering }
+    }
+
+    /// Transmittance of the medium up to a hit.
+    #[inline]
+    pub(super) fn transmittance(&self, world: &World, ray: &Ray, t: f32, mode: &SpectralMode) -> Spectrum {
+        if self.interior.is_empty() {
+            return mode.one();
+        }
+        world.transmittance(self.interior, Vec3::from_array(ray.direction).length() * t, mode)
+    }
+
+    /// Transmittance of the medium on the rest of the way.
+    #[inline]
+    pub(super) fn reached(&self, world: &World, ray: &Ray, mode: &SpectralMode) -> Spectrum {
+        if self.interior.is_empty() {
+            return mode.one();
+        }
+        let length = Vec3::from_array(ray.direction).length() * ray.t_max;
+        // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in
+        // pbrt.
+        let is_far = length.is_infinite() && self.interior.space().is_some();
+        world.transmittance(self.interior, if is_far { 2.0 * world.radius } else { length }, mode)
+    }
+}
