@@ -301,13 +301,14 @@ impl Renderer {
             light_path,
         }));
 
+        let mut are_from_camera = true;
         while !output.queues.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
             std::mem::swap(paths, &mut output.queues.paths);
             output.queues.paths.clear();
             // All are replaced.
             hits.resize(paths.len(), Hit::MISS);
-            if paths[0].address == Path::ROOT {
+            if are_from_camera {
                 self.world.bvh.closest_hits(&start.rays, hits);
             } else {
                 rays.clear();
@@ -316,6 +317,7 @@ impl Renderer {
                 origin_primitives.extend(paths.iter().map(|path| path.previous.origin_primitive));
                 self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
             }
+            are_from_camera = false;
             first_hit::note(first_hits, paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
