@@ -5,7 +5,7 @@ use crate::conservative::{self, RayLanes};
 use crate::origin_primitive::OriginPrimitive;
 use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
 use crate::ray::{NONE, Ray};
-use lookfrom_simd::{Simd, f32x8, f32x16, i32x8, mask32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f32x16, i32x8, mask32x8, prelude::*, transposed};
 
 /// Number of rays in a group.
 pub(crate) const LANES: usize = 8;
@@ -70,22 +70,8 @@ impl<S: Simd> Ray8<S> {
             let Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max } = rays[lane];
             f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
         };
-        let mut v = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
-        // Three perfect shuffles transpose the rows to columns.
-        for _ in 0..3 {
-            let [a, b, c, d, e, f, g, h] = v;
-            v = [
-                a.zip_low(e),
-                a.zip_high(e),
-                b.zip_low(f),
-                b.zip_high(f),
-                c.zip_low(g),
-                c.zip_high(g),
-                d.zip_low(h),
-                d.zip_high(h),
-            ];
-        }
-        let [ox, oy, oz, t_min, dx, dy, dz, t_max] = v;
+        let [ox, oy, oz, t_min, dx, dy, dz, t_max] =
+            transposed([row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)]);
         let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
         let length = greatest(direction);
         let usual = greatest(origin).simd_lt(FAR)

@@ -5,6 +5,7 @@ mod dispatch;
 mod lane_mask;
 mod level;
 mod real;
+mod transpose;
 
 pub use dispatch::{Kernel, dispatch};
 pub use fearless_simd::{
@@ -13,3 +14,4 @@ pub use fearless_simd::{
 pub use lane_mask::LaneMask;
 pub use level::level;
 pub use real::{Bits, Float, Mask, Real};
+pub use transpose::transposed;

@@ -255,8 +255,16 @@ pub(crate) fn scatter_rays<S: Simd>(
     t_max: f32,
 ) -> [Ray; LANES] {
     let (zero, end) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
-    let rows =
-        transposed_eight([origin.x, origin.y, origin.z, zero, direction.x, direction.y, direction.z, end]);
+    let rows = lookfrom_simd::transposed([
+        origin.x,
+        origin.y,
+        origin.z,
+        zero,
+        direction.x,
+        direction.y,
+        direction.z,
+        end,
+    ]);
     by_lane!(lane => {
         let [ox, oy, oz, t_min, dx, dy, dz, t_max]: [f32; LANES] = rows[lane].into();
         Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max }
@@ -270,29 +278,8 @@ pub(crate) fn gather_rays<S: Simd>(simd: S, rays: &[&Ray; LANES]) -> [Vector<f32
         let Ray { origin: [ox, oy, oz], t_min, direction: [dx, dy, dz], t_max } = *rays[lane];
         f32x8::load_array(simd, [ox, oy, oz, t_min, dx, dy, dz, t_max])
     });
-    let [ox, oy, oz, _, dx, dy, dz, _] = transposed_eight(rows);
+    let [ox, oy, oz, _, dx, dy, dz, _] = lookfrom_simd::transposed(rows);
     [Vector { x: ox, y: oy, z: oz }, Vector { x: dx, y: dy, z: dz }]
-}
-
-/// Rows of columns, and columns of rows, by three perfect shuffles.
-#[inline(always)]
-fn transposed_eight<S: Simd>(mut v: [f32x8<S>; LANES]) -> [f32x8<S>; LANES] {
-    let mut round = 0;
-    while round < 3 {
-        let [a, b, c, d, e, f, g, h] = v;
-        v = [
-            a.zip_low(e),
-            a.zip_high(e),
-            b.zip_low(f),
-            b.zip_high(f),
-            c.zip_low(g),
-            c.zip_high(g),
-            d.zip_low(h),
-            d.zip_high(h),
-        ];
-        round += 1;
-    }
-    v
 }
 
 #[cfg(test)]
