@@ -82,7 +82,7 @@ impl<S: Simd> Ray8<S> {
         let zero = f32x8::splat(simd, 0.0);
         let sum = |[x, y, z]: [f32x8<S>; 3]| x + y + z;
         let finite = ((sum(origin) + sum(direction)) * zero).simd_eq(zero);
-        let end = t_max + (t_max.abs() * prepared::ROOM + prepared::TINY);
+        let end = with_room(t_max);
         Self {
             usual: (usual & finite).to_bitmask() as u32 & 0xff,
             origin,
@@ -164,7 +164,7 @@ impl<S: Simd> Ray8<S> {
     /// The same for some rays.
     #[inline(always)]
     pub(crate) fn shorten_some(&mut self, rays: mask32x8<S>, t: f32x8<S>) {
-        let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
+        let end = with_room(t);
         self.end = (rays & end.simd_lt(self.end)).select(end, self.end);
         self.limit = (rays & end.simd_lt(self.limit)).select(end, self.limit);
     }
@@ -233,6 +233,12 @@ impl<S: Simd> Slabs8<S> {
         }
         near.simd_le(far).to_bitmask() as u32 & 0xff
     }
+}
+
+/// Ends of rays with the margin for boxes.
+#[inline(always)]
+fn with_room<S: Simd>(t: f32x8<S>) -> f32x8<S> {
+    t + (t.abs() * prepared::ROOM + prepared::TINY)
 }
 
 /// Two vectors of eight rays, side by side.

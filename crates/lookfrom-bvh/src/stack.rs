@@ -153,6 +153,7 @@ fn next<S: Simd>(node: &Node, entered: &Entered<S>, children: &mut u32) -> Stack
     StackEntry::new(entered.near[slot], node.child(slot))
 }
 
+/// Removes the first slot from a set of children.
 #[inline(always)]
 fn next_slot(children: &mut u32) -> usize {
     let slot = children.trailing_zeros() as usize % WIDTH;

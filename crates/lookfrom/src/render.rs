@@ -8,6 +8,7 @@ mod camera_warnings;
 mod cost;
 mod driver;
 mod first_hit;
+mod sensor;
 mod start;
 mod transport;
 
@@ -17,20 +18,18 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
-    Background, ColorMode, ImageSettings, LightPathLayer, PixelBounds, RenderSettings,
-    Sensor as SensorSettings,
+    ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::core::color::{Sensor, Wavelengths};
 use crate::core::filter::Filter;
-use crate::core::math;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
 use crate::film::{FilmTile, SampleSums};
 use crate::integrator::{
-    Alpha, Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
+    Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
     StepOutput, resolve_shadows,
 };
 use crate::shading::texture::SpectralMode;
@@ -334,107 +333,6 @@ impl Renderer {
 
         *queues = output.queues;
         rays_traced
-    }
-
-    /// The samples of a batch that was traced.
-    fn traced(&self, batch: &Batch) -> impl Iterator<Item = Traced> {
-        let Batch { queues: Queues { radiance, lanes, alpha, .. }, start, .. } = batch;
-        let samples = radiance.iter().zip(alpha).zip(&start.weights).enumerate();
-        samples.map(|(slot, ((&radiance, &alpha), &weight))| {
-            let lanes = lanes[slot];
-            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, alpha);
-            Traced { rgb, radiance, lanes, weight, alpha }
-        })
-    }
-
-    /// The colours of the samples of a batch that was traced, as [`Traced::rgb`] has them.
-    fn light(&self, batch: &Batch, light: &mut Vec<[f32; 3]>) {
-        let ImageSettings { background, sensor, .. } = self.image();
-        let is_as_it_is = self.keeps_rgb
-            && !self.is_spectral()
-            && sensor.max_component == f32::INFINITY
-            && *background == Background::Environment;
-        light.clear();
-        if is_as_it_is {
-            let samples = batch.queues.radiance.iter().zip(&batch.start.weights);
-            light.extend(samples.map(|(&radiance, &weight)| (radiance * weight).rgb()));
-        } else {
-            light.extend(self.traced(batch).map(|traced| traced.rgb));
-        }
-    }
-
-    /// The colours of a sample's layers, by light-path expressions, as the film of its light has them: weighted, and with the
-    /// sample's limit of brightness. Nothing of a sample that shows the view's own background.
-    fn light_by_paths<'a>(
-        &'a self,
-        batch: &'a Batch,
-        slot: usize,
-        traced: &'a Traced,
-    ) -> impl Iterator<Item = [f32; 3]> + 'a {
-        let Queues { layers, alpha, .. } = &batch.queues;
-        let count = self.light_paths.as_ref().map_or(0, |light_paths| light_paths.count());
-        let is_seen = alpha[slot] == Alpha::Opaque || self.image().background == Background::Environment;
-        let whole = self.measured(traced.radiance * traced.weight, &traced.lanes);
-        let limit = self.limit(whole);
-        layers[slot * count..][..count].iter().map(move |light| match is_seen {
-            true => self.measured(*light * traced.weight, &traced.lanes).map(|c| c * limit),
-            false => [0.0; 3],
-        })
-    }
-
-    /// Whether the lanes of samples are wavelengths.
-    fn is_spectral(&self) -> bool {
-        self.settings.color == ColorMode::Spectral && self.integrator.is_light()
-    }
-
-    /// The colour and alpha of a sample. Over the view's own background, a shadow catcher has only alpha; single
-    /// samples of it may be outside of 0 … 1, but not their mean, up to noise.
-    fn with_alpha(
-        &self,
-        radiance: Spectrum,
-        weight: f32,
-        lanes: &SpectralMode,
-        alpha: Alpha,
-    ) -> ([f32; 3], f32) {
-        match alpha {
-            Alpha::Transparent => ([0.0; 3], 0.0),
-            Alpha::Shadow if self.image().background != Background::Environment => {
-                ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, lanes)))
-            }
-            Alpha::Shadow | Alpha::Opaque => (self.rgb(radiance * weight, lanes), 1.0),
-        }
-    }
-
-    /// The colour that the sensor measures: linear Rec. 709.
-    pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
-        self.limited(self.measured(light, lanes))
-    }
-
-    /// The same without the maximum component value.
-    pub(crate) fn measured(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
-        match lanes {
-            SpectralMode::Rgb if self.keeps_rgb => light.rgb(),
-            SpectralMode::Rgb => self.sensor.balanced(light.rgb()),
-            SpectralMode::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),
-        }
-    }
-
-    /// A colour scaled so that no channel of the sensor exceeds its limit (pbrt's `maxcomponentvalue`). The channels
-    /// are those before the conversion to RGB, where single wavelengths are far outside of the gamut.
-    fn limited(&self, rgb: [f32; 3]) -> [f32; 3] {
-        let limit = self.limit(rgb);
-        if limit < 1.0 { rgb.map(|c| c * limit) } else { rgb }
-    }
-
-    /// The factor of that scaling.
-    fn limit(&self, rgb: [f32; 3]) -> f32 {
-        let most = self.image().sensor.max_component;
-        if most == f32::INFINITY {
-            return 1.0;
-        }
-        // Negative values, from a filter's negative lobes, are limited as well.
-        let brightest = self.sensor.channels(rgb).into_iter().fold(0.0, |most, c| c.abs().max(most));
-        if brightest > most { most / brightest } else { 1.0 }
     }
 
     /// Adds the given samples of every pixel of a tile to the tile, and records them in its ledger.

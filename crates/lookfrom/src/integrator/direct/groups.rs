@@ -1,4 +1,4 @@
-//! What the kernel computes of eight paths with plain hits: memory that is reused.
+//! Groups of eight shaded plain hits: their ambient light, light of sources and branches, in memory that is reused.
 
 use lookfrom_bvh::Ray;
 
@@ -43,7 +43,7 @@ pub(super) struct FromLight {
     pub(super) rays: [Ray; LANES],
 }
 
-/// Where lights on a group are added.
+/// The end of the list of lights, for those of the next group.
 pub(super) struct NextLights<'a> {
     lights: &'a mut Vec<FromLight>,
     count: &'a mut usize,

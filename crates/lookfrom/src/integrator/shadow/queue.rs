@@ -18,7 +18,7 @@ pub struct Shadows {
     pub(super) lights: Vec<ShadowLight>,
 }
 
-/// What a shadow ray carries: see [`Shadow`].
+/// The payload of a shadow ray: a [`Shadow`] without its ray.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::integrator) struct ShadowLight {
     pub(in crate::integrator) contribution: Spectrum,
