@@ -3,7 +3,7 @@
 //! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
-//! denoiser, are in [`aov`]; variances in the sensor's channels in `channels`; noise estimates in `noise`; firefly
+//! denoiser, are in [`aov`], and `first_hits` of eight pixels side by side; variances in the sensor's channels in `channels`; noise estimates in `noise`; firefly
 //! suppression in `fireflies`; which samples it holds, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
 //! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
@@ -11,6 +11,7 @@
 pub mod aov;
 mod channels;
 mod fireflies;
+mod first_hits;
 mod ledger;
 mod light_paths;
 mod noise;
@@ -22,6 +23,7 @@ mod tile;
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
 pub use self::fireflies::Firefly;
+pub(crate) use self::first_hits::{AovColumns, FirstHitSums};
 pub use self::ledger::{Overlap, SampleLedger};
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 pub(crate) use self::sums::SampleSums;

@@ -9,6 +9,7 @@ mod background;
 mod direct;
 mod event;
 mod first_hit;
+mod first_mesh_hits;
 mod first_surface;
 mod light_paths;
 mod occlusion;
@@ -37,7 +38,9 @@ pub use background::Alpha;
 use direct::PlainSteps;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
-pub use first_surface::FirstSurface;
+pub(crate) use first_mesh_hits::FirstMeshHit;
+pub(crate) use first_surface::FirstSurfaceColumns;
+pub use first_surface::{FirstSurface, FirstSurfaces};
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
@@ -194,8 +197,8 @@ pub struct Queues {
     pub paths: Vec<Path>,
     /// Shadow rays, to be traced before them.
     pub shadows: Shadows,
-    /// The surfaces that camera rays met, by slot, as far as steps left them; no slots where nothing needs them.
-    pub first_surfaces: Vec<Option<FirstSurface>>,
+    /// The surfaces that camera rays met, as far as steps left them.
+    pub first_surfaces: FirstSurfaces,
     /// Light by light-path expressions: for each slot as many layers as there are expressions.
     pub layers: Vec<Spectrum>,
     /// Last scattering events of shadow rays, by [`Shadow::last_scattering`]; none without light-path expressions.
@@ -218,7 +221,7 @@ impl Queues {
         self.paths.clear();
         self.shadows.clear();
         self.layers.clear();
-        self.first_surfaces.clear();
+        self.first_surfaces.start(false);
         self.last_scatterings.clear();
     }
 

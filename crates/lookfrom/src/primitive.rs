@@ -27,7 +27,7 @@ pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub use sphere::{SphereBinding, Spheres};
-pub(crate) use triangle::Triangles;
+pub(crate) use triangle::{TrianglePoints, Triangles};
 
 /// The material, light and other attributes of a primitive's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

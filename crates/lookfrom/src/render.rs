@@ -4,6 +4,7 @@
 //! any machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only
 //! chooses the tiles and samples to render.
 
+mod camera_space;
 mod camera_warnings;
 mod cost;
 mod driver;
@@ -27,7 +28,7 @@ use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
-use crate::film::{FilmTile, SampleSums};
+use crate::film::{FilmTile, FirstHitSums, SampleSums};
 use crate::integrator::{
     Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
     StepOutput, resolve_shadows,
@@ -38,7 +39,7 @@ use crate::world::World;
 
 pub(crate) use camera_warnings::Subject;
 pub use cost::Cost;
-use first_hit::FirstHit;
+use first_hit::FirstHits;
 use start::Start;
 use transport::Transport;
 
@@ -121,8 +122,9 @@ struct Batch {
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
-    /// First hits, by slot; only where AOVs or the denoiser need them.
-    first_hits: Vec<FirstHit>,
+    /// Only where AOVs or the denoiser need them.
+    first_hits: FirstHits,
+    first_hit_sums: FirstHitSums,
     /// The samples' light in RGB, by slot.
     light: Vec<[f32; 3]>,
     sums: SampleSums,
@@ -286,7 +288,7 @@ impl Renderer {
         output.queues.start(ids.len(), start.modes());
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
-        output.queues.first_surfaces.resize(first_hits.len(), None);
+        output.queues.first_surfaces.start(first_hits.are_wanted());
         let interior = self.world.space_of(self.view.medium);
         let Queues { paths: started, lanes, .. } = &mut output.queues;
         started.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
@@ -317,7 +319,7 @@ impl Renderer {
                 self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
             }
             are_from_camera = false;
-            first_hit::note(first_hits, paths, hits);
+            first_hits.note(paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
             let numbers = |path: &Path| {
@@ -352,9 +354,7 @@ impl Renderer {
         ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample: samples.start }));
         for sample in samples {
             ids.iter_mut().for_each(|id| id.sample = sample);
-            let wanted = if tile.wants_first_hit(sample) { ids.len() } else { 0 };
-            batch.first_hits.clear();
-            batch.first_hits.resize(wanted, FirstHit::MISS);
+            batch.first_hits.start(tile.wants_first_hit(sample));
             rays += self.integrator.trace(self, &ids, batch);
             self.add_first_hits(&ids, batch, tile);
             if tile.is_of_light() {
@@ -377,6 +377,7 @@ impl Renderer {
             }
         }
         tile.add_sums(&ids, &mut batch.sums);
+        tile.add_first_hit_sums(&ids, &mut batch.first_hit_sums);
         batch.ids = ids;
         Ok(rays)
     }

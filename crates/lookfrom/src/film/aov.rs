@@ -42,7 +42,7 @@ pub struct DenoiserFeatures {
     pub coverage: f32,
 }
 
-const TWO_TO_32: f64 = 4_294_967_296.0;
+pub(super) const TWO_TO_32: f64 = 4_294_967_296.0;
 
 /// Sums over the samples of a pixel. Additions wrap, after at least 2²³ of the largest values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,13 +146,30 @@ fn merge_narrow(sums: &mut [i64; 3], others: [i64; 3]) {
 }
 
 impl AovSums {
+    /// Sums over samples of which none is the first with a hit.
+    pub(super) fn of(samples: u64, hits: u64, albedo: [i64; 3], ns: [i64; 3]) -> Self {
+        Self { albedo, ns, samples, hits, ..Self::default() }
+    }
+
     /// Adds the first hit of a sample, `None` for a miss; one that is not finite counts as a miss.
     pub(super) fn add(&mut self, sample: u32, met: Option<&Aovs>) {
         self.samples = self.samples.saturating_add(1);
-        let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
+        met.into_iter().for_each(|aovs| self.add_hit(sample, aovs));
+    }
+
+    /// The same for a sample that has been counted.
+    pub(super) fn add_hit(&mut self, sample: u32, aovs: &Aovs) {
+        if !aovs.is_finite() {
+            return;
+        }
         self.hits = self.hits.saturating_add(1);
         add_narrow(&mut self.albedo, aovs.albedo.map(|c| c.clamp(0.0, 1.0)));
         add_narrow(&mut self.ns, aovs.ns.map(|c| c.clamp(-1.0, 1.0)));
+        self.note_first(sample, aovs);
+    }
+
+    /// Notes a finite hit if it is that of the first sample with one.
+    pub(super) fn note_first(&mut self, sample: u32, aovs: &Aovs) {
         if sample < self.first {
             self.first = sample;
             (self.ng, self.position) = (aovs.ng.map(f32::to_bits), aovs.position.map(f32::to_bits));
@@ -189,14 +206,37 @@ impl AovSums {
 }
 
 impl LayerSums {
+    /// Sums for AOVs, with those that the denoiser needs, too.
+    pub(super) fn of(shared: AovSums, ng: [i64; 3], places: [i128; 5]) -> Self {
+        Self { shared, ng, places }
+    }
+
+    /// Those that the denoiser needs, too.
+    pub(super) fn shared(&self) -> &AovSums {
+        &self.shared
+    }
+
     /// As [`AovSums::add`].
     pub(super) fn add(&mut self, sample: u32, met: Option<&Aovs>) {
-        self.shared.add(sample, met);
-        let Some(aovs) = met.filter(|aovs| aovs.is_finite()) else { return };
+        self.shared.samples = self.shared.samples.saturating_add(1);
+        met.into_iter().for_each(|aovs| self.add_hit(sample, aovs));
+    }
+
+    /// As [`AovSums::add_hit`].
+    pub(super) fn add_hit(&mut self, sample: u32, aovs: &Aovs) {
+        if !aovs.is_finite() {
+            return;
+        }
+        self.shared.add_hit(sample, aovs);
         add_narrow(&mut self.ng, aovs.ng.map(|c| c.clamp(-1.0, 1.0)));
         for (sum, value) in self.places.iter_mut().zip(aovs.position.iter().chain(&aovs.uv)) {
             *sum = sum.wrapping_add(fixed_point(*value));
         }
+    }
+
+    /// As [`AovSums::note_first`].
+    pub(super) fn note_first(&mut self, sample: u32, aovs: &Aovs) {
+        self.shared.note_first(sample, aovs);
     }
 
     pub(super) fn merge(&mut self, other: &Self) {

@@ -19,7 +19,7 @@ const BOUND: f64 = 2.0;
 const MOST_SAMPLES: u32 = 4096;
 
 /// 1.5 · 2⁵²: added to it, an integer below 2⁵¹ in magnitude is in the lowest bits of the sum.
-const INTEGERS: f64 = 6_755_399_441_055_744.0;
+pub(super) const INTEGERS: f64 = 6_755_399_441_055_744.0;
 
 /// Sums of a tile's pixels that are not yet in the tile: memory that is reused.
 #[derive(Debug, Default)]
@@ -141,7 +141,7 @@ fn is_exact<S: Simd>(light: f64x8<S>, multiple: f64x8<S>) -> mask64x8<S> {
 
 /// Adds integers of magnitude below 2⁵¹.
 #[inline(always)]
-fn add<S: Simd>(simd: S, sums: &mut [u64; LANES], integers: f64x8<S>) {
+pub(super) fn add<S: Simd>(simd: S, sums: &mut [u64; LANES], integers: f64x8<S>) {
     let bits: u64x8<S> = (integers + INTEGERS).bitcast();
     *sums = (u64x8::load_array(simd, *sums) + bits - u64x8::splat(simd, INTEGERS.to_bits())).into();
 }

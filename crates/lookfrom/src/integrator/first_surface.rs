@@ -1,9 +1,10 @@
 //! The surfaces that camera rays meet, as far as AOVs and the denoiser need them.
 //!
-//! A step that has one at hand leaves it; others are evaluated after the batch.
+//! A step that has eight at hand leaves them; others are evaluated after the batch.
 
 use glam::{DVec3, Vec2, Vec3};
 
+use crate::core::lanes::{Columns, LANES};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material;
 use crate::world::World;
@@ -38,5 +39,70 @@ impl FirstSurface {
             uv: surface.uv,
             albedo: material::albedo(materials, textures, &materials[surface.material as usize], &point),
         }
+    }
+}
+
+/// Eight surfaces as [`FirstSurface`] has them, by component.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FirstSurfaceColumns {
+    /// Bit i for lane i: whether there is a surface. The numbers of others are any.
+    pub(crate) lanes: u32,
+    /// The slots of the camera rays.
+    pub(crate) slots: [u32; LANES],
+    pub(crate) position: Columns<3, f64>,
+    pub(crate) ng: Columns<3, f64>,
+    pub(crate) ns: Columns<3>,
+    pub(crate) wo: Columns<3>,
+    pub(crate) uv: Columns<2>,
+    pub(crate) albedo: Columns<3>,
+}
+
+impl FirstSurfaceColumns {
+    const NONE: Self = Self {
+        lanes: 0,
+        slots: [0; LANES],
+        position: [[0.0; LANES]; 3],
+        ng: [[0.0; LANES]; 3],
+        ns: [[0.0; LANES]; 3],
+        wo: [[0.0; LANES]; 3],
+        uv: [[0.0; LANES]; 2],
+        albedo: [[0.0; LANES]; 3],
+    };
+}
+
+/// The surfaces that steps left, in memory that is reused.
+#[derive(Debug, Default)]
+pub struct FirstSurfaces {
+    are_wanted: bool,
+    eights: Vec<FirstSurfaceColumns>,
+    /// Number of those that count.
+    count: usize,
+}
+
+impl FirstSurfaces {
+    /// Removes all. Whether steps are to leave others.
+    pub(crate) fn start(&mut self, are_wanted: bool) {
+        (self.are_wanted, self.count) = (are_wanted, 0);
+    }
+
+    /// Whether steps are to leave surfaces.
+    #[inline]
+    pub(crate) fn are_wanted(&self) -> bool {
+        self.are_wanted
+    }
+
+    /// The next eight, to be replaced by surfaces, of which there is at most one for each slot.
+    #[inline]
+    pub(crate) fn next(&mut self) -> &mut FirstSurfaceColumns {
+        if self.count == self.eights.len() {
+            self.eights.push(FirstSurfaceColumns::NONE);
+        }
+        self.count += 1;
+        &mut self.eights[self.count - 1]
+    }
+
+    /// Eight by eight.
+    pub(crate) fn eights(&self) -> &[FirstSurfaceColumns] {
+        &self.eights[..self.count]
     }
 }

@@ -9,13 +9,51 @@ use crate::shading::bsdf::fresnel;
 use crate::shading::texture::{SpectrumTexture, TexturePoint, Textures};
 
 /// Linear Rec. 709, at least 0; white where a surface has no colour of its own.
+#[inline]
 pub fn albedo(
     materials: &[Material],
     textures: &Textures,
     material: &Material,
     point: &TexturePoint,
 ) -> [f32; 3] {
-    of_kind(&material.kind, materials, textures, point).rgb().map(|c| c.max(0.0))
+    material.albedo.unwrap_or_else(|| shown(of_kind(&material.kind, materials, textures, point)))
+}
+
+impl Material {
+    /// Its [`albedo`], where that is known to be the same everywhere.
+    #[inline]
+    pub(crate) fn even_albedo(&self) -> Option<[f32; 3]> {
+        self.albedo
+    }
+}
+
+/// The same of all materials of a kind that has the same colours everywhere; `None` where they may vary.
+pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32; 3]> {
+    let varies = match kind {
+        MaterialKind::Whitted(k) => k.diffuse.varies() || k.mirror.varies() || k.transmission.varies(),
+        MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
+            reflectance.varies()
+        }
+        MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
+            reflectance.varies() || transmittance.varies()
+        }
+        MaterialKind::Conductor { metal, .. } | MaterialKind::CoatedConductor { metal, .. } => match metal {
+            Metal::Reflectance(reflectance) => reflectance.varies(),
+            Metal::Indices { eta, k } => eta.varies() || k.varies(),
+        },
+        MaterialKind::Mix { .. } => true,
+        MaterialKind::Principled(look) => look.base_color.varies(),
+        MaterialKind::Unlit { albedo, .. } => albedo.varies(),
+        MaterialKind::Dielectric { .. }
+        | MaterialKind::ThinDielectric { .. }
+        | MaterialKind::ShadowCatcher { .. }
+        | MaterialKind::Interface => false,
+    };
+    (!varies).then(|| shown(of_kind(kind, &[], textures, &TexturePoint::NOWHERE)))
+}
+
+fn shown(color: Spectrum) -> [f32; 3] {
+    color.rgb().map(|c| c.max(0.0))
 }
 
 fn of_kind(

@@ -6,7 +6,7 @@ use lookfrom_scene::scene::TextureId;
 
 use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
-use super::{Material, approximate, pictures, principled};
+use super::{Material, albedo, approximate, pictures, principled};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
@@ -28,8 +28,15 @@ impl<'a> Compiler<'a> {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
-        let compiled =
-            Material { pictures, varies, kind, bump_mapping, medium: None, whitted: self.whitted(&whitted) };
+        let compiled = Material {
+            albedo: albedo::constant(&kind, self.textures),
+            pictures,
+            varies,
+            kind,
+            bump_mapping,
+            medium: None,
+            whitted: self.whitted(&whitted),
+        };
         let absorption = whitted.absorption;
         self.whitted.push(whitted);
         (compiled, absorption)

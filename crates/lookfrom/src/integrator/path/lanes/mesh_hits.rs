@@ -1,19 +1,19 @@
 //! Hits on triangle meshes, shaded in lanes from the hit on: most of most pictures.
 
-use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Hit, OriginPrimitive};
-use lookfrom_simd::{Float, Kernel, LaneMask, Simd, dispatch, f32x8, level, mask64x8, prelude::*};
+use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, level, prelude::*};
 
 use super::bent_frames::BentFrames;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
 use super::{Item, Memory};
-use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, store};
-use crate::core::points::{StoredPlacement, gather_placements};
+use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, store};
+use crate::core::points::StoredPlacement;
 use crate::core::vector::Vector;
+use crate::integrator::first_mesh_hits::{points_on_meshes, texture_point};
 use crate::integrator::path::PathTracer;
-use crate::integrator::{Event, FirstSurface, Integrator, Path, Probe, SampleStream, StepOutput};
-use crate::primitive::{Mesh, VertexData, gather_triangles};
+use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::primitive::Mesh;
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
@@ -75,49 +75,6 @@ impl MeshHit<'_> {
     fn passes_back_faces(&self) -> bool {
         self.mesh.binding.single_sided && !self.path.previous.blurred
     }
-
-    /// The inputs of texture evaluation in a lane.
-    #[inline]
-    fn texture_point(
-        &self,
-        world: &World,
-        surfaces: &SurfaceColumns,
-        [u, v]: [f32; 2],
-        lane: usize,
-    ) -> TexturePoint<'_> {
-        let Hit { primitive, u: b1, v: b2, .. } = *self.hit;
-        let point = TexturePoint {
-            uv: Vec2::new(u, v),
-            world: world.origin + DVec3::from_array(surfaces.position(lane)),
-            color: self.mesh.color(primitive as usize, b1, b2),
-            n: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
-            ..TexturePoint::NOWHERE
-        };
-        if !self.mesh.has_vertex_data() {
-            return point;
-        }
-        let VertexData { more_uvs, opacity } = self.mesh.vertex_data(primitive as usize, b1, b2);
-        TexturePoint { more_uvs, opacity, ..point }
-    }
-
-    /// The surface in a lane, for AOVs.
-    fn first_surface(
-        &self,
-        world: &World,
-        (surfaces, bent): (&SurfaceColumns, &BentFrames),
-        uv: &Columns<2>,
-        point: &TexturePoint,
-        lane: usize,
-    ) -> FirstSurface {
-        FirstSurface {
-            position: DVec3::from_array(surfaces.position(lane)),
-            ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
-            ns: if self.material.has_bumps() { surfaces.ns(lane) } else { row(&bent.ns, lane) }.into(),
-            wo: surfaces.wo(lane).into(),
-            uv: row(uv, lane).into(),
-            albedo: material::albedo(&world.materials, &world.textures, self.material, point),
-        }
-    }
 }
 
 impl PathTracer {
@@ -137,8 +94,12 @@ impl PathTracer {
         });
         let Memory { points: mesh_points, scattered } = memory;
         let varies = hits.iter().any(|hit| hit.material.varies);
-        let leaves_surfaces = !output.queues.first_surfaces.is_empty();
-        MeshKernel { hits: &hits, varies, leaves_surfaces, points: mesh_points }.set_points();
+        // Camera rays' surfaces, which AOVs need.
+        let are_first = match output.queues.first_surfaces.are_wanted() {
+            true => bitmask(&by_lane!(lane => hits[lane].path.address == Path::ROOT)),
+            false => 0,
+        };
+        MeshKernel { hits: &hits, varies, are_first: are_first != 0, points: mesh_points }.set_points();
         let MeshPoints { surfaces, uv, front, bent } = mesh_points;
         let front = *front;
 
@@ -165,7 +126,8 @@ impl PathTracer {
         if varies {
             let points = varying.insert([TexturePoint::NOWHERE; LANES]);
             for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
-                points[lane] = hit.texture_point(world, surfaces, row(uv, lane), lane);
+                let at = [surfaces.position(lane), surfaces.ng(lane)];
+                points[lane] = texture_point(world, hit.mesh, hit.hit, at, row(uv, lane));
             }
             look_ups = world.textures.look_up_lanes(&pictures, points);
             if let Some(look_ups) = &look_ups {
@@ -203,14 +165,18 @@ impl PathTracer {
             rows[lane] = row;
         }
         bent.bend(surfaces, front);
-        if leaves_surfaces {
-            for lane in LaneMask(active) {
-                let hit = &hits[lane];
-                if hit.path.address == Path::ROOT {
-                    let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
-                    output.queues.first_surfaces[hit.path.slot as usize] =
-                        Some(hit.first_surface(world, (surfaces, bent), uv, point, lane));
+        if active & are_first != 0 {
+            let eight = output.queues.first_surfaces.next();
+            surfaces.leave(eight);
+            (eight.lanes, eight.ns, eight.uv) = (active & are_first, bent.ns, *uv);
+            for (lane, hit) in hits.iter().enumerate() {
+                let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
+                let albedo = material::albedo(&world.materials, &world.textures, hit.material, point);
+                set_row(&mut eight.albedo, lane, albedo);
+                if hit.material.has_bumps() {
+                    set_row(&mut eight.ns, lane, surfaces.ns(lane));
                 }
+                eight.slots[lane] = hit.path.slot;
             }
         }
         let Some(first) = &rows[0] else { return };
@@ -279,8 +245,8 @@ struct MeshKernel<'a> {
     hits: &'a [MeshHit<'a>; LANES],
     /// Whether any material varies.
     varies: bool,
-    /// Whether AOVs may need the surfaces.
-    leaves_surfaces: bool,
+    /// Whether AOVs need the surfaces.
+    are_first: bool,
     points: &'a mut MeshPoints,
 }
 
@@ -296,22 +262,14 @@ impl Kernel for MeshKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { hits, varies, leaves_surfaces, points } = self;
-        let triangles = gather_triangles(
+        let Self { hits, varies, are_first, points } = self;
+        let at = points_on_meshes(
             simd,
             &by_lane!(lane => hits[lane].mesh),
-            &by_lane!(lane => hits[lane].hit.primitive),
-            varies || leaves_surfaces,
+            &by_lane!(lane => hits[lane].hit),
+            &by_lane!(lane => hits[lane].placement),
+            varies || are_first,
         );
-        let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.u));
-        let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.v));
-        let mut at = triangles.points(u, v);
-        if let Some(first) = hits.iter().find_map(|hit| hit.placement) {
-            let are_placed = bitmask(&by_lane!(lane => hits[lane].placement.is_some()));
-            let rows = by_lane!(lane => hits[lane].placement.unwrap_or(first).placement());
-            let placements = gather_placements(simd, &by_lane!(lane => &rows[lane]));
-            at = at.placed(mask64x8::from_bitmask(simd, are_placed.into()), &placements);
-        }
         let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
         let wide_wo = -direction.widen().normalize();
         let wo = Vector::narrow(wide_wo);
@@ -322,7 +280,7 @@ impl Kernel for MeshKernel<'_> {
         points.surfaces.set(at.points, at.ng, [s, t, n], wo);
         points.uv = [at.uv[0].into(), at.uv[1].into()];
         points.front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
-        if leaves_surfaces || hits.iter().any(|hit| hit.material.bends_frames()) {
+        if are_first || hits.iter().any(|hit| hit.material.bends_frames()) {
             let dpdv = Vector::narrow(at.shading_dpdv);
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
             points.bent.dpdv = store(dpdv);

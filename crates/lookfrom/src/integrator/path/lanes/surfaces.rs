@@ -5,6 +5,7 @@ use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, prelude::*};
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
+use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
 
 /// Eight surfaces in memory, by component.
@@ -94,6 +95,12 @@ impl SurfaceColumns {
     #[inline]
     pub(super) fn wo(&self, lane: usize) -> [f32; 3] {
         row(&self.wo, lane)
+    }
+
+    /// The same for AOVs.
+    #[inline]
+    pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
+        (first.position, first.ng, first.wo) = (self.position, self.ng, self.wo);
     }
 
     /// The position of a lane.
