@@ -73,8 +73,8 @@ pub fn decode(
         match decode_common(bytes, Path::new(name), &at, context)? {
             (picture, memory) if is_deep(&picture) => floats_of(picture, memory, encoding),
             (picture, memory) => {
-                let (width, height) = (picture.width(), picture.height());
-                let texels = picture.into_rgba8().pixels().map(|pixel| pixel.0).collect();
+                let (width, height, texels) = (picture.width(), picture.height(), shallow(&picture));
+                drop(picture);
                 return Ok(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context));
             }
         }
@@ -91,6 +91,17 @@ pub fn decode(
         context.warn(&at, format!("{bad} values are not finite numbers; each becomes 0"));
     }
     Ok(kept(Image::from_linear_and_alpha(name, width, height, texels, alpha), memory, context))
+}
+
+/// The texels of an image of at most 8 bits per channel, made at once from what the decoder returned.
+fn shallow(picture: &DynamicImage) -> Vec<[u8; 4]> {
+    let bytes = picture.as_bytes();
+    match picture.color().channel_count() {
+        1 => bytes.iter().map(|&grey| [grey, grey, grey, 255]).collect(),
+        2 => bytes.as_chunks().0.iter().map(|&[grey, alpha]| [grey, grey, grey, alpha]).collect(),
+        3 => bytes.as_chunks().0.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
+        _ => bytes.as_chunks().0.to_vec(),
+    }
 }
 
 /// An image that stays; of the memory in which it was decoded only its own is kept.

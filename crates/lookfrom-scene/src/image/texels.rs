@@ -38,7 +38,7 @@ enum Stored {
 }
 
 impl Quad {
-    /// Four black texels without opacity.
+    /// Four black texels without opacity, of any image.
     pub const BLACK: Self = Self(Stored::Bytes([[0; 4]; 4]));
 }
 
@@ -137,31 +137,52 @@ impl Image {
         }
     }
 
-    /// Four texels as they are stored.
+    /// The four texels in two columns and two rows of the image, as they are stored: those of the first row, then those of the
+    /// second.
     ///
     /// # Panics
-    /// If there is no such texel.
-    #[inline]
-    pub fn quad(&self, indices: [usize; 4]) -> Quad {
-        match &self.texels {
-            Texels::Bytes { texels, .. } => Quad(Stored::Bytes(indices.map(|index| texels[index]))),
-            Texels::Floats { texels, alpha } => Quad(Stored::Floats(indices.map(|index| {
-                let [r, g, b] = texels[index];
-                [r, g, b, alpha.get(index).copied().unwrap_or(1.0)]
-            }))),
-        }
+    /// If they are beyond the last texel.
+    #[inline(always)]
+    pub fn quad(&self, [left, right]: [u32; 2], [top, bottom]: [u32; 2]) -> Quad {
+        let width = self.width as usize;
+        let [top, bottom] = [top as usize * width, bottom as usize * width];
+        let (left, right) = (left as usize, right as usize);
+        let [a, b, c, d] = [top + left, top + right, bottom + left, bottom + right];
+        Quad(match &self.texels {
+            Texels::Bytes { texels, .. } => Stored::Bytes([texels[a], texels[b], texels[c], texels[d]]),
+            Texels::Floats { texels, alpha } => {
+                let mut quad = [[1.0; 4]; 4];
+                for (texel, index) in quad.iter_mut().zip([a, b, c, d]) {
+                    [texel[0], texel[1], texel[2]] = texels[index];
+                }
+                if self.has_alpha {
+                    for (texel, index) in quad.iter_mut().zip([a, b, c, d]) {
+                        texel[3] = alpha[index];
+                    }
+                }
+                Stored::Floats(quad)
+            }
+        })
     }
 
     /// The linear colours and opacities of four texels of this image.
-    #[inline]
+    #[inline(always)]
     pub fn decoded(&self, quad: &Quad) -> [[f32; 4]; 4] {
-        match (quad.0, &self.texels) {
-            (Stored::Bytes(quad), Texels::Bytes { table, .. }) => quad.map(|[r, g, b, a]| {
-                let [r, g, b] = [r, g, b].map(|byte| table[usize::from(byte)]);
-                [r, g, b, if self.has_alpha { f32::from(a) / 255.0 } else { 1.0 }]
-            }),
-            (Stored::Bytes(quad), _) => quad.map(|texel| texel.map(|byte| f32::from(byte) / 255.0)),
-            (Stored::Floats(quad), _) => quad,
+        match (&quad.0, &self.texels) {
+            (Stored::Bytes(quad), Texels::Bytes { table, .. }) => {
+                let mut decoded = [[1.0; 4]; 4];
+                for (texel, [r, g, b, _]) in decoded.iter_mut().zip(quad) {
+                    *texel = [table[usize::from(*r)], table[usize::from(*g)], table[usize::from(*b)], 1.0];
+                }
+                if self.has_alpha {
+                    for (texel, [.., alpha]) in decoded.iter_mut().zip(quad) {
+                        texel[3] = f32::from(*alpha) / 255.0;
+                    }
+                }
+                decoded
+            }
+            (Stored::Floats(quad), _) => *quad,
+            (Stored::Bytes(_), Texels::Floats { .. }) => [[0.0; 4]; 4],
         }
     }
 
@@ -227,7 +248,7 @@ mod tests {
                 };
                 assert_eq!((image.texel(index), image.alpha(index)), (expected, a), "{encoding:?}");
                 assert_eq!(
-                    image.decoded(&image.quad([index; 4])),
+                    image.decoded(&image.quad([index as u32 % 16; 2], [index as u32 / 16; 2])),
                     [[expected[0], expected[1], expected[2], a]; 4]
                 );
             }

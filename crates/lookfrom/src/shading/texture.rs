@@ -139,7 +139,7 @@ impl Textures {
         };
         let curves = curves.into_iter().map(measured).collect();
         let uplifts = color == ColorMode::Spectral;
-        let (nodes, pictures) = Node::compile_all(kinds, uplifts);
+        let (nodes, pictures) = Node::compile_all(kinds, &images, uplifts);
         Self { nodes, pictures, images, curves, uplifts }
     }
 

@@ -65,7 +65,12 @@ impl SkyImage {
     /// The map's colours at (u, v).
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, textures: &Textures, uv: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
-        texture::look_up_lanes(simd, textures.image(self.image), uv, [Wrap::Repeat, Wrap::Clamp])
+        let image = textures.image(self.image);
+        let texels = texture::look_up_lanes(simd, image, uv, [Wrap::Repeat, Wrap::Clamp]);
+        by_lane!(lane => {
+            let [r, g, b, _] = texels[lane];
+            [r, g, b]
+        })
     }
 
     /// The radiance from unit directions, and in the lanes of a mask their densities in [`SkyImage::sample_lanes`].

@@ -54,7 +54,7 @@ impl Textures {
                 Some(gather_spectrum(
                     simd,
                     &by_lane!(lane => {
-                        let [r, g, b] = texels[lane];
+                        let [r, g, b, _] = texels[lane];
                         evaluation.texel([scale * r, scale * g, scale * b], *invert, *filter)
                     }),
                 ))

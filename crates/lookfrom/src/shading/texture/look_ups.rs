@@ -1,20 +1,20 @@
 //! Pictures looked up at eight points at once, before textures ask for them.
 //!
-//! Texels are seldom in the cache. One look-up after another waits for each; here the places of all are computed first and
-//! all texels are fetched together, so that the waits overlap. Textures of one picture and mapping (the roughness and the
+//! Texels are seldom in the cache. One look-up after another would wait for each; here the places of all are computed first
+//! and all texels are fetched together, so that the waits overlap. Textures of one picture and mapping (the roughness and the
 //! metalness of glTF's material) share a look-up.
 
 mod places;
 
-use lookfrom_scene::image::Quad;
+use lookfrom_scene::image::Image;
 use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
 
 use self::places::{Places, UvMap};
 use super::input::{FloatTexture, Input, SpectrumTexture};
 use super::node::Node;
-use super::picture::{Footprint, blended};
+use super::picture::Footprint;
 use super::{TexturePoint, Textures, mapping};
-use crate::core::lanes::{LANES, row};
+use crate::core::lanes::{LANES, by_lane};
 
 /// A picture on a surface: what is looked up there for all textures that read it in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,13 +29,18 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn new(image: usize, mapping: Mapping, wraps: [Wrap; 2], filter: TexelFilter) -> Self {
+    pub(super) fn new(
+        image: usize,
+        mapping: Mapping,
+        wraps: [Wrap; 2],
+        filter: TexelFilter,
+        images: &[Image],
+    ) -> Self {
+        let uv_map = |set, matrix| images.get(image).map(|image| UvMap::new(set, matrix, image, wraps));
         let uv_map = match mapping {
             _ if filter != TexelFilter::Bilinear => None,
-            Mapping::Uv { scale: [s, t], offset } => {
-                Some(UvMap { set: 0, matrix: [[s, 0.0, offset[0]], [0.0, t, offset[1]]] })
-            }
-            Mapping::Affine { set, matrix } => Some(UvMap { set: set as usize, matrix }),
+            Mapping::Uv { scale: [s, t], offset } => uv_map(0, [[s, 0.0, offset[0]], [0.0, t, offset[1]]]),
+            Mapping::Affine { set, matrix } => uv_map(set as usize, matrix),
             _ => None,
         };
         Self { image, mapping, wraps, filter, uv_map }
@@ -122,43 +127,22 @@ impl Textures {
         points: &[TexturePoint<'_>; LANES],
         texels: &mut [[f32; 4]; LANES],
     ) {
-        let pictures: [_; LANES] =
-            std::array::from_fn(|lane| self.pictures.get(sets[lane].0[place] as usize));
-        // Footprints of texture coordinates are computed side by side.
-        let is_one = sets.iter().all(|set| set.0[place] == sets[0].0[place]);
-        let mut places = match pictures[0] {
-            Some(Picture { image, uv_map: Some(map), wraps, .. }) if is_one => {
-                Places::of_one(map, &self.images[*image], *wraps)
-            }
-            _ => Places::NONE,
-        };
+        let pictures = by_lane!(lane => self.pictures.get(sets[lane].0[place] as usize));
+        // Pictures by texture coordinates are looked up side by side; lanes without one do what another does.
+        let mut places = None;
         for (lane, picture) in pictures.iter().enumerate() {
-            if let Some(Picture { image, uv_map: Some(map), wraps, .. }) = picture {
-                if !is_one {
-                    places.set(lane, map, &self.images[*image], *wraps);
-                }
-                places.set_uv(lane, map, &points[lane]);
-            }
+            let Some(Picture { image, wraps, uv_map: Some(map), .. }) = picture else { continue };
+            let (image, uv) = (&self.images[*image], map.uv(&points[lane]));
+            places
+                .get_or_insert_with(|| Places::all_at(map, image, *wraps, uv))
+                .set(lane, map, image, *wraps, uv);
         }
-        let cells = places.cells();
-        // All texels are fetched before any is decoded.
-        let mut fetched = [(Quad::BLACK, [0.0; 4]); LANES];
-        for (lane, picture) in pictures.iter().enumerate() {
-            let Some(picture) = picture else { continue };
-            let image = &self.images[picture.image];
-            let footprint = match picture.uv_map {
-                Some(_) => {
-                    let (cell, weights) = (row(&cells.cell, lane), row(&cells.weights, lane));
-                    Footprint::of_cell(image, cell, weights, picture.wraps)
-                }
-                None => self.footprint(picture, &points[lane]),
-            };
-            fetched[lane] = (footprint.fetch(image), footprint.weights);
+        if let Some(places) = places {
+            *texels = places.look_up();
         }
         for (lane, picture) in pictures.iter().enumerate() {
-            if let Some(picture) = picture {
-                let (quad, weights) = &fetched[lane];
-                texels[lane] = blended(&self.images[picture.image], quad, weights);
+            if let Some(picture @ Picture { image, uv_map: None, .. }) = picture {
+                texels[lane] = self.footprint(picture, &points[lane]).blend(&self.images[*image]);
             }
         }
     }

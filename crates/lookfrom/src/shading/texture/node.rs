@@ -1,6 +1,7 @@
 //! Compiled textures: nodes of a graph whose leaves are constants, curves and images.
 
 use glam::Vec3;
+use lookfrom_scene::image::Image;
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::texture::{Channel, Mapping, TextureKind};
 
@@ -93,24 +94,28 @@ pub(super) enum Node {
 }
 
 impl Node {
-    /// Every texture of a scene, in the same order, and the pictures that they read; `uplifts` where spectra will be
-    /// evaluated.
-    pub(super) fn compile_all(kinds: &[TextureKind], uplifts: bool) -> (Vec<Self>, Vec<Picture>) {
+    /// Every texture of a scene, in the same order, and the pictures that they read, of `images`; `uplifts` where spectra
+    /// will be evaluated.
+    pub(super) fn compile_all(
+        kinds: &[TextureKind],
+        images: &[Image],
+        uplifts: bool,
+    ) -> (Vec<Self>, Vec<Picture>) {
         let mut pictures = Vec::new();
         let nodes = (0..kinds.len())
             .map(|index| match scaled_picture(kinds, index) {
-                Some(picture) => Self::compile(&picture, &mut pictures, uplifts),
-                None => Self::compile(&kinds[index], &mut pictures, uplifts),
+                Some(picture) => Self::compile(&picture, images, &mut pictures, uplifts),
+                None => Self::compile(&kinds[index], images, &mut pictures, uplifts),
             })
             .collect();
         (nodes, pictures)
     }
 
-    fn compile(kind: &TextureKind, pictures: &mut Vec<Picture>, uplifts: bool) -> Self {
+    fn compile(kind: &TextureKind, images: &[Image], pictures: &mut Vec<Picture>, uplifts: bool) -> Self {
         let input = |color: Color| Input::new(color, uplifts);
         match *kind {
             TextureKind::Image { image, mapping, wrap, filter, channel, scale, invert } => {
-                let picture = Picture::new(image.index(), mapping, wrap, filter);
+                let picture = Picture::new(image.index(), mapping, wrap, filter, images);
                 // Textures of one picture follow one another.
                 let known = pictures.iter().rposition(|known| *known == picture).unwrap_or_else(|| {
                     pictures.push(picture);

@@ -1,10 +1,12 @@
 //! Image lookups: filtering and wrapping.
 
+mod lanes;
+
 use lookfrom_scene::image::{Image, Quad};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
-use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
-use crate::core::lanes::{LANES, by_lane};
+pub(crate) use self::lanes::look_up_lanes;
+pub(super) use self::lanes::{look_up_each, signed_size};
 
 /// Coordinates are clamped to this many texels; floats of this size have long lost their fraction.
 const FARTHEST: f32 = 1_073_741_824.0;
@@ -16,34 +18,12 @@ pub fn look_up(image: &Image, st: [f32; 2], wraps: [Wrap; 2], filter: TexelFilte
     [r, g, b]
 }
 
-/// The colours at eight places of an image, bilinearly blended: as [`look_up`].
-#[inline(always)]
-pub(crate) fn look_up_lanes<S: Simd>(
-    simd: S,
-    image: &Image,
-    [s, t]: [f32x8<S>; 2],
-    wraps: [Wrap; 2],
-) -> [[f32; 3]; LANES] {
-    let size = [image.width, image.height].map(|size| f32x8::splat(simd, size as f32));
-    let ([column, row], weights) = bilinear(s * size[0], t * size[1]);
-    let (column, row): ([f32; LANES], [f32; LANES]) = (column.into(), row.into());
-    let [a, b, c, d]: [[f32; LANES]; 4] =
-        [weights[0].into(), weights[1].into(), weights[2].into(), weights[3].into()];
-    let footprints = by_lane!(lane =>
-        Footprint::of_cell(image, [column[lane], row[lane]], [a[lane], b[lane], c[lane], d[lane]], wraps));
-    // All texels are fetched together, so that the waits for memory overlap.
-    let quads = by_lane!(lane => footprints[lane].fetch(image));
-    by_lane!(lane => {
-        let [r, g, b, _] = blended(image, &quads[lane], &footprints[lane].weights);
-        [r, g, b]
-    })
-}
-
 /// The texels of an image that are blended at a point, and their weights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Footprint {
-    places: [usize; 4],
-    pub(super) weights: [f32; 4],
+    columns: [u32; 2],
+    rows: [u32; 2],
+    weights: [f32; 4],
 }
 
 impl Footprint {
@@ -55,89 +35,55 @@ impl Footprint {
             TexelFilter::Nearest => {
                 let column = wrapped(split(x).0, image.width, wraps[0]);
                 let row = wrapped(split(y).0, image.height, wraps[1]);
-                let (place, weight) = place(image, column, row);
-                Self { places: [place; 4], weights: [weight, 0.0, 0.0, 0.0] }
+                let weight = if column.is_some() && row.is_some() { 1.0 } else { 0.0 };
+                Self {
+                    columns: [column.unwrap_or(0); 2],
+                    rows: [row.unwrap_or(0); 2],
+                    weights: [weight, 0.0, 0.0, 0.0],
+                }
             }
             TexelFilter::Bilinear => {
                 // texel centres are at halves
                 let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
                 let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-                Self { places: [0; 4], weights }.around(image, [x, y], wraps)
+                Self::around(image, [x, y], weights, wraps)
             }
         }
     }
 
-    /// Bilinear footprints from the cells and weights that [`bilinear`] computes.
+    /// The texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
     #[inline]
-    pub(super) fn of_cell(image: &Image, cell: [f32; 2], weights: [f32; 4], wraps: [Wrap; 2]) -> Self {
-        Self { places: [0; 4], weights }.around(image, cell.map(|x| x as i32), wraps)
-    }
-
-    /// The same weights for the texels at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
-    #[inline]
-    fn around(self, image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> Self {
+    fn around(image: &Image, [x, y]: [i32; 2], weights: [f32; 4], wraps: [Wrap; 2]) -> Self {
         let inside = |x: i32, size: u32| x >= 0 && (x as u32) < size - 1;
         if inside(x, image.width) && inside(y, image.height) {
             // No wrapping is needed, as nearly always.
-            let width = image.width as usize;
-            let top = y as usize * width + x as usize;
-            return Self { places: [top, top + 1, top + width, top + width + 1], ..self };
+            let (x, y) = (x as u32, y as u32);
+            return Self { columns: [x, x + 1], rows: [y, y + 1], weights };
         }
-        self.around_edge(image, [x, y], wraps)
+        Self::around_edge(image, [x, y], weights, wraps)
     }
 
     #[inline(never)]
-    fn around_edge(mut self, image: &Image, [x, y]: [i32; 2], wraps: [Wrap; 2]) -> Self {
-        let [left, right] = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
-        let [top, bottom] = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
-        for (k, (column, row)) in
-            [(left, top), (right, top), (left, bottom), (right, bottom)].into_iter().enumerate()
-        {
-            let (place, weight) = place(image, column, row);
-            self.places[k] = place;
-            self.weights[k] *= weight;
+    fn around_edge(image: &Image, [x, y]: [i32; 2], mut weights: [f32; 4], wraps: [Wrap; 2]) -> Self {
+        let columns = [x, x + 1].map(|x| wrapped(x, image.width, wraps[0]));
+        let rows = [y, y + 1].map(|y| wrapped(y, image.height, wraps[1]));
+        for (k, weight) in weights.iter_mut().enumerate() {
+            *weight *= if columns[k % 2].is_some() && rows[k / 2].is_some() { 1.0 } else { 0.0 };
         }
-        self
+        Self { columns: columns.map(|x| x.unwrap_or(0)), rows: rows.map(|y| y.unwrap_or(0)), weights }
     }
 
     /// The texels, as they are stored.
     #[inline(always)]
-    pub(super) fn fetch(&self, image: &Image) -> Quad {
-        image.quad(self.places)
+    fn fetch(&self, image: &Image) -> Quad {
+        image.quad(self.columns, self.rows)
     }
 
     /// The blended colour and opacity.
     #[inline]
     pub(super) fn blend(&self, image: &Image) -> [f32; 4] {
-        blended(image, &self.fetch(image), &self.weights)
-    }
-}
-
-/// The colour and opacity of texels of an image that were fetched, blended by weights.
-#[inline(always)]
-pub(super) fn blended(image: &Image, quad: &Quad, w: &[f32; 4]) -> [f32; 4] {
-    let [a, b, c, d] = image.decoded(quad);
-    std::array::from_fn(|i| w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i])
-}
-
-/// The column and row, as whole numbers, of the first of the four texels around (x, y), measured in texels, and the weights
-/// of the four: as [`Footprint::new`] has them, at any width.
-#[inline(always)]
-pub(super) fn bilinear<R: Real>(x: R, y: R) -> ([R; 2], [R; 4]) {
-    // texel centres are at halves
-    let [x, y] = [Float::clamp(x - 0.5, -FARTHEST, FARTHEST), Float::clamp(y - 0.5, -FARTHEST, FARTHEST)];
-    let cell = [Float::floor(x), Float::floor(y)];
-    let (fx, fy) = (x - cell[0], y - cell[1]);
-    let (gx, gy) = (x.like(1.0) - fx, x.like(1.0) - fy);
-    (cell, [gx * gy, fx * gy, gx * fy, fx * fy])
-}
-
-/// The index of the texel at a column and a row, and the weight 1; the weight 0 where there is none.
-#[inline]
-fn place(image: &Image, column: Option<usize>, row: Option<usize>) -> (usize, f32) {
-    match (column, row) {
-        (Some(x), Some(y)) => (y * image.width as usize + x, 1.0),
-        _ => (0, 0.0),
+        let ([a, b, c, d], w) = (image.decoded(&self.fetch(image)), &self.weights);
+        std::array::from_fn(|i| w[0] * a[i] + w[1] * b[i] + w[2] * c[i] + w[3] * d[i])
     }
 }
 
@@ -153,10 +99,10 @@ fn split(x: f32) -> (i32, f32) {
 }
 
 /// The column (or row) after wrapping; `None` for a black one outside.
-fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<usize> {
+fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<u32> {
     // Without a division in the common case.
     if x >= 0 && (x as u32) < size {
-        return Some(x as usize);
+        return Some(x as u32);
     }
     let (x, size) = (i64::from(x), i64::from(size));
     let inside = match wrap {
@@ -168,7 +114,7 @@ fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<usize> {
         Wrap::Clamp => x.clamp(0, size - 1),
         Wrap::Black => return None,
     };
-    Some(inside as usize)
+    Some(inside as u32)
 }
 
 #[cfg(test)]
@@ -185,7 +131,7 @@ mod tests {
         for size in [1, 3, 1000, u32::MAX] {
             for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
                 for x in [i32::MIN, -1, 0, i32::MAX] {
-                    assert!(wrapped(x, size, wrap).unwrap() < size as usize);
+                    assert!(wrapped(x, size, wrap).unwrap() < size);
                 }
             }
         }
@@ -197,15 +143,15 @@ mod tests {
         let image = Image::from_linear("", 4, 3, texels);
         for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
             for (x, y) in (-9..9).flat_map(|x| (-9..9).map(move |y| (x, y))) {
-                let weights = Footprint { places: [0; 4], weights: [0.5, 0.25, 0.125, 0.0625] };
-                let blended = weights.around(&image, [x, y], [wrap; 2]).blend(&image);
+                let weights = [0.5, 0.25, 0.125, 0.0625];
+                let blended = Footprint::around(&image, [x, y], weights, [wrap; 2]).blend(&image);
                 // The long way: each texel by itself, black beyond the edges.
                 let mut expected = [0.0; 4];
                 for (k, [x, y]) in [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].into_iter().enumerate() {
                     let (Some(x), Some(y)) = (wrapped(x, 4, wrap), wrapped(y, 3, wrap)) else { continue };
-                    let [r, g, b] = image.texel(4 * y + x);
+                    let [r, g, b] = image.texel((4 * y + x) as usize);
                     for (sum, value) in expected.iter_mut().zip([r, g, b, 1.0]) {
-                        *sum += weights.weights[k] * value;
+                        *sum += weights[k] * value;
                     }
                 }
                 assert_eq!(blended, expected, "{wrap:?} at {x}, {y}");
