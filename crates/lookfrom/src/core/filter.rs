@@ -173,7 +173,10 @@ impl Table {
     fn invert(&self, share: f32) -> f32 {
         // Find the last cell that begins at or before it: one of positive width in the table.
         let mut cell = usize::from(self.first[(share * PARTS as f32) as usize]);
-        while cell < CELLS - 1 && self.cumulative[cell + 1] <= share {
+        // Two steps without a branch, which could not be predicted; further ones are rare. The last cell ends at 1.
+        cell += usize::from(self.cumulative[cell + 1] <= share);
+        cell += usize::from(self.cumulative[cell + 1] <= share);
+        while self.cumulative[cell + 1] <= share {
             cell += 1;
         }
         let (start, end) = (self.cumulative[cell], self.cumulative[cell + 1]);

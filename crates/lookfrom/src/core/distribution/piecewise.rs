@@ -4,6 +4,7 @@
 //! integers, and a cell takes five bytes, since such tables are as large as environment maps and are read at random.
 
 use super::{cell, place, usable};
+use crate::core::lanes::{LANES, by_lane};
 
 /// A density over the unit square that is constant in each cell of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,11 +61,26 @@ impl Piecewise2D {
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
         let (row, v, _) = choose(&self.rows, &self.row_guide, u[1]);
-        let stride = self.column_guide.len() / self.height;
-        let guide = &self.column_guide[row * stride..(row + 1) * stride];
-        let (column, u, share) = choose(self.row(row), guide, u[0]);
-        let point = [place(column, u, self.width), place(row, v, self.height)];
-        (point, share as f32 * self.per_unit[row])
+        let (column, u, share) = choose(self.row(row), self.guide_of(row), u[0]);
+        (self.point([column, row], [u, v]), share as f32 * self.per_unit[row])
+    }
+
+    /// [`Piecewise2D::sample`] in each lane. The tables of large maps are not in the caches, so each of them is read for all lanes
+    /// before the next one: the waits overlap.
+    #[inline(always)]
+    pub(crate) fn sample_lanes(&self, [u, v]: [[f32; LANES]; 2]) -> ([[f32; 2]; LANES], [f32; LANES]) {
+        let rows = by_lane!(lane => choose(&self.rows, &self.row_guide, v[lane]));
+        let ranges = by_lane!(lane => range(self.guide_of(rows[lane].0), goal(u[lane])));
+        let columns = by_lane!(lane => entry(self.row(rows[lane].0), ranges[lane], goal(u[lane])));
+        let points = by_lane!(lane =>
+            self.point([columns[lane].0, rows[lane].0], [columns[lane].1, rows[lane].1]));
+        (points, by_lane!(lane => columns[lane].2 as f32 * self.per_unit[rows[lane].0]))
+    }
+
+    /// The point at a position (0 … 1) in a cell.
+    #[inline]
+    fn point(&self, [column, row]: [usize; 2], [u, v]: [f64; 2]) -> [f32; 2] {
+        [place(column, u, self.width), place(row, v, self.height)]
     }
 
     /// The density at a point, over the area of the unit square: its integral is 1. 0 outside of the square.
@@ -76,6 +92,12 @@ impl Piecewise2D {
         let (column, row) = (cell(uv[0], self.width), cell(uv[1], self.height));
         let ends = &self.row(row)[column..column + 2];
         (ends[1] - ends[0]) as f32 * self.per_unit[row]
+    }
+
+    #[inline]
+    fn guide_of(&self, row: usize) -> &[u32] {
+        let stride = self.column_guide.len() / self.height;
+        &self.column_guide[row * stride..(row + 1) * stride]
     }
 
     #[inline]
@@ -125,9 +147,25 @@ fn push_guide(guide: &mut Vec<u32>, sums: &[u32]) {
 /// The entry whose interval contains `u`, the position in it (0 … 1), and its probability. `sums` must end in 1.
 #[inline]
 fn choose(sums: &[u32], guide: &[u32], u: f32) -> (usize, f64, u32) {
-    let goal = ((u.max(0.0) * ONE as f32) as u32).min(ONE - 1);
+    entry(sums, range(guide, goal(u)), goal(u))
+}
+
+/// A number of 0 … 1 in fixed point, below 1.
+#[inline]
+fn goal(u: f32) -> u32 {
+    ((u.max(0.0) * ONE as f32) as u32).min(ONE - 1)
+}
+
+/// The first and the last entry that may contain a goal, by the guide table.
+#[inline]
+fn range(guide: &[u32], goal: u32) -> [usize; 2] {
     let part = goal as usize * (guide.len() - 1) / ONE as usize;
-    let [from, to] = [guide[part] as usize, guide[part + 1] as usize];
+    [guide[part] as usize, guide[part + 1] as usize]
+}
+
+/// The entry of a range that contains a goal, the position in it (0 … 1), and its probability.
+#[inline]
+fn entry(sums: &[u32], [from, to]: [usize; 2], goal: u32) -> (usize, f64, u32) {
     // The first entry that ends beyond the goal has positive width.
     let index = from + sums[from + 1..to + 1].partition_point(|&end| end <= goal);
     let share = sums[index + 1] - sums[index];
@@ -181,6 +219,25 @@ mod tests {
                 assert_eq!(Some(index), walked);
                 let back = (f64::from(sums[index]) + rest * f64::from(share)) / f64::from(ONE);
                 assert!(weights.clone().nth(index) > Some(0.0) && (back - f64::from(u)).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn all_lanes_are_each_on_its_own() {
+        for round in 0..200 {
+            let (width, height) = (1 + round as usize % 61, 1 + round as usize % 23);
+            let weights: Vec<f32> = (0..(width * height) as u64)
+                .map(|k| libm::exp2f((hash::pair(round, k) % 60) as f32 - 30.0))
+                .collect();
+            let grid = Piecewise2D::new(&weights, width, height);
+            let number = |axis: u64, lane: usize| {
+                (hash::pair(1000 * round + lane as u64, axis) >> 40) as f32 / 16_777_216.0
+            };
+            let u = [0, 1].map(|axis| std::array::from_fn(|lane| number(axis, lane)));
+            let (points, densities) = grid.sample_lanes(u);
+            for lane in 0..LANES {
+                assert_eq!((points[lane], densities[lane]), grid.sample([u[0][lane], u[1][lane]]));
             }
         }
     }

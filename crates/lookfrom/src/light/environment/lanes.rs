@@ -46,16 +46,15 @@ impl SkyImage {
         &self,
         simd: S,
         textures: &Textures,
-        [u0, u1]: [[f32; LANES]; 2],
+        u: [[f32; LANES]; 2],
         modes: &[&SpectralMode; LANES],
     ) -> SkySamples {
         let choice = self.choice(IncompletePdf::Allowed);
-        let chosen = by_lane!(lane => choice.sample([u0[lane], u1[lane]]));
-        let uv = by_lane!(lane => chosen[lane].0);
+        let (uv, pdf) = choice.sample_lanes(u);
         let u = f32x8::load_array(simd, by_lane!(lane => uv[lane][0]));
         let v = f32x8::load_array(simd, by_lane!(lane => uv[lane][1]));
         let (of_light, per_solid_angle) = latitude_longitude_direction([u, v]);
-        let pdf = f32x8::load_array(simd, by_lane!(lane => chosen[lane].1)) * per_solid_angle;
+        let pdf = f32x8::load_array(simd, pdf) * per_solid_angle;
         let wi = scatter(self.in_world(of_light));
         let rgb = self.texels(simd, textures, [u, v]);
         let li = by_lane!(lane => self.radiance(rgb[lane], modes[lane]));
