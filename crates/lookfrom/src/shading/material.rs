@@ -58,7 +58,7 @@ pub struct Material {
     pub pictures: PictureSet,
     /// False if its scattering function is known to be the same everywhere.
     pub varies: bool,
-    /// Its [`albedo`] where that is known to be the same everywhere.
+    /// Its [`albedo()`] where that is known to be the same everywhere.
     albedo: Option<[f32; 3]>,
 }
 

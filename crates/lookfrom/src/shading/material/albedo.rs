@@ -20,7 +20,7 @@ pub fn albedo(
 }
 
 impl Material {
-    /// Its [`albedo`], where that is known to be the same everywhere.
+    /// Its [`albedo()`], where that is known to be the same everywhere.
     #[inline]
     pub(crate) fn even_albedo(&self) -> Option<[f32; 3]> {
         self.albedo
