@@ -3,8 +3,9 @@
 //! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
-//! denoiser, are in [`aov`], and `first_hits` of eight pixels side by side; variances in the sensor's channels in `channels`; noise estimates in `noise`; firefly
-//! suppression in `fireflies`; which samples it holds, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
+//! denoiser, are in [`aov`], those of eight pixels side by side in `first_hits`; variances in the sensor's channels in
+//! `channels`; noise estimates in `noise`; firefly suppression in `fireflies`; which samples it holds, in `ledger`; its
+//! numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
 //! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
 

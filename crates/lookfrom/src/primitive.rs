@@ -21,13 +21,13 @@ use lookfrom_bvh::{Hit, Point};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
-pub(crate) use mesh::lanes::gather_triangles;
+pub(crate) use mesh::lanes::{gather_triangles, points_on_meshes};
 pub use mesh::{Mesh, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub use sphere::{SphereBinding, Spheres};
-pub(crate) use triangle::{TrianglePoints, Triangles};
+pub(crate) use triangle::Triangles;
 
 /// The material, light and other attributes of a primitive's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

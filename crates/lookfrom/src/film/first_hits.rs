@@ -9,12 +9,9 @@ use lookfrom_simd::{
 };
 
 use super::aov::{AovSums, LayerSums, TWO_TO_32};
-use super::sums::{INTEGERS, add};
+use super::sums::{INTEGERS, MOST_SAMPLES, add};
 use super::{Aovs, FEATURE_SAMPLES, FilmTile, SampleId};
 use crate::core::lanes::{Columns, LANES, load, row, set_row};
-
-/// Maximum number of samples of a pixel that are summed in 64 bits: less than 2⁶⁴ / 2⁵¹.
-const MOST_SAMPLES: u32 = 4096;
 
 /// Positions and texture coordinates from this magnitude on are multiples of 2⁻⁴⁷: 2⁻²⁴.
 const LEAST: f32 = 1.0 / 16_777_216.0;

@@ -16,7 +16,7 @@ use crate::core::lanes::{LANES, by_lane};
 const BOUND: f64 = 2.0;
 
 /// Maximum number of samples of a pixel that are summed in 64 bits: less than 2⁶⁴ / 2⁵¹.
-const MOST_SAMPLES: u32 = 4096;
+pub(super) const MOST_SAMPLES: u32 = 4096;
 
 /// 1.5 · 2⁵²: added to it, an integer below 2⁵¹ in magnitude is in the lowest bits of the sum.
 pub(super) const INTEGERS: f64 = 6_755_399_441_055_744.0;

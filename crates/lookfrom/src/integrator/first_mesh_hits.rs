@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, NONE, Ray};
-use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, mask64x8, prelude::*};
+use lookfrom_simd::{Kernel, Simd, dispatch, level};
 
 use super::FirstSurfaceColumns;
-use crate::core::lanes::{LANES, bitmask, by_lane, gather, row, set_row, store, store_f64};
-use crate::core::points::{StoredPlacement, gather_placements};
+use crate::core::lanes::{LANES, by_lane, gather, row, set_row, store, store_f64};
+use crate::core::points::StoredPlacement;
 use crate::core::vector::Vector;
-use crate::primitive::{Mesh, TrianglePoints, VertexData, gather_triangles};
+use crate::primitive::{Mesh, VertexData, points_on_meshes};
 use crate::shading::material::{self, Material, MaterialKind};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
@@ -117,24 +117,4 @@ impl Kernel for SurfaceKernel<'_> {
         eight.wo = store(Vector::narrow(-direction.widen().normalize()));
         eight.uv = [at.uv[0].into(), at.uv[1].into()];
     }
-}
-
-/// The points of hits on meshes, in instances or not.
-#[inline(always)]
-pub(super) fn points_on_meshes<S: Simd>(
-    simd: S,
-    meshes: &[&Mesh; LANES],
-    hits: &[&Hit; LANES],
-    placements: &[Option<StoredPlacement<'_>>; LANES],
-    wants_uvs: bool,
-) -> TrianglePoints<f32x8<S>> {
-    let triangles = gather_triangles(simd, meshes, &by_lane!(lane => hits[lane].primitive), wants_uvs);
-    let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].u));
-    let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].v));
-    let at = triangles.points(u, v);
-    let Some(first) = placements.iter().find_map(|placement| *placement) else { return at };
-    let are_placed = bitmask(&by_lane!(lane => placements[lane].is_some()));
-    let rows = by_lane!(lane => placements[lane].unwrap_or(first).placement());
-    let placements = gather_placements(simd, &by_lane!(lane => &rows[lane]));
-    at.placed(mask64x8::from_bitmask(simd, are_placed.into()), &placements)
 }

@@ -1,11 +1,13 @@
-//! Triangles of eight meshes side by side.
+//! Triangles of eight meshes side by side, and points on them.
 
+use lookfrom_bvh::Hit;
 use lookfrom_simd::{LaneMask, Simd, f32x4, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::Mesh;
-use crate::core::lanes::{LANES, by_lane, from_rows, load, row_at, set_row};
+use crate::core::lanes::{LANES, bitmask, by_lane, from_rows, load, row_at, set_row};
+use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
-use crate::primitive::triangle::{Tangent, Triangles};
+use crate::primitive::triangle::{Tangent, TrianglePoints, Triangles};
 
 /// A triangle in each lane: its mesh and its index there. Texture coordinates are 0 where neither they nor derivatives are
 /// wanted.
@@ -81,6 +83,26 @@ pub(crate) fn gather_triangles<S: Simd>(
     triangles
 }
 
+/// The points of hits on meshes, in instances or not.
+#[inline(always)]
+pub(crate) fn points_on_meshes<S: Simd>(
+    simd: S,
+    meshes: &[&Mesh; LANES],
+    hits: &[&Hit; LANES],
+    placements: &[Option<StoredPlacement<'_>>; LANES],
+    wants_uvs: bool,
+) -> TrianglePoints<f32x8<S>> {
+    let triangles = gather_triangles(simd, meshes, &by_lane!(lane => hits[lane].primitive), wants_uvs);
+    let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].u));
+    let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].v));
+    let at = triangles.points(u, v);
+    let Some(first) = placements.iter().find_map(|placement| *placement) else { return at };
+    let are_placed = bitmask(&by_lane!(lane => placements[lane].is_some()));
+    let rows = by_lane!(lane => placements[lane].unwrap_or(first).placement());
+    let placements = gather_placements(simd, &by_lane!(lane => &rows[lane]));
+    at.placed(mask64x8::from_bitmask(simd, are_placed.into()), &placements)
+}
+
 /// The normal of a vertex as a row; zero where the mesh has none.
 #[inline(always)]
 fn normal_row<S: Simd>(simd: S, mesh: &Mesh, vertex: u32) -> f32x4<S> {
@@ -98,9 +120,8 @@ mod tests {
     use super::*;
     use crate::core::hash;
     use crate::core::lanes::{by_lane, scatter, scatter_f64};
-    use crate::core::points::{Placement, gather_placements};
+    use crate::core::points::Placement;
     use crate::primitive::MaterialBinding;
-    use crate::primitive::triangle::TrianglePoints;
 
     /// A number of any exponent from 2⁻²⁰ to 2²⁰.
     fn number(count: u64) -> f32 {

@@ -1,7 +1,7 @@
 //! Hits on triangle meshes, shaded in lanes from the hit on: most of most pictures.
 
 use lookfrom_bvh::{Hit, OriginPrimitive};
-use lookfrom_simd::{Float, Kernel, Simd, dispatch, f32x8, level, prelude::*};
+use lookfrom_simd::{Float, Kernel, LaneMask, Simd, dispatch, f32x8, level, prelude::*};
 
 use super::bent_frames::BentFrames;
 use super::kernel::{LanePaths, ScatterKernel};
@@ -10,10 +10,10 @@ use super::{Item, Memory};
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, store};
 use crate::core::points::StoredPlacement;
 use crate::core::vector::Vector;
-use crate::integrator::first_mesh_hits::{points_on_meshes, texture_point};
+use crate::integrator::first_mesh_hits::texture_point;
 use crate::integrator::path::PathTracer;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
-use crate::primitive::Mesh;
+use crate::primitive::{Mesh, points_on_meshes};
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
@@ -169,7 +169,8 @@ impl PathTracer {
             let eight = output.queues.first_surfaces.next();
             surfaces.leave(eight);
             (eight.lanes, eight.ns, eight.uv) = (active & are_first, bent.ns, *uv);
-            for (lane, hit) in hits.iter().enumerate() {
+            for lane in LaneMask(eight.lanes) {
+                let hit = &hits[lane];
                 let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
                 let albedo = material::albedo(&world.materials, &world.textures, hit.material, point);
                 set_row(&mut eight.albedo, lane, albedo);
