@@ -180,7 +180,21 @@ impl SampleStream {
 
     /// Two numbers in `[0, 1)` of one dimension at this ray.
     pub fn two(&self, dimension: u32) -> [f32; 2] {
-        self.sampler.two(self.sample, hash::pair(self.address, u64::from(dimension)) as u32)
+        self.sampler.two(self.sample, self.hashed(dimension))
+    }
+
+    /// The same; at a camera ray, points that are also well distributed together with those in the pixel. For decisions of
+    /// which no two count in one term of the light, as the points on several lights, or that on a light and the direction
+    /// of the bounce.
+    pub fn two_with_pixel(&self, dimension: u32) -> [f32; 2] {
+        match self.address {
+            Path::ROOT => self.sampler.two_with_pixel(self.sample, self.hashed(dimension)),
+            _ => self.two(dimension),
+        }
+    }
+
+    fn hashed(&self, dimension: u32) -> u32 {
+        hash::pair(self.address, u64::from(dimension)) as u32
     }
 }
 

@@ -30,7 +30,7 @@ pub use area::{
     AreaLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight,
 };
 pub(crate) use area::{AreaSamples, sample_area_lights};
-pub use choice::LightChoice;
+pub use choice::{ChosenLight, LightChoice};
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};
 pub use portal::{Opening, Portal};

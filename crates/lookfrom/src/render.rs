@@ -47,7 +47,7 @@ pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, T
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 4;
+pub const SAMPLING_VERSION: u32 = 5;
 
 /// A world, a view of it and the render settings: everything that determines the light of a picture.
 ///

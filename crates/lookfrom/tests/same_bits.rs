@@ -62,7 +62,7 @@ fn with_and_without_the_feature_parallel() {
     };
     assert_eq!(
         ["glass-and-mirror.toml", "soft-shadows.toml"].map(hash),
-        [0xea69_82ec_1241_cf64, 0x8e7d_90eb_7598_d7a6]
+        [0xab5e_f04a_409c_b972, 0x566c_fb31_c1f7_74d5]
     );
 }
 

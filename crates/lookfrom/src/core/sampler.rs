@@ -12,14 +12,21 @@
 //! (0,m,2)-net: each of the 2ᵐ boxes of any shape 2⁻ᵃ × 2⁻⁽ᵐ⁻ᵃ⁾ holds exactly one. So 2ᵐ samples are best, and a
 //! render can be continued at any count.
 //!
+//! The first decisions at what the camera sees vary with the point in the pixel, as at the edge of a penumbra: their pattern
+//! is the third and fourth dimension of the pixel's own. The four are a (0,4)-sequence in base 4, each two a (0,2)-sequence
+//! of Sobol' (Ahmed et al. 2024, SZ Sequences): of 4ᵐ samples, each of the 4ᵐ boxes whose sides are powers of ¼ holds one.
+//!
 //! *Independent*: random numbers without a pattern, each a hash of its address.
 
 pub(crate) mod lanes;
 
 use lookfrom_scene::settings::Sampler as Kind;
-use lookfrom_simd::{Bits, Real};
+use lookfrom_simd::{Bits, Mask, Real};
 
 use crate::core::hash::{GOLDEN, mix};
+
+/// The dimension of the point in the pixel.
+pub(crate) const PIXEL: u32 = 0;
 
 /// The largest f32 below 1, and the largest number of a sampler: 1 − 2⁻²⁴.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -82,30 +89,75 @@ impl PixelSampler {
     pub fn two(&self, sample: u32, dimension: u32) -> [f32; 2] {
         two::<f32>(self.kind, self.key, sample, u64::from(dimension))
     }
+
+    /// As [`PixelSampler::two`], with points that are also well distributed together with those of [`PIXEL`]. Those of two
+    /// such dimensions are independent where the point in the pixel is given, but not well distributed together: no term
+    /// of the light may depend on both.
+    #[inline]
+    pub(crate) fn two_with_pixel(&self, sample: u32, dimension: u32) -> [f32; 2] {
+        two_with_pixel::<f32>(self.kind, self.key, sample, u64::from(dimension), true)
+    }
 }
 
 /// A point in [0, 1)² for each pixel's key, sample and dimension (below 2³²).
 #[inline(always)]
 fn two<R: Real>(kind: Kind, key: R::Bits64, sample: R::Bits, dimension: R::Bits64) -> [R; 2] {
-    // The 64 bits that identify the pattern of the pixel in a dimension.
-    let pattern = mix(key ^ dimension);
+    let pattern = pattern::<R>(key, dimension);
     match kind {
-        Kind::Sobol => {
-            let index = reversed(scramble_from_the_low_end(reversed(sample), R::low_half(pattern)));
-            // As an integer the first coordinate is the index itself, whose bits would be mirrored at the binary point
-            // (van der Corput 1935).
-            let first = scramble_from_the_low_end(index, R::low_half(pattern >> 32));
-            let seed = mix(pattern.wrapping_add(pattern.like(GOLDEN)));
-            let second = scramble_from_the_low_end(pascal(index), R::low_half(seed));
-            [unit(reversed(first)), unit(reversed(second))]
-        }
-        Kind::Independent => {
-            let number = R::extend(sample);
-            let number = number.wrapping_add(number.like(1)).wrapping_mul(number.like(GOLDEN));
-            let bits = mix(pattern.wrapping_add(number));
-            [unit(R::low_half(bits >> 32)), unit(R::low_half(bits))]
-        }
+        Kind::Sobol => scrambled(shuffled(sample, R::low_half(pattern)), pattern),
+        Kind::Independent => independent(pattern, sample),
     }
+}
+
+/// The same; in the lanes of a mask, in the third and fourth dimension of [`PIXEL`]'s pattern.
+#[inline(always)]
+fn two_with_pixel<R: Real>(
+    kind: Kind,
+    key: R::Bits64,
+    sample: R::Bits,
+    dimension: R::Bits64,
+    mask: R::Mask,
+) -> [R; 2] {
+    if kind == Kind::Independent || !mask.any() {
+        return two(kind, key, sample, dimension);
+    }
+    let pattern = pattern::<R>(key, dimension);
+    let of_pixel = self::pattern::<R>(key, key.like(u64::from(PIXEL)));
+    let order = R::select_bits(mask, R::low_half(of_pixel), R::low_half(pattern));
+    let index = shuffled(sample, order);
+    scrambled(R::select_bits(mask, third(index), index), pattern)
+}
+
+/// The 64 bits that identify the pattern of a pixel in a dimension.
+#[inline(always)]
+fn pattern<R: Real>(key: R::Bits64, dimension: R::Bits64) -> R::Bits64 {
+    mix(key ^ dimension)
+}
+
+/// The index of a sample in the order of a pattern.
+#[inline(always)]
+fn shuffled<B: Bits<Scalar = u32>>(sample: B, order: B) -> B {
+    reversed(scramble_from_the_low_end(reversed(sample), order))
+}
+
+/// The point of Sobol's (0,2)-sequence with an index, scrambled.
+#[inline(always)]
+fn scrambled<R: Real>(index: R::Bits, pattern: R::Bits64) -> [R; 2] {
+    // As an integer the first coordinate is the index itself, whose bits would be mirrored at the binary point
+    // (van der Corput 1935).
+    let first = scramble_from_the_low_end(index, R::low_half(pattern >> 32));
+    let seed = mix(pattern.wrapping_add(pattern.like(GOLDEN)));
+    let second = scramble_from_the_low_end(pascal(index), R::low_half(seed));
+    [unit(reversed(first)), unit(reversed(second))]
+}
+
+/// A hash of the address.
+#[inline(always)]
+fn independent<R: Real>(pattern: R::Bits64, sample: R::Bits) -> [R; 2] {
+    let number = R::extend(sample);
+    let number = number.wrapping_add(number.like(1)).wrapping_mul(number.like(GOLDEN));
+    let bits = mix(pattern.wrapping_add(number));
+    [unit(R::low_half(bits >> 32)), unit(R::low_half(bits))]
 }
 
 /// 32 bits behind the binary point, truncated to the 24 that an f32 below 1 always holds: never rounded up to 1, and
@@ -141,6 +193,28 @@ fn pascal<B: Bits<Scalar = u32>>(bits: B) -> B {
     let bits = bits ^ ((bits >> 4) & bits.like(0x0f0f_0f0f));
     let bits = bits ^ ((bits >> 8) & bits.like(0x00ff_00ff));
     bits ^ (bits >> 16)
+}
+
+/// The generator matrix of a third dimension that makes a (0,4)-sequence with those of Sobol' and with `pascal` of itself,
+/// times a vector of bits (bit 0 first).
+///
+/// Digits of two bits are numbers of GF(4) = {0, 1, α, α + 1}, α² = α + 1. The generalised Pascal matrices C(j, i) aʲ⁻ⁱ
+/// are those of Niederreiter's sequence of as many dimensions as there are a (1987); their product for a and b is that for a + b. So
+/// a = 0 (the index), 1 (`pascal`, whose digits are scrambled besides), α (this one) and α + 1 (both) are four dimensions.
+/// As in `pascal`, digit i sums up all j ⊇ i, times a power of α for each bit that j has more: α¹, α², α⁴ = α, α⁸ = α².
+#[inline(always)]
+fn third<B: Bits<Scalar = u32>>(bits: B) -> B {
+    let bits = bits ^ times_alpha((bits >> 2) & bits.like(0x3333_3333));
+    let bits = bits ^ times_alpha(times_alpha((bits >> 4) & bits.like(0x0f0f_0f0f)));
+    let bits = bits ^ times_alpha((bits >> 8) & bits.like(0x00ff_00ff));
+    bits ^ times_alpha(times_alpha(bits >> 16))
+}
+
+/// Digits of GF(4), two bits each, times α: h α + l becomes (h + l) α + h.
+#[inline(always)]
+fn times_alpha<B: Bits<Scalar = u32>>(digits: B) -> B {
+    let high = (digits >> 1) & digits.like(0x5555_5555);
+    high ^ ((digits << 1) & digits.like(0xaaaa_aaaa)) ^ (high << 1)
 }
 
 /// Owen scrambling of a number whose bits are in reverse order (the most significant one is bit 0): each bit is flipped

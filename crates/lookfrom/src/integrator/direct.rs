@@ -107,7 +107,7 @@ pub(super) fn local_light<P: Probe>(
         let index = index as u32;
         let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
         let is_random = light.illuminates() && !light.is_delta();
-        let u = if is_random { stream.two(index) } else { [0.0; 2] };
+        let u = if is_random { stream.two_with_pixel(index) } else { [0.0; 2] };
         let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
         // Light from behind the surface does not reach its front, whatever the interpolated normal says.
         let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);

@@ -41,7 +41,7 @@ impl Integrator for AmbientOcclusion {
             return;
         }
         let n = surface.ng_facing();
-        let u = stream.two(1);
+        let u = stream.two_with_pixel(1);
         // The visible part of a uniform sky: the mean of visibility, weighted by the cosine over π.
         let (wi, weight) = if self.cosine {
             (warp::cosine_hemisphere(u, n), 1.0)

@@ -14,7 +14,7 @@ use lanes::{HitBatch, Waiting};
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
-use crate::light::{IncompletePdf, LightSampleContext};
+use crate::light::{ChosenLight, IncompletePdf, LightSampleContext};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
@@ -25,9 +25,9 @@ use crate::world::World;
 mod dimension {
     /// The alpha test; the choice between two mixed materials, and of the colour that remains after dispersion.
     pub(super) const PRESENCE: u32 = 0;
-    /// Choice of the light, choice of the lobe.
-    pub(super) const CHOICE: u32 = 1;
-    /// Point on the light.
+    /// Choice of the lobe.
+    pub(super) const LOBE: u32 = 1;
+    /// Choice of the light, and the point on it.
     pub(super) const LIGHT: u32 = 2;
     /// Direction of the BSDF sample.
     pub(super) const DIRECTION: u32 = 3;
@@ -258,14 +258,14 @@ impl PathTracer {
         let Vertex { path, surface, shading, stream, is_catcher } = vertex;
 
         // Sample one light.
-        let [which_light, which_lobe] = stream.two(dimension::CHOICE);
         if self.light_sampling != LightSampling::None && shading.bsdf.lobes().is_non_specular() {
-            let u = stream.two(dimension::LIGHT);
-            self.sample_light(world, vertex, scattering, which_light, u, output);
+            let u = stream.two_with_pixel(dimension::LIGHT);
+            self.sample_light(world, vertex, scattering, u, output);
         }
 
         // Go on in one direction.
-        let u = stream.two(dimension::DIRECTION);
+        let [which_lobe, _] = stream.two(dimension::LOBE);
+        let u = stream.two_with_pixel(dimension::DIRECTION);
         let Some(sample) = self.direction(scattering, which_lobe, u) else { return };
         let wi = sample.wi;
         let cos = shading.cos(wi).abs();
@@ -377,8 +377,7 @@ impl PathTracer {
         world: &World,
         vertex: &Vertex,
         scattering: &Scattering<'_>,
-        which: f32,
-        u: [f32; 2],
+        [which, v]: [f32; 2],
         output: &mut StepOutput<'_, P>,
     ) {
         let Vertex { path, surface, is_catcher, .. } = vertex;
@@ -386,9 +385,11 @@ impl PathTracer {
             point: DVec3::from_array(surface.point.position),
             n: scattering.shading.n(),
         };
-        let Some((index, probability)) = world.light_choice.sample(&from, which) else { return };
+        let Some(chosen) = world.light_choice.sample(&from, which) else { return };
+        let ChosenLight { light: index, probability, rest } = chosen;
         let light = &world.lights[index as usize];
-        let sample = light.sample(&world.textures, &from, u, &output.lanes(path), IncompletePdf::Allowed);
+        let sample =
+            light.sample(&world.textures, &from, [rest, v], &output.lanes(path), IncompletePdf::Allowed);
         let in_vain =
             |sample| Event::LightSampleFailed { address: path.address, light: index, probability, sample };
         let Some(sample) = sample else {

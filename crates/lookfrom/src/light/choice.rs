@@ -14,6 +14,18 @@ use crate::core::lanes::{LANES, by_lane, row, store, store_f64};
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::vector::Vector;
 
+/// A light that was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenLight {
+    /// Its index in the world.
+    pub light: u32,
+    /// The probability of the choice.
+    pub probability: f32,
+    /// The position of `u` in the interval that chooses it: a number in [0, 1) for the choice of a point on the light, so
+    /// that the points on each light stay well distributed.
+    pub rest: f32,
+}
+
 /// A distribution over lights.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
@@ -58,21 +70,27 @@ impl LightChoice {
         Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
     }
 
-    /// The light to sample at a point and the probability of its choice, for `u ∈ [0, 1)`.
-    pub fn sample(&self, at: &LightSampleContext, u: f32) -> Option<(u32, f32)> {
+    /// The light to sample at a point, for `u ∈ [0, 1)`.
+    pub fn sample(&self, at: &LightSampleContext, u: f32) -> Option<ChosenLight> {
         if let Some(weights) = &self.weights {
-            let (place, probability, _) = weights.sample(u);
-            return Some((self.listed[place], probability));
+            let (place, probability, rest) = weights.sample(u);
+            return Some(ChosenLight { light: self.listed[place], probability, rest });
         }
         let in_list = self.share_of_list();
         if u < in_list {
             let count = self.listed.len();
-            let place = ((u / in_list * count as f32) as usize).min(count - 1);
-            return Some((self.listed[place], in_list / count as f32));
+            let at = u / in_list * count as f32;
+            let place = (at as usize).min(count - 1);
+            let rest = (at - place as f32).min(ONE_MINUS_EPSILON);
+            return Some(ChosenLight {
+                light: self.listed[place],
+                probability: in_list / count as f32,
+                rest,
+            });
         }
         let u = ((u - in_list) / (1.0 - in_list)).min(ONE_MINUS_EPSILON);
-        let (light, probability) = self.tree.sample(at.point.as_vec3(), at.n, u)?;
-        Some((light, probability * (1.0 - in_list)))
+        let chosen = self.tree.sample(at.point.as_vec3(), at.n, u)?;
+        Some(ChosenLight { probability: chosen.probability * (1.0 - in_list), ..chosen })
     }
 
     /// [`LightChoice::sample`] for eight surfaces at once, in the lanes of a mask.
@@ -84,12 +102,16 @@ impl LightChoice {
         n: Vector<f32x8<S>>,
         u: f32x8<S>,
         mask: u32,
-    ) -> [Option<(u32, f32)>; LANES] {
+    ) -> [Option<ChosenLight>; LANES] {
         if let Some(weights) = &self.weights {
-            let places = weights.entries(simd, u);
+            let (places, probabilities, rests) = weights.sample_lanes(simd, u);
             return by_lane!(lane => match mask & 1 << lane {
                 0 => None,
-                _ => Some((self.listed[places[lane]], weights.pdf(places[lane]))),
+                _ => Some(ChosenLight {
+                    light: self.listed[places[lane]],
+                    probability: probabilities[lane],
+                    rest: rests[lane],
+                }),
             });
         }
         let is_listed = self.tree.is_empty();
@@ -99,7 +121,7 @@ impl LightChoice {
             let rest = (u - in_list) / (1.0 - in_list);
             let rest = Float::min(rest, rest.like(ONE_MINUS_EPSILON));
             chosen = self.tree.sample_lanes(simd, Vector::narrow(points), n, rest, mask & !listed);
-            for (_, probability) in chosen.iter_mut().flatten() {
+            for ChosenLight { probability, .. } in chosen.iter_mut().flatten() {
                 *probability *= 1.0 - in_list;
             }
         }

@@ -505,12 +505,17 @@ fn lights_are_chosen_as_often_as_they_say() {
             let probability = |light| world.light_choice.probability(at, light);
             let sum: f32 = (0..count).map(probability).sum();
             assert!((sum - 1.0).abs() < 1e-5, "{kind:?}: {sum}");
-            let mut counts = vec![0; count as usize];
+            let (mut counts, mut rests) = (vec![0; count as usize], 0.0);
             for i in 0..N {
-                let (light, found) = world.light_choice.sample(at, random(i)[0]).expect("some light");
+                let chosen = world.light_choice.sample(at, random(i)[0]).expect("some light");
+                let (light, found) = (chosen.light, chosen.probability);
                 assert!((found / probability(light) - 1.0).abs() < 1e-5, "{kind:?}, {light}");
+                assert!((0.0..1.0).contains(&chosen.rest), "{kind:?}, {light}: {}", chosen.rest);
                 counts[light as usize] += 1;
+                rests += f64::from(chosen.rest);
             }
+            let mean = rests / f64::from(N);
+            assert!((mean - 0.5).abs() < 0.003, "{kind:?}: the rests are 0.5 in the mean, not {mean}");
             let expected: Vec<f64> = (0..count).map(|l| f64::from(probability(l)) * f64::from(N)).collect();
             let deviate = chi_square_deviate(&counts, &expected);
             assert!(deviate < bound, "{kind:?}, {place}: {deviate}, {counts:?} {expected:?}");

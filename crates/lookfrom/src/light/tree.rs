@@ -8,6 +8,7 @@ mod sight;
 use glam::Vec3;
 use lookfrom_simd::{Float, LaneMask, Simd, f32x8, prelude::*};
 
+use super::choice::ChosenLight;
 use super::cone::{Cone, angle};
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::parallel;
@@ -98,12 +99,12 @@ impl Tree {
 
     /// A light for `u ∈ [0, 1)` and its probability at a point with the unit normal `n` (or zero, where there is none);
     /// `None` if none of several lights can reach `p`.
-    pub(super) fn sample(&self, p: Vec3, n: Vec3, mut u: f32) -> Option<(u32, f32)> {
+    pub(super) fn sample(&self, p: Vec3, n: Vec3, mut u: f32) -> Option<ChosenLight> {
         let mut probability = 1.0;
         let mut node = 0;
         loop {
             match self.nodes.get(node)?.link {
-                Link::Light(light) => return Some((light, probability)),
+                Link::Light(light) => return Some(ChosenLight { light, probability, rest: u }),
                 Link::Second(second) => {
                     let (share, exists) = self.first_share(node, second as usize, p, n);
                     if !exists {
@@ -159,14 +160,17 @@ impl Tree {
         n: Vector<f32x8<S>>,
         mut u: f32x8<S>,
         mask: u32,
-    ) -> [Option<(u32, f32)>; LANES] {
+    ) -> [Option<ChosenLight>; LANES] {
         let mut chosen = [None; LANES];
         let Some(root) = self.nodes.first() else { return chosen };
         let mut probability = f32x8::splat(simd, 1.0);
         // The first and the second child of the node that each lane has come to; done lanes stay where they are.
         let mut below = match root.link {
             Link::Light(light) => {
-                return by_lane!(lane => (mask & 1 << lane != 0).then_some((light, 1.0)));
+                return by_lane!(lane => match mask & 1 << lane {
+                    0 => None,
+                    _ => Some(ChosenLight { light, probability: 1.0, rest: u[lane] }),
+                });
             }
             Link::Second(second) => [[1, second as usize]; LANES],
         };
@@ -188,7 +192,8 @@ impl Tree {
                 let node = below[lane][usize::from(is_first & 1 << lane == 0)];
                 match self.nodes[node].link {
                     Link::Light(light) => {
-                        chosen[lane] = Some((light, probability[lane]));
+                        let (probability, rest) = (probability[lane], u[lane]);
+                        chosen[lane] = Some(ChosenLight { light, probability, rest });
                         active &= !(1 << lane);
                     }
                     Link::Second(second) => below[lane] = [node + 1, second as usize],

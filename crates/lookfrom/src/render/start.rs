@@ -6,13 +6,12 @@ use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, pr
 
 use super::{Renderer, SampleId};
 use crate::core::lanes::{LANES, by_lane, filled, scatter};
-use crate::core::sampler::lanes::PixelSamplers;
+use crate::core::sampler::{self, lanes::PixelSamplers};
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
 use crate::view::camera::CameraRay;
 
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
-const FILTER_DIMENSION: u32 = 0;
 const LENS_DIMENSION: u32 = 1;
 const WAVELENGTH_DIMENSION: u32 = 2;
 
@@ -42,7 +41,7 @@ impl Renderer {
     /// The camera ray of a sample and the filter weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
         let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
-        let (point, weight) = self.image_point(id.pixel.map(f64::from), two(FILTER_DIMENSION));
+        let (point, weight) = self.image_point(id.pixel.map(f64::from), two(sampler::PIXEL));
         (self.view.camera.ray(point, two(LENS_DIMENSION)), weight)
     }
 
@@ -95,7 +94,7 @@ impl Renderer {
         let rows = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[1])));
         let samples = u32x8::load_array(simd, by_lane!(lane => ids[lane].sample));
         let samplers = PixelSamplers::of_pixels(&self.sampler, columns | (rows << 32));
-        let u = samplers.two(samples, u64x8::splat(simd, u64::from(FILTER_DIMENSION)));
+        let u = samplers.two(samples, u64x8::splat(simd, u64::from(sampler::PIXEL)));
         self.image_point([below_2_to_52(columns), below_2_to_52(rows)], u)
     }
 }

@@ -1,9 +1,9 @@
 //! Random numbers of eight samples at once, one in each lane.
 
 use lookfrom_scene::settings::Sampler as Kind;
-use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8, u64x8};
 
-use super::{PixelSampler, Sampler, two};
+use super::{PixelSampler, Sampler, two, two_with_pixel};
 use crate::core::hash::mix;
 use crate::core::lanes::{LANES, by_lane};
 
@@ -31,6 +31,17 @@ impl<S: Simd> PixelSamplers<S> {
     #[inline(always)]
     pub(crate) fn two(&self, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
         two(self.kind, self.keys, sample, dimension)
+    }
+
+    /// As [`PixelSampler::two_with_pixel`] in the lanes of a mask, as [`PixelSampler::two`] in the others.
+    #[inline(always)]
+    pub(crate) fn two_with_pixel(
+        &self,
+        sample: u32x8<S>,
+        dimension: u64x8<S>,
+        mask: mask32x8<S>,
+    ) -> [f32x8<S>; 2] {
+        two_with_pixel(self.kind, self.keys, sample, dimension, mask)
     }
 }
 
@@ -85,7 +96,8 @@ mod tests {
     use super::*;
     use crate::core::hash;
 
-    struct Two<'a>(&'a [PixelSampler; LANES], [u32; LANES], [u32; LANES]);
+    /// Points of samplers, samples and dimensions; with the pixel in the lanes of a mask.
+    struct Two<'a>(&'a [PixelSampler; LANES], [u32; LANES], [u32; LANES], u64);
 
     impl Kernel for Two<'_> {
         type Output = [[f32; LANES]; 2];
@@ -93,7 +105,8 @@ mod tests {
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let samplers = PixelSamplers::new(simd, self.0);
             let dimension = u64x8::load_array(simd, by_lane!(lane => u64::from(self.2[lane])));
-            let [a, b] = samplers.two(u32x8::load_array(simd, self.1), dimension);
+            let (sample, mask) = (u32x8::load_array(simd, self.1), mask32x8::from_bitmask(simd, self.3));
+            let [a, b] = samplers.two_with_pixel(sample, dimension, mask);
             [a.into(), b.into()]
         }
     }
@@ -122,9 +135,13 @@ mod tests {
                 let samplers = std::array::from_fn(|lane| sampler.of_pixel([number(lane, 0), lane as u32]));
                 let samples = std::array::from_fn(|lane| number(lane, 1) >> (round % 32));
                 let dimensions = std::array::from_fn(|lane| number(lane, 2));
-                let [a, b] = dispatch(level(), Two(&samplers, samples, dimensions));
+                let mask = round % 256;
+                let [a, b] = dispatch(level(), Two(&samplers, samples, dimensions, mask));
                 for lane in 0..LANES {
-                    let expected = samplers[lane].two(samples[lane], dimensions[lane]);
+                    let expected = match mask & 1 << lane {
+                        0 => samplers[lane].two(samples[lane], dimensions[lane]),
+                        _ => samplers[lane].two_with_pixel(samples[lane], dimensions[lane]),
+                    };
                     assert_eq!([a[lane], b[lane]], expected);
                 }
             }

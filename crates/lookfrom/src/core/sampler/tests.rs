@@ -162,6 +162,82 @@ fn every_aligned_run_is_a_net() {
     assert!(!is_net(&(0..64).map(|i| random.two([0, 0], i, 0)).collect::<Vec<_>>()));
 }
 
+/// C(j, i) αʲ⁻ⁱ for each pair of digits, by the definition of GF(4): what `third` has to compute.
+fn textbook_third(index: u32) -> u32 {
+    let times = |a: u32, b: u32| -> u32 {
+        let product = (if b & 1 != 0 { a } else { 0 }) ^ (if b & 2 != 0 { a << 1 } else { 0 });
+        if product & 4 != 0 { product ^ 0b111 } else { product }
+    };
+    let power = |exponent: u32| (0..exponent).fold(1, |power, _| times(power, 0b10));
+    let digit = |j: u32| index >> (2 * j) & 3;
+    let row = |i: u32| {
+        let odd = |j: &u32| i & !j == 0;
+        (i..16).filter(odd).fold(0, |sum, j| sum ^ times(power((j - i) % 3), digit(j)))
+    };
+    (0..16).fold(0, |bits, i| bits | row(i) << (2 * i))
+}
+
+#[test]
+fn third_coordinate_is_that_of_the_textbook() {
+    for trial in 0..20_000_u64 {
+        let index = (mix(trial) as u32) >> (trial % 32);
+        assert_eq!(third(index), textbook_third(index), "index {index}");
+    }
+}
+
+#[test]
+fn first_decisions_and_the_point_in_the_pixel_are_a_net_together() {
+    /// All ways to divide m among four.
+    fn shapes(m: u32) -> impl Iterator<Item = [u32; 4]> {
+        (0..(m + 1).pow(3)).filter_map(move |k| {
+            let [a, b, c] = [k % (m + 1), k / (m + 1) % (m + 1), k / (m + 1).pow(2)];
+            Some([a, b, c, m.checked_sub(a + b + c)?])
+        })
+    }
+    for trial in 0..20_u32 {
+        let pixel = sobol(u64::from(trial % 3)).of_pixel([trial * 31, 7_u32.wrapping_pow(trial)]);
+        for (m, run) in [(1, 9), (2, 0), (2, 77), (3, 0), (3, 5), (4, 1)] {
+            let samples = || (0..4_u32.pow(m)).map(|i| (run << (2 * m)) + i);
+            let together = |sample| {
+                let ([x, y], [z, w]) = (pixel.two(sample, PIXEL), pixel.two_with_pixel(sample, 1000 + trial));
+                [x, y, z, w]
+            };
+            for sides in shapes(m) {
+                let boxes: std::collections::HashSet<[u32; 4]> = samples()
+                    .map(|sample| {
+                        let point = together(sample);
+                        [0, 1, 2, 3].map(|axis| (point[axis] * 4_f32.powi(sides[axis] as i32)) as u32)
+                    })
+                    .collect();
+                assert_eq!(boxes.len(), 4_usize.pow(m), "{sides:?}, pixel {trial}, run {run}");
+            }
+            let alone: Vec<_> = samples().map(|sample| pixel.two_with_pixel(sample, 1000 + trial)).collect();
+            assert!(is_net(&alone), "pixel {trial}, 4^{m} samples, run {run}");
+        }
+    }
+}
+
+#[test]
+fn first_decisions_are_independent_of_each_other() {
+    const N: u32 = 1 << 15;
+    for s in both_kinds() {
+        pairs_look_uniform(
+            "a decision with the pixel and another one, over pixels",
+            (0..N).map(|i| {
+                let pixel = s.of_pixel([i % 256, i / 256]);
+                [pixel.two_with_pixel(3, 5)[0], pixel.two_with_pixel(3, 6)[0]]
+            }),
+        );
+        pairs_look_uniform(
+            "a decision with the pixel and the pixel's own, over pixels",
+            (0..N).map(|i| {
+                let pixel = s.of_pixel([i % 256, i / 256]);
+                [pixel.two(3, PIXEL)[1], pixel.two_with_pixel(3, 6)[0]]
+            }),
+        );
+    }
+}
+
 #[test]
 fn one_is_the_first_of_two() {
     for sampler in both_kinds() {

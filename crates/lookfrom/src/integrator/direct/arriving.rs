@@ -68,7 +68,9 @@ impl<S: Simd> Arriving<S> {
                 exists: mask32x8::splat(simd, true),
                 target: Ends::Nowhere,
             }),
-            Light::Area(light) => Self::from_area(simd, light, world, streams().two(index), points, modes),
+            Light::Area(light) => {
+                Self::from_area(simd, light, world, streams().two_with_pixel(index), points, modes)
+            }
             _ => None,
         }
     }

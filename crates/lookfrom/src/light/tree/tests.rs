@@ -35,7 +35,7 @@ fn bundles(count: u32) -> Vec<(u32, LightBounds)> {
 struct Eight<'a>(&'a Tree, &'a [(Vec3, Vec3, f32); LANES], u32);
 
 impl Kernel for Eight<'_> {
-    type Output = [Option<(u32, f32)>; LANES];
+    type Output = [Option<ChosenLight>; LANES];
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
         let Self(tree, at, mask) = self;
@@ -88,7 +88,7 @@ fn probabilities_sum_to_one_and_are_those_of_samples() {
             assert!((sum - 1.0).abs() < 1e-4 || sum == 0.0, "{count} {sum}");
             for k in 0..500 {
                 let u = (k as f32 + 0.5) / 500.0;
-                let Some((light, probability)) = tree.sample(p, n, u) else { continue };
+                let Some(ChosenLight { light, probability, .. }) = tree.sample(p, n, u) else { continue };
                 assert!((probability - tree.probability(p, n, light)).abs() < 1e-6);
             }
         }
@@ -110,7 +110,7 @@ fn speed() {
         for k in 0..TIMES {
             let u = (k as f32 + 0.5) / TIMES as f32;
             let p = Vec3::new(10.0 * u, 10.0 * (1.0 - u), (k % 16) as f32);
-            sum += tree.sample(p, Vec3::Y, u).map_or(0.0, |(_, probability)| probability);
+            sum += tree.sample(p, Vec3::Y, u).map_or(0.0, |chosen| chosen.probability);
         }
         let each = start.elapsed() / TIMES;
         println!("{count} lights: {each:?} a choice, built in {build:?}, sum {sum}");

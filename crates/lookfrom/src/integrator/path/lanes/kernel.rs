@@ -189,11 +189,12 @@ impl<S: Simd> Surfaces<S> {
         }
 
         // Go on in one direction.
-        let [_, which_lobe] = match B::KIND.needs_lobe {
-            true => streams.two(dimension::CHOICE),
+        let [which_lobe, _] = match B::KIND.needs_lobe {
+            true => streams.two(dimension::LOBE),
             false => [zero; 2],
         };
-        let mut sample = bsdf.sample(&view, which_lobe, streams.two(dimension::DIRECTION)).if_useful();
+        let mut sample =
+            bsdf.sample(&view, which_lobe, streams.two_with_pixel(dimension::DIRECTION)).if_useful();
         let wi = self.render(sample.wi);
         if B::KIND.needs_agreement {
             sample.is_valid &= self.agrees(wi);

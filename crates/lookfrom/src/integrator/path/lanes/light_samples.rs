@@ -16,8 +16,8 @@ use crate::integrator::path::dimension;
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::{Event, shadow};
 use crate::light::{
-    AreaSamples, EmissionSpectrum, IncompletePdf, Light, LightSample, LightSampleContext, Target,
-    sample_area_lights,
+    AreaSamples, ChosenLight, EmissionSpectrum, IncompletePdf, Light, LightSample, LightSampleContext,
+    Target, sample_area_lights,
 };
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -91,8 +91,8 @@ impl LightSamples {
         mask: u32,
     ) {
         (self.is_valid, self.is_delta, self.at_point, self.on_surface) = (0, 0, 0, 0);
-        self.choose(simd, world, surfaces, streams, mask);
-        let u = streams.two(dimension::LIGHT);
+        let [which, v] = streams.two_with_pixel(dimension::LIGHT);
+        let u = [self.choose(simd, world, surfaces, which, mask), v];
         let numbers: [[f32; LANES]; 2] = [u[0].into(), u[1].into()];
         let area_lights = by_lane!(lane => {
             match world.lights.get(self.light[lane] as usize) {
@@ -141,28 +141,33 @@ impl LightSamples {
         }
     }
 
-    /// Chooses lights in the lanes of a mask.
+    /// Chooses lights in the lanes of a mask; the rests of the numbers that choose them.
     #[inline(always)]
     fn choose<S: Simd>(
         &mut self,
         simd: S,
         world: &World,
         surfaces: &Surfaces<S>,
-        streams: &SampleStreams<S>,
+        which: f32x8<S>,
         mask: u32,
-    ) {
-        let chosen = match world.light_choice.only() {
-            Some(light) => [Some((light, 1.0)); LANES],
-            None => {
-                let [which, _] = streams.two(dimension::CHOICE);
-                let points = surfaces.points.position;
-                world.light_choice.sample_lanes(simd, points, surfaces.n, which, mask)
+    ) -> f32x8<S> {
+        if let Some(light) = world.light_choice.only() {
+            for lane in 0..LANES {
+                (self.light[lane], self.probability[lane]) = match mask & 1 << lane {
+                    0 => (NO_LIGHT, 0.0),
+                    _ => (light, 1.0),
+                };
             }
-        };
-        for (lane, chosen) in chosen.into_iter().enumerate() {
-            (self.light[lane], self.probability[lane]) =
-                chosen.filter(|_| mask & 1 << lane != 0).unwrap_or((NO_LIGHT, 0.0));
+            return which;
         }
+        let chosen = world.light_choice.sample_lanes(simd, surfaces.points.position, surfaces.n, which, mask);
+        let mut rests = [0.0; LANES];
+        for (lane, chosen) in chosen.into_iter().enumerate() {
+            let none = ChosenLight { light: NO_LIGHT, probability: 0.0, rest: 0.0 };
+            ChosenLight { light: self.light[lane], probability: self.probability[lane], rest: rests[lane] } =
+                chosen.unwrap_or(none);
+        }
+        f32x8::load_array(simd, rests)
     }
 
     /// The sample of a lane.
