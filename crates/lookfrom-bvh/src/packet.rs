@@ -85,6 +85,10 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
                 pairs: None,
                 hits,
                 coherence,
+                large: match packet_bounds {
+                    Some(_) => f32::INFINITY,
+                    None => bvh.bounds().half_area() * Pairs::<S>::LARGE,
+                },
                 question: PhantomData,
             };
             let stack = &mut TraversalStack::above(stack, 0);
@@ -131,6 +135,8 @@ struct Packet<'a, 'b, S: Simd, C, V> {
     /// The closest hits that are exact; empty for any-hit queries.
     hits: &'b mut [Hit],
     coherence: &'b mut Coherence,
+    /// Half the area from which on a box is met by most groups: infinite for coherent rays.
+    large: f32,
     question: PhantomData<(C, V)>,
 }
 
@@ -204,6 +210,22 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 };
             }
         }
+    }
+
+    /// Whether to test triangles against all rays costs less than to test their box first.
+    #[inline(always)]
+    fn mostly_meets(&self, bounds: &Aabb) -> bool {
+        bounds.half_area() > self.large
+    }
+
+    /// The rays of each group that are not done.
+    #[inline(always)]
+    fn under_way(&self) -> [u32; GROUPS] {
+        let mut rays = [0; GROUPS];
+        for index in 0..GROUPS {
+            rays[index] = self.groups[index].end.simd_gt(f32::NEG_INFINITY).to_bitmask() as u32 & 0xff;
+        }
+        rays
     }
 
     /// The rays of each group that hit a box before their ends.

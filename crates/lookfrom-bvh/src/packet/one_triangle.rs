@@ -83,6 +83,10 @@ impl<S: Simd> Pairs<S> {
     /// Whether vectors are that wide.
     const PAY: bool = <S::f32s as SimdBase<S>>::LEN >= 2 * LANES;
 
+    /// The part of a scene's area from which on testing a box of triangles costs more than it saves for rays that cross the
+    /// scene anywhere: the test of one takes as long as one of a triangle, or as two where those are in pairs.
+    pub(super) const LARGE: f32 = if Self::PAY { 0.1 } else { 0.3 };
+
     #[inline(always)]
     fn new(simd: S, [a, b, c, d, e, f, g, h]: &[Ray8<S>; GROUPS]) -> Self {
         Self([a.beside(simd, b), c.beside(simd, d), e.beside(simd, f), g.beside(simd, h)])

@@ -140,7 +140,10 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         let block = &self.bvh().triangles[number];
         let visibility = V::of(self.settings, 0);
         let bounds = block.bounds(simd).padded();
-        let meeting = &mut self.meet(simd, &bounds);
+        let meeting = &mut match self.mostly_meets(&bounds) {
+            true => self.under_way(),
+            false => self.meet(simd, &bounds),
+        };
         self.coherence.count(meeting);
         if *meeting == [0; GROUPS] {
             return false;
