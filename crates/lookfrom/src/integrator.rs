@@ -9,7 +9,6 @@ mod background;
 mod direct;
 mod event;
 mod first_hit;
-mod first_mesh_hits;
 mod first_surface;
 mod light_paths;
 mod occlusion;
@@ -38,7 +37,6 @@ pub use background::Alpha;
 use direct::PlainSteps;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
-pub(crate) use first_mesh_hits::FirstMeshHit;
 pub(crate) use first_surface::FirstSurfaceColumns;
 pub use first_surface::{FirstSurface, FirstSurfaces};
 use light_paths::LastScattering;
@@ -301,6 +299,22 @@ impl<P: Probe> StepOutput<'_, P> {
         {
             let layers = self.queues.layers_of(slot, light_paths);
             light_paths.add_sampled(&last, term, contribution, layers);
+        }
+    }
+
+    /// Leaves the surface that a path has met, and does not pass, to AOVs: where it is a camera ray, and nothing is seen
+    /// through the surface. `albedo` is called where it may be known.
+    #[inline]
+    fn leave_first_surface(
+        &mut self,
+        world: &World,
+        path: &Path,
+        surface: &SurfaceInteraction,
+        albedo: impl FnOnce() -> Option<[f32; 3]>,
+    ) {
+        let first_surfaces = &mut self.queues.first_surfaces;
+        if first_surfaces.are_wanted() && path.address == Path::ROOT && world.opacity(surface) == 1.0 {
+            first_surfaces.push(path.slot, &FirstSurface::of(world, surface, albedo()));
         }
     }
 

@@ -5,7 +5,7 @@
 //! upper and of the lower bits are exact. Other first hits are added one by one.
 
 use lookfrom_simd::{
-    Float, Kernel, LaneMask, Real, Simd, dispatch, f32x8, f64x8, level, mask64x8, prelude::*,
+    Float, Kernel, LaneMask, Real, Simd, dispatch, f32x8, f64x8, level, mask32x8, prelude::*,
 };
 
 use super::aov::{AovSums, LayerSums, TWO_TO_32};
@@ -191,20 +191,19 @@ impl Kernel for AddEights<'_> {
                 is_summed = is_summed & is_whole & size.lt(size.like(BOUND));
             }
             let summed = is_summed.to_bitmask() as u32 & hits;
-            let is_summed = mask64x8::from_bitmask(simd, summed.into());
+            let is_summed = mask32x8::from_bitmask(simd, summed.into());
             add_narrow(simd, &mut eight.albedo, albedo, 0.0, is_summed);
             add_narrow(simd, &mut eight.ns, ns, -1.0, is_summed);
             if has_layers {
                 add_narrow(simd, &mut eight.ng, ng, -1.0, is_summed);
                 for ([upper_sums, lower_sums], place) in eight.places.iter_mut().zip(places) {
-                    let place = wide(simd, place, is_summed) * UPPER;
+                    let place = wide(f32x8::load_array(simd, *place), is_summed) * UPPER;
                     let upper = place + INTEGERS - f64x8::splat(simd, INTEGERS);
                     add(simd, upper_sums, upper);
                     add(simd, lower_sums, (place - upper) * LOWER);
                 }
             }
-            let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
-            add(simd, &mut eight.hits, f64x8::select(is_summed, one, zero));
+            add(simd, &mut eight.hits, wide(f32x8::splat(simd, 1.0), is_summed));
             let (new, left) = (summed & !eight.seen, hits & !summed);
             eight.seen |= summed;
             if new | left != 0 {
@@ -224,8 +223,8 @@ fn sum<S: Simd>(simd: S, columns: &Columns<3>) -> f32x8<S> {
 
 /// Numbers in double precision, 0 where the mask is not set.
 #[inline(always)]
-fn wide<S: Simd>(simd: S, column: &[f32; LANES], mask: mask64x8<S>) -> f64x8<S> {
-    f64x8::select(mask, Real::widen(f32x8::load_array(simd, *column)), f64x8::splat(simd, 0.0))
+fn wide<S: Simd>(numbers: f32x8<S>, mask: mask32x8<S>) -> f64x8<S> {
+    Real::widen(f32x8::select(mask, numbers, numbers.like(0.0)))
 }
 
 /// Adds the components of directions or colours as multiples of 2⁻³².
@@ -234,12 +233,12 @@ fn add_narrow<S: Simd>(
     simd: S,
     sums: &mut [[u64; LANES]; 3],
     columns: &Columns<3>,
-    least: f64,
-    mask: mask64x8<S>,
+    least: f32,
+    mask: mask32x8<S>,
 ) {
     for (sums, column) in sums.iter_mut().zip(columns) {
-        let value = Float::clamp(wide(simd, column, mask), least, 1.0);
-        add(simd, sums, SimdFloat::trunc(value * TWO_TO_32));
+        let value = Float::clamp(f32x8::load_array(simd, *column), least, 1.0);
+        add(simd, sums, SimdFloat::trunc(wide(value, mask) * TWO_TO_32));
     }
 }
 

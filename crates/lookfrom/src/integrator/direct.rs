@@ -3,6 +3,7 @@
 mod arriving;
 mod branches;
 mod coefficients;
+mod first_surfaces;
 mod groups;
 mod lanes;
 mod plain;
@@ -16,7 +17,8 @@ use lookfrom_bvh::Hit;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::Coefficients;
+use crate::shading::material::{Coefficients, albedo_of_coefficients};
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 pub(super) use branches::same_side;
@@ -94,6 +96,12 @@ pub(super) fn local_light<P: Probe>(
         address: path.address,
         surface: Box::new(*surface),
         coefficients: Some(Box::new(coefficients)),
+    });
+    output.leave_first_surface(world, path, surface, || {
+        let Coefficients { diffuse, mirror, transmission, .. } = coefficients;
+        let is_known = matches!(lanes, SpectralMode::Rgb)
+            && world.materials[surface.material as usize].has_albedo_of_coefficients();
+        is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });
     let emits = world.emitted(surface, &lanes) + world.unlit(surface, &lanes).unwrap_or_default();
     output.add(path, Term::Emission, path.beta * emits);

@@ -58,6 +58,7 @@ impl Integrator for FirstHit {
             output.queues.paths.push(path.passed(&surface));
             return;
         }
+        output.leave_first_surface(world, path, &surface, || None);
         output.probe.notice(|| Event::Surface {
             address: path.address,
             surface: Box::new(surface),

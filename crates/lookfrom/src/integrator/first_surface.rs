@@ -1,10 +1,10 @@
 //! The surfaces that camera rays meet, as far as AOVs and the denoiser need them.
 //!
-//! A step that has eight at hand leaves them; others are evaluated after the batch.
+//! Steps leave them, eight side by side or one by one; others are evaluated after the batch.
 
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::core::lanes::{Columns, LANES};
+use crate::core::lanes::{Columns, LANES, set_row};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material;
 use crate::world::World;
@@ -27,17 +27,18 @@ pub struct FirstSurface {
 }
 
 impl FirstSurface {
-    /// That of a surface interaction.
-    pub(crate) fn of(world: &World, surface: &SurfaceInteraction) -> Self {
+    /// That of a surface interaction; with its albedo, where that is known.
+    pub(crate) fn of(world: &World, surface: &SurfaceInteraction, albedo: Option<[f32; 3]>) -> Self {
         let point = world.texture_point(surface);
         let World { materials, textures, .. } = world;
+        let material = &materials[surface.material as usize];
         Self {
             position: DVec3::from_array(surface.point.position),
             ng: surface.ng.as_vec3(),
             ns: material::normal(materials, textures, surface, &point),
             wo: surface.wo,
             uv: surface.uv,
-            albedo: material::albedo(materials, textures, &materials[surface.material as usize], &point),
+            albedo: albedo.unwrap_or_else(|| material::albedo(materials, textures, material, &point)),
         }
     }
 }
@@ -50,7 +51,7 @@ pub(crate) struct FirstSurfaceColumns {
     /// The slots of the camera rays.
     pub(crate) slots: [u32; LANES],
     pub(crate) position: Columns<3, f64>,
-    pub(crate) ng: Columns<3, f64>,
+    pub(crate) ng: Columns<3>,
     pub(crate) ns: Columns<3>,
     pub(crate) wo: Columns<3>,
     pub(crate) uv: Columns<2>,
@@ -58,6 +59,19 @@ pub(crate) struct FirstSurfaceColumns {
 }
 
 impl FirstSurfaceColumns {
+    /// Replaces the surface of a lane.
+    fn set(&mut self, lane: usize, slot: u32, surface: &FirstSurface) {
+        let FirstSurface { position, ng, ns, wo, uv, albedo } = *surface;
+        set_row(&mut self.position, lane, position.to_array());
+        set_row(&mut self.ng, lane, ng.to_array());
+        set_row(&mut self.ns, lane, ns.to_array());
+        set_row(&mut self.wo, lane, wo.to_array());
+        set_row(&mut self.uv, lane, uv.to_array());
+        set_row(&mut self.albedo, lane, albedo);
+        self.slots[lane] = slot;
+        self.lanes |= 1 << lane;
+    }
+
     const NONE: Self = Self {
         lanes: 0,
         slots: [0; LANES],
@@ -77,12 +91,14 @@ pub struct FirstSurfaces {
     eights: Vec<FirstSurfaceColumns>,
     /// Number of those that count.
     count: usize,
+    /// The eight that receives surfaces one by one, and the number of those that it has.
+    open: (usize, usize),
 }
 
 impl FirstSurfaces {
     /// Removes all. Whether steps are to leave others.
     pub(crate) fn start(&mut self, are_wanted: bool) {
-        (self.are_wanted, self.count) = (are_wanted, 0);
+        (self.are_wanted, self.count, self.open) = (are_wanted, 0, (0, LANES));
     }
 
     /// Whether steps are to leave surfaces.
@@ -99,6 +115,17 @@ impl FirstSurfaces {
         }
         self.count += 1;
         &mut self.eights[self.count - 1]
+    }
+
+    /// Adds the surface of a slot that has none yet.
+    pub(crate) fn push(&mut self, slot: u32, surface: &FirstSurface) {
+        if self.open.1 == LANES {
+            self.next().lanes = 0;
+            self.open = (self.count - 1, 0);
+        }
+        let (eight, lane) = &mut self.open;
+        self.eights[*eight].set(*lane, slot, surface);
+        *lane += 1;
     }
 
     /// Eight by eight.

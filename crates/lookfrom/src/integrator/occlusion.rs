@@ -40,6 +40,7 @@ impl Integrator for AmbientOcclusion {
             output.queues.paths.push(path.passed(&surface));
             return;
         }
+        output.leave_first_surface(world, path, &surface, || None);
         let n = surface.ng_facing();
         let u = stream.two_with_pixel(1);
         // The visible part of a uniform sky: the mean of visibility, weighted by the cosine over π.

@@ -226,6 +226,7 @@ impl PathTracer {
         if self.regularize && path.previous.blurred {
             shading.bsdf.regularize();
         }
+        output.leave_first_surface(world, &path, &surface, || None);
         output.probe.notice(|| Event::Shaded {
             address: path.address,
             surface: Box::new(surface),

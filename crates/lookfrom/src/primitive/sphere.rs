@@ -1,6 +1,6 @@
 //! Whole spheres, which the kernel intersects itself.
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 
 use super::quadric::sphere_derivatives;
@@ -27,6 +27,15 @@ pub struct SphereBinding {
     pub object_from_sphere: Mat3,
     /// Whether the outside is the side of the centre.
     pub flip: bool,
+}
+
+impl SphereBinding {
+    /// The texture coordinates where a sphere has a normal to the outside.
+    #[inline]
+    pub(crate) fn uv(&self, ng: Vec3) -> Vec2 {
+        let from_center = if self.flip { -ng } else { ng };
+        texture::sphere_uv(self.object_from_sphere * from_center)
+    }
 }
 
 impl Spheres {

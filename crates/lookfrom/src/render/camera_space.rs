@@ -83,11 +83,16 @@ impl Kernel for AovKernel<'_> {
         let Self { space, surfaces, aovs } = self;
         for eight in surfaces {
             let wo = load(simd, &eight.wo);
-            let ng = Vector::narrow(load_f64(simd, &eight.ng));
+            let ng = store(space.normal(load(simd, &eight.ng), wo));
+            // Most surfaces are not smoothed.
+            let ns = match eight.ns == eight.ng {
+                true => ng,
+                false => store(space.normal(load(simd, &eight.ns), wo)),
+            };
             let columns = AovColumns {
                 albedo: eight.albedo,
-                ng: store(space.normal(ng, wo)),
-                ns: store(space.normal(load(simd, &eight.ns), wo)),
+                ng,
+                ns,
                 position: store(space.position(load_f64(simd, &eight.position))),
                 uv: eight.uv,
                 hits: eight.lanes,

@@ -1,9 +1,9 @@
 //! First hits of camera rays, recorded once for AOVs and denoiser.
 //!
-//! No probe is needed, so that rendering is not slowed down: first hits are recorded as they are traced, and evaluated
-//! after the batch, unless a step had the surface at hand. Where a ray passes a surface as if it were not there, the hit
-//! behind it counts; but where chance decides that, by an alpha between 0 and 1, all surfaces along the ray count by what
-//! they cover, so that features have no noise that light does not have.
+//! No probe is needed, so that rendering is not slowed down: steps leave the surfaces that they have at hand; first hits
+//! are recorded besides as they are traced, and evaluated after the batch where no step has left a surface. Where a ray
+//! passes a surface as if it were not there, the hit behind it counts; but where chance decides that, by an alpha between
+//! 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise that light does not have.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
@@ -13,7 +13,7 @@ use super::camera_space::CameraSpace;
 use super::{Batch, Renderer, SampleId};
 use crate::core::lanes::LANES;
 use crate::film::{AovColumns, Aovs, FilmTile};
-use crate::integrator::{FirstMeshHit, FirstSurface, FirstSurfaces, Path};
+use crate::integrator::{FirstSurface, Path};
 
 /// The first hits of a batch, and their AOVs: memory that is reused.
 #[derive(Debug, Default)]
@@ -82,55 +82,30 @@ impl Renderer {
             return;
         }
         let space = CameraSpace::of(self);
-        let surfaces = &mut queues.first_surfaces;
         first_hits.aovs.resize(ids.len().div_ceil(LANES), AovColumns::MISSES);
         first_hits.aovs.iter_mut().for_each(|eight| eight.hits = 0);
-        space.set_aovs(surfaces.eights(), &mut first_hits.aovs);
-        let count = surfaces.eights().len();
-        self.find_others(first_hits, &start.rays, &space, surfaces);
-        space.set_aovs(&surfaces.eights()[count..], &mut first_hits.aovs);
+        space.set_aovs(queues.first_surfaces.eights(), &mut first_hits.aovs);
+        self.find_others(first_hits, &start.rays, &space);
         tile.add_first_hits(ids, &first_hits.aovs, first_hit_sums);
     }
 
-    /// The AOVs of hits whose surfaces no step has left, and the surfaces of those on meshes, eight by eight.
-    fn find_others(
-        &self,
-        first_hits: &mut FirstHits,
-        rays: &[Ray],
-        space: &CameraSpace,
-        surfaces: &mut FirstSurfaces,
-    ) {
+    /// The AOVs of hits whose surfaces no step has left: of few, as those that light may pass as if they were not there.
+    fn find_others(&self, first_hits: &mut FirstHits, rays: &[Ray], space: &CameraSpace) {
         let FirstHits { outermost, behind, aovs, .. } = first_hits;
         // Of the hits of a slot, the last one counts.
         behind.sort_by_key(|&(slot, _)| slot);
-        let mut mesh_hits = Vec::with_capacity(LANES);
         for (block, (eight, hits)) in aovs.iter_mut().zip(outermost.chunks(LANES)).enumerate() {
             let left = !eight.hits & ((1 << hits.len()) - 1);
             for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit()) {
                 let slot = block * LANES + lane;
+                let first = RayHit { ray: rays[slot], hit: hits[lane] };
                 let end = behind.partition_point(|(of, _)| *of as usize <= slot);
                 let further = behind[..end].last().filter(|(of, _)| *of as usize == slot);
-                let (ray, hit) = (&rays[slot], &hits[lane]);
-                if further.is_none()
-                    && let Some(mesh_hit) = FirstMeshHit::of(&self.world, slot as u32, ray, hit)
-                    && (!self.world.has_gaps || mesh_hit.is_whole())
-                {
-                    mesh_hits.push(mesh_hit);
-                    if mesh_hits.len() == LANES {
-                        FirstMeshHit::surfaces(&self.world, &mesh_hits, surfaces.next());
-                        mesh_hits.clear();
-                    }
-                    continue;
-                }
-                let first = RayHit { ray: *ray, hit: *hit };
                 let seen = further.map_or(first, |(_, seen)| *seen);
                 if let Some(aovs) = self.aovs_of_hit(first, seen, space) {
                     eight.set(lane, &aovs);
                 }
             }
-        }
-        if !mesh_hits.is_empty() {
-            FirstMeshHit::surfaces(&self.world, &mesh_hits, surfaces.next());
         }
     }
 
@@ -142,7 +117,7 @@ impl Renderer {
         };
         blended.or_else(|| {
             let RayHit { ray, hit } = seen;
-            let surface = || FirstSurface::of(&self.world, &self.world.surface(&ray, &hit));
+            let surface = || FirstSurface::of(&self.world, &self.world.surface(&ray, &hit), None);
             hit.is_hit().then(|| space.aovs(&surface()))
         })
     }
@@ -163,7 +138,7 @@ impl Renderer {
             let opacity = world.opacity(&surface);
             is_blended |= opacity > 0.0 && opacity < 1.0;
             if opacity > 0.0 {
-                let aovs = space.aovs(&FirstSurface::of(world, &surface));
+                let aovs = space.aovs(&FirstSurface::of(world, &surface, None));
                 let part = left * opacity;
                 albedo += part * Vec3::from(aovs.albedo);
                 ns += part * Vec3::from(aovs.ns);
@@ -188,55 +163,77 @@ mod tests {
     use std::path::Path as FilePath;
 
     use lookfrom_scene::LoadContext;
-    use lookfrom_scene::settings::{Layers, PixelBounds};
+    use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds};
 
     use super::super::blocks;
     use super::*;
     use crate::film::Film;
 
+    /// Compares the AOVs of a scene's film with those of each sample's first hits, evaluated one by one.
+    fn test_scene(name: &str, integrator: Option<Integrator>, color: ColorMode) {
+        let path = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+        let mut context = LoadContext::new(&lookfrom_scene::Disk);
+        let mut scene = lookfrom_scene::load::scene(&path.with_extension("toml"), &mut context).unwrap();
+        scene.render.integrator = integrator.unwrap_or(scene.render.integrator);
+        scene.render.color = color;
+        let image = &mut scene.image;
+        (image.width, image.height, image.crop) = (41, 27, None);
+        (image.layers, image.denoise) = (Layers::Geometry, true);
+        let image = image.clone();
+        let renderer = Renderer::of_scene(scene, &mut Vec::new()).unwrap();
+        let area = PixelBounds { x0: 0, y0: 0, x1: 41, y1: 27 };
+        let tile = FilmTile::for_image(area, &image).unwrap();
+        let (mut together, mut each) = (tile.clone(), tile);
+        renderer.render_tile(0..3, &mut together).unwrap();
+        let space = CameraSpace::of(&renderer);
+        for sample in 0..3 {
+            let ids: Vec<SampleId> = blocks(area).map(|pixel| SampleId { pixel, sample }).collect();
+            let mut batch = Batch::default();
+            batch.first_hits.start(true);
+            renderer.integrator.trace(&renderer, &ids, &mut batch);
+            let FirstHits { outermost, behind, .. } = &batch.first_hits;
+            for (slot, id) in ids.iter().enumerate() {
+                let first = RayHit { ray: batch.start.rays[slot], hit: outermost[slot] };
+                let last = behind.iter().rfind(|(of, _)| *of as usize == slot);
+                let seen = last.map_or(first, |(_, seen)| *seen);
+                let aovs = renderer.aovs_of_hit(first, seen, &space);
+                each.add_first_hit(id.pixel[0], id.pixel[1], sample, aovs.as_ref());
+            }
+        }
+        let [together, each] = [together, each].map(|tile| {
+            let mut film = Film::for_image(&image).unwrap();
+            film.add_tile(&tile).unwrap();
+            film
+        });
+        for [x, y] in blocks(area) {
+            let aovs = |film: &Film| (film.aovs(x, y), film.denoiser_features(x, y));
+            assert_eq!(aovs(&together), aovs(&each), "{name}, {integrator:?}, {color:?}, pixel {x} {y}");
+        }
+    }
+
     #[test]
     fn first_hits_of_eight_are_those_of_each() {
-        let scenes = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
         for name in
             ["whitted1980", "many-lights", "materials", "textures", "instances", "cutouts", "still-life"]
         {
-            let mut context = LoadContext::new(&lookfrom_scene::Disk);
-            let path = scenes.join(name).with_extension("toml");
-            let mut scene = lookfrom_scene::load::scene(&path, &mut context).unwrap();
-            let image = &mut scene.image;
-            (image.width, image.height, image.crop) = (41, 27, None);
-            (image.layers, image.denoise) = (Layers::Geometry, true);
-            let image = image.clone();
-            let renderer = Renderer::of_scene(scene, &mut Vec::new()).unwrap();
-            let area = PixelBounds { x0: 0, y0: 0, x1: 41, y1: 27 };
-            let tile = FilmTile::for_image(area, &image).unwrap();
-            let (mut together, mut each) = (tile.clone(), tile);
-            renderer.render_tile(0..3, &mut together).unwrap();
-            let space = CameraSpace::of(&renderer);
-            for sample in 0..3 {
-                let ids: Vec<SampleId> = blocks(area).map(|pixel| SampleId { pixel, sample }).collect();
-                let mut batch = Batch::default();
-                batch.first_hits.start(true);
-                renderer.integrator.trace(&renderer, &ids, &mut batch);
-                let FirstHits { outermost, behind, .. } = &batch.first_hits;
-                for (slot, id) in ids.iter().enumerate() {
-                    let first = RayHit { ray: batch.start.rays[slot], hit: outermost[slot] };
-                    let last = behind.iter().rfind(|(of, _)| *of as usize == slot);
-                    let seen = last.map_or(first, |(_, seen)| *seen);
-                    let aovs = renderer.aovs_of_hit(first, seen, &space);
-                    each.add_first_hit(id.pixel[0], id.pixel[1], sample, aovs.as_ref());
-                }
-            }
-            let [together, each] = [together, each].map(|tile| {
-                let mut film = Film::for_image(&image).unwrap();
-                film.add_tile(&tile).unwrap();
-                film
-            });
-            for [x, y] in blocks(area) {
-                assert_eq!(together.aovs(x, y), each.aovs(x, y), "{name}, pixel {x} {y}");
-                let features = |film: &Film| film.denoiser_features(x, y);
-                assert_eq!(features(&together), features(&each), "{name}, pixel {x} {y}");
-            }
+            test_scene(name, None, ColorMode::Rgb);
+        }
+    }
+
+    #[test]
+    fn those_of_whitteds_model_are_of_any_material_and_in_spectra() {
+        for name in ["materials", "textures", "cutouts", "still-life"] {
+            test_scene(name, Some(Integrator::Whitted), ColorMode::Rgb);
+        }
+        test_scene("textures", None, ColorMode::Spectral);
+        test_scene("textures", Some(Integrator::Path), ColorMode::Rgb);
+        test_scene("textures", Some(Integrator::Raycast), ColorMode::Rgb);
+    }
+
+    #[test]
+    fn false_colours_and_occlusion_leave_them_too() {
+        for integrator in [Integrator::Normals, Integrator::AmbientOcclusion { cosine: true }] {
+            test_scene("cutouts", Some(integrator), ColorMode::Rgb);
         }
     }
 }

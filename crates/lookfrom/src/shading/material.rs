@@ -34,6 +34,7 @@ use crate::shading::texture::{
 };
 
 pub use albedo::albedo;
+pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use kind::{

@@ -1,6 +1,6 @@
 //! Whitted's coefficients at eight plain hits side by side. The bits are those of [`Coefficients::at`].
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
@@ -14,7 +14,7 @@ use crate::integrator::SpectralModes;
 use crate::light::EmissionSpectrum;
 use crate::shading::material::{Coefficients, Whitted};
 use crate::shading::texture::lanes::TexturePoints;
-use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, sphere_uv};
+use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
 use crate::world::World;
 
 /// The spectral modes of eight paths.
@@ -202,7 +202,12 @@ fn varies(material: &Whitted) -> bool {
 }
 
 #[inline(never)]
-fn texture_point<'a>(world: &World, hit: &Hit, position: [f64; 3], ng: [f32; 3]) -> TexturePoint<'a> {
+pub(super) fn texture_point<'a>(
+    world: &World,
+    hit: &Hit,
+    position: [f64; 3],
+    ng: [f32; 3],
+) -> TexturePoint<'a> {
     let (mut uv, mut color) = (Vec2::ZERO, [1.0; 3]);
     if let Some(mesh) = plain::mesh(world, hit) {
         let Hit { u, v, primitive, .. } = *hit;
@@ -210,8 +215,7 @@ fn texture_point<'a>(world: &World, hit: &Hit, position: [f64; 3], ng: [f32; 3])
         uv = (1.0 - u - v) * uv0 + u * uv1 + v * uv2;
         color = mesh.color(primitive as usize, u, v);
     } else if let Some((_, binding)) = plain::sphere(world, hit) {
-        let outward = if binding.flip { ng.map(|x| -x) } else { ng };
-        uv = sphere_uv(binding.object_from_sphere * Vec3::from(outward));
+        uv = binding.uv(ng.into());
     }
     let world = world.origin + DVec3::from_array(position);
     TexturePoint { uv, world, color, n: ng.into(), ..TexturePoint::NOWHERE }

@@ -7,13 +7,14 @@ use super::arriving::{Arriving, Ends};
 use super::coefficients::{CoefficientColumns, Modes};
 use super::groups::Groups;
 use super::plain::PlainHits;
-use super::surfaces::Surfaces;
+use super::surfaces::{SurfacePoints, Surfaces};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter_rays, scatter_spectrum};
 use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::sample_streams::SampleStreams;
-use crate::integrator::{Path, SampleStream, SpectralModes};
+use crate::integrator::{FirstSurfaceColumns, Path, SampleStream, SpectralModes};
+use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -48,6 +49,8 @@ pub(super) struct PlainKernel<'a, F> {
     /// By slot.
     pub(super) modes: &'a SpectralModes,
     pub(super) groups: &'a mut Groups,
+    /// Receives the surfaces for AOVs, with the albedo of Whitted's coefficients.
+    pub(super) first: Option<&'a mut FirstSurfaceColumns>,
 }
 
 impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
@@ -55,12 +58,21 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, stream, modes, groups } = self;
+        let Self { world, eight, stream, modes, groups, first } = self;
         let (group, mut lights) = groups.next();
         let modes = Modes::of(eight, modes);
-        let surfaces = Surfaces::of(simd, world, &eight.plain);
+        // Of spheres they are costly.
+        let wants_uvs = first.is_some() || !eight.plain.are_on_spheres;
+        let at = SurfacePoints::of(simd, world, &eight.plain, wants_uvs);
+        let surfaces = Surfaces::at(simd, &at);
         let Surfaces { points, ng, ng_facing, ns_facing, wo, front, .. } = surfaces;
         let coefficients = CoefficientColumns::of(simd, world, eight, &surfaces, &modes);
+        if let Some(first) = first {
+            at.leave(first);
+            let CoefficientColumns { diffuse, mirror, transmission, .. } = coefficients;
+            let [r, g, b] = albedo_of_coefficients([diffuse, mirror, transmission]);
+            first.albedo = [r.into(), g.into(), b.into()];
+        }
         let beta = gather_spectrum(simd, &by_lane!(lane => eight.throughput(world, lane, modes.lane(lane))));
         let ambient = beta * coefficients.ambient * modes.constant(simd, world, &world.ambient);
         group.ambient = scatter_spectrum(ambient);

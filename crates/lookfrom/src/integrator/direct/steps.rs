@@ -10,7 +10,9 @@ use super::plain::PlainHits;
 use super::waiting::{Chosen, Waiting};
 use crate::core::lanes::{LANES, by_lane, filled};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Branch, Path, Probe, SampleStream, Shadow, SpectralModes, StepOutput, Term};
+use crate::integrator::{
+    Branch, FirstSurfaces, Path, Probe, Queues, SampleStream, Shadow, SpectralModes, StepOutput, Term,
+};
 use crate::light::Light;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
@@ -93,7 +95,8 @@ impl PlainSteps {
     ) {
         let mut waiting = std::mem::take(&mut self.waiting);
         let mut shade = |chosen: &Chosen<'_>| {
-            self.shade(world, stream, (paths, hits), chosen, &output.queues.lanes);
+            let Queues { lanes, first_surfaces, .. } = &mut output.queues;
+            self.shade(world, stream, (paths, hits), chosen, lanes, first_surfaces);
             finish(self, chosen.paths, output);
         };
         for (index, hit) in hits.iter().enumerate() {
@@ -114,6 +117,7 @@ impl PlainSteps {
         (paths, hits): (&[Path], &[Hit]),
         chosen: &Chosen<'_>,
         modes: &SpectralModes,
+        first_surfaces: &mut FirstSurfaces,
     ) {
         let &Chosen { paths: indices, materials, are_on_spheres } = chosen;
         for (lane, &index) in indices.iter().enumerate() {
@@ -126,7 +130,12 @@ impl PlainSteps {
         let paths = by_lane!(lane => &paths[indices[lane] as usize]);
         let rays = by_lane!(lane => &paths[lane].ray);
         let eight = Eight { paths, plain: PlainHits { rays, hits, are_on_spheres }, materials };
-        dispatch(level(), PlainKernel { world, eight: &eight, stream, modes, groups: &mut self.groups });
+        let mut left = eight.left(world, chosen.paths.len(), modes, first_surfaces);
+        let (groups, first) = (&mut self.groups, left.as_mut().map(|left| &mut *left.first));
+        dispatch(level(), PlainKernel { world, eight: &eight, stream, modes, groups, first });
+        if let Some(left) = left {
+            left.set_other_albedos(world, &eight);
+        }
     }
 
     /// The step of a path, if its hit is plain.

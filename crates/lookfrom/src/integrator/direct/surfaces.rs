@@ -1,12 +1,14 @@
 //! Eight plain surfaces side by side, from their hits.
 
+use glam::Vec2;
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::plain::{self, PlainHits};
-use crate::core::lanes::{by_lane, gather, gather_rays};
+use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
+use crate::integrator::FirstSurfaceColumns;
 use crate::primitive::{Triangles, gather_triangles};
 use crate::world::World;
 
@@ -19,7 +21,7 @@ pub(in crate::integrator) struct SurfacePoints<S: Simd> {
     pub(in crate::integrator) front: mask64x8<S>,
     wo: Vector<f64x8<S>>,
     ns: Vector<f64x8<S>>,
-    /// Texture coordinates on triangles.
+    /// Texture coordinates, where they are known.
     uv: Option<[f32x8<S>; 2]>,
 }
 
@@ -31,7 +33,7 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) ns_facing: Vector<f32x8<S>>,
     pub(super) wo: Vector<f32x8<S>>,
     pub(super) front: mask64x8<S>,
-    /// Texture coordinates on triangles.
+    /// Texture coordinates, where they are known.
     pub(super) uv: Option<[f32x8<S>; 2]>,
 }
 
@@ -45,19 +47,31 @@ impl<S: Simd> SurfacePoints<S> {
         let [origin, direction] = gather_rays(simd, &plain.rays);
         let wide = direction.widen();
         let (points, ng, ns, uv) = match plain.are_on_spheres {
-            true => on_spheres(simd, world, plain, [origin.widen(), wide]),
+            true => on_spheres(simd, world, plain, [origin.widen(), wide], wants_uvs),
             false => on_triangles(simd, world, plain, wants_uvs),
         };
         let wo = -wide.normalize();
         Self { direction, points, ng, front: ng.dot(wo).gt(f64x8::splat(simd, 0.0)), wo, ns, uv }
     }
+
+    /// Leaves them to AOVs, but for the albedo.
+    #[inline(always)]
+    pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
+        first.position = store_f64(self.points.position);
+        first.ng = store(Vector::<f32x8<S>>::narrow(self.ng));
+        first.ns = store(Vector::<f32x8<S>>::narrow(self.ns));
+        first.wo = store(Vector::<f32x8<S>>::narrow(self.wo));
+        if let Some([u, v]) = self.uv {
+            first.uv = [u.into(), v.into()];
+        }
+    }
 }
 
 impl<S: Simd> Surfaces<S> {
-    /// The surfaces of hits.
+    /// Those at points.
     #[inline(always)]
-    pub(super) fn of(simd: S, world: &World, plain: &PlainHits<'_>) -> Self {
-        let SurfacePoints { points, ng, front, wo, ns, uv, .. } = SurfacePoints::of(simd, world, plain, true);
+    pub(super) fn at(simd: S, at: &SurfacePoints<S>) -> Self {
+        let SurfacePoints { points, ng, front, wo, ns, uv, .. } = *at;
         let wo = Vector::<f32x8<S>>::narrow(wo);
         let ng_facing = Vector::narrow(ng.negate_where(!front));
         let ns_facing = Vector::<f32x8<S>>::narrow(ns.negate_where(!front));
@@ -103,6 +117,7 @@ fn on_spheres<S: Simd>(
     world: &World,
     plain: &PlainHits<'_>,
     [origin, direction]: [Vector<f64x8<S>>; 2],
+    wants_uvs: bool,
 ) -> Shapes<S> {
     let hits = &plain.hits;
     let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
@@ -121,7 +136,27 @@ fn on_spheres<S: Simd>(
     };
     let points = Points::<f32x8<S>>::on_spheres(center, radius, near);
     let ng = (points.position - center).normalize() * flip;
-    (points, ng, ng, None)
+    let uv = if wants_uvs { Some(sphere_uvs(simd, world, hits, Vector::narrow(ng))) } else { None };
+    (points, ng, ng, uv)
+}
+
+/// The texture coordinates of hits on spheres, by their normals; one by one.
+#[inline(always)]
+fn sphere_uvs<S: Simd>(
+    simd: S,
+    world: &World,
+    hits: &[&Hit; LANES],
+    normals: Vector<f32x8<S>>,
+) -> [f32x8<S>; 2] {
+    let normals = scatter(normals);
+    let uvs = by_lane!(lane => match plain::sphere(world, hits[lane]) {
+        Some((_, binding)) => binding.uv(normals[lane].into()),
+        None => Vec2::ZERO,
+    });
+    [
+        f32x8::load_array(simd, by_lane!(lane => uvs[lane].x)),
+        f32x8::load_array(simd, by_lane!(lane => uvs[lane].y)),
+    ]
 }
 
 /// The centre and the radius of a sphere, and −1 where its outside is the side of the centre, otherwise 1.

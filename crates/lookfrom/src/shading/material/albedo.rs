@@ -3,6 +3,8 @@
 //! A look-up of base colours, as in Cycles and Open Image Denoise, not an integral over directions: the reflection
 //! of a coat is left out, glass is white, a metal has its reflectance at normal incidence.
 
+use lookfrom_simd::{Float, Real};
+
 use super::{Material, MaterialKind, Metal};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
@@ -25,6 +27,19 @@ impl Material {
     pub(crate) fn even_albedo(&self) -> Option<[f32; 3]> {
         self.albedo
     }
+
+    /// Whether its [`albedo()`] is [`of_coefficients`].
+    #[inline]
+    pub(crate) fn has_albedo_of_coefficients(&self) -> bool {
+        matches!(self.kind, MaterialKind::Whitted(_))
+    }
+}
+
+/// The albedo of Whitted's model, by its coefficients `k_d`, `k_r` and `k_t` in RGB.
+#[inline(always)]
+pub(crate) fn of_coefficients<R: Real>([diffuse, mirror, transmission]: [Spectrum<R>; 3]) -> [R; 3] {
+    let [r, g, b, _] = (diffuse + mirror + transmission).0;
+    [Float::clamp(r, 0.0, 1.0), Float::clamp(g, 0.0, 1.0), Float::clamp(b, 0.0, 1.0)]
 }
 
 /// The same of all materials of a kind that has the same colours everywhere; `None` where they may vary.
@@ -65,7 +80,8 @@ fn of_kind(
     let color = |texture: &SpectrumTexture| Spectrum::from_rgb(textures.rgb(texture, point));
     match kind {
         MaterialKind::Whitted(k) => {
-            (color(&k.diffuse) + color(&k.mirror) + color(&k.transmission)).map(|lane| lane.clamp(0.0, 1.0))
+            let coefficients = [color(&k.diffuse), color(&k.mirror), color(&k.transmission)];
+            Spectrum::from_rgb(of_coefficients(coefficients))
         }
         MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
             color(reflectance)

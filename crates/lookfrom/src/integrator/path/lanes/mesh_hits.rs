@@ -1,5 +1,6 @@
 //! Hits on triangle meshes, shaded in lanes from the hit on: most of most pictures.
 
+use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
 use lookfrom_simd::{Float, Kernel, LaneMask, Simd, dispatch, f32x8, level, prelude::*};
 
@@ -10,10 +11,9 @@ use super::{Item, Memory};
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, store};
 use crate::core::points::StoredPlacement;
 use crate::core::vector::Vector;
-use crate::integrator::first_mesh_hits::texture_point;
 use crate::integrator::path::PathTracer;
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
-use crate::primitive::{Mesh, points_on_meshes};
+use crate::primitive::{Mesh, VertexData, points_on_meshes};
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
@@ -223,6 +223,30 @@ impl PathTracer {
             beta: path.beta,
         });
     }
+}
+
+/// The inputs of texture evaluation at a hit on a mesh, by position and geometric normal, and texture coordinates.
+#[inline]
+fn texture_point<'a>(
+    world: &World,
+    mesh: &'a Mesh,
+    hit: &Hit,
+    [position, ng]: [[f64; 3]; 2],
+    uv: [f32; 2],
+) -> TexturePoint<'a> {
+    let Hit { primitive, u: b1, v: b2, .. } = *hit;
+    let point = TexturePoint {
+        uv: uv.into(),
+        world: world.origin + DVec3::from_array(position),
+        color: mesh.color(primitive as usize, b1, b2),
+        n: DVec3::from_array(ng).as_vec3(),
+        ..TexturePoint::NOWHERE
+    };
+    if !mesh.has_vertex_data() {
+        return point;
+    }
+    let VertexData { more_uvs, opacity } = mesh.vertex_data(primitive as usize, b1, b2);
+    TexturePoint { more_uvs, opacity, ..point }
 }
 
 /// The points of eight hits, in the frames of materials without bump mapping.

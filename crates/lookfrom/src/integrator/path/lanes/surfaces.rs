@@ -100,7 +100,10 @@ impl SurfaceColumns {
     /// The same for AOVs.
     #[inline]
     pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
-        (first.position, first.ng, first.wo) = (self.position, self.ng, self.wo);
+        (first.position, first.wo) = (self.position, self.wo);
+        for (narrow, wide) in first.ng.iter_mut().flatten().zip(self.ng.iter().flatten()) {
+            *narrow = *wide as f32;
+        }
     }
 
     /// The position of a lane.
