@@ -22,8 +22,8 @@ use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{
-    ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler, Sensor,
-    Tonemap,
+    Allocation, ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler,
+    Sensor, Tonemap,
 };
 
 use crate::terminal::{Show, Way};
@@ -378,6 +378,14 @@ pub(crate) struct Overrides {
     /// Samples per pixel; FROM..BEFORE are some of them by number, as a part of a picture, to be merged with others
     #[arg(long, value_name = "N|FROM..BEFORE", value_parser = values::samples)]
     pub(crate) samples: Option<Range<u32>>,
+
+    /// How samples are spread over the pixels: evenly, or adaptively where noise is, --samples then being the mean
+    ///
+    /// Adaptively every pixel gets half of the samples. Their variances decide which pixels get the other half, up to eight
+    /// times --samples each: the light of a picture stays right in the mean, as a pixel does not decide about itself. It needs at
+    /// least 8 samples per pixel.
+    #[arg(long, value_name = "NAME", value_parser = values::word(Allocation::WORDS))]
+    pub(crate) allocation: Option<Allocation>,
 
     /// Integrator (light transport algorithm); the last four show the first hit in false colours
     #[arg(long, value_name = "NAME", value_parser = values::word(Integrator::WORDS))]

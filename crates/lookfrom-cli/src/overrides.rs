@@ -18,6 +18,7 @@ impl Overrides {
             crop: self.crop,
             samples: self.samples.as_ref().map(|samples| samples.end),
             first_sample: self.samples.as_ref().map_or(0, |samples| samples.start),
+            allocation: self.allocation,
             integrator: self.integrator,
             color: self.color,
             light_sampler: self.light_sampler,

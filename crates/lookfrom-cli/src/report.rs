@@ -186,9 +186,14 @@ impl Summary {
         if let Some([number, count]) = self.place {
             let _ = write!(text, "{number} of {count}: ");
         }
+        let is_allocated = self.ended_by == "samples" && self.samples_taken != u64::from(*samples);
+        let each = match is_allocated && !self.cancelled {
+            true => format!("{} samples per pixel in the mean, at most {samples}", self.samples_taken),
+            false => format!("{samples} samples per pixel"),
+        };
         let _ = writeln!(
             text,
-            "{scene} → {output}: {width} × {height} pixels, {samples} samples per pixel, {integrator}{}",
+            "{scene} → {output}: {width} × {height} pixels, {each}, {integrator}{}",
             if self.denoised { ", denoised" } else { "" }
         );
         let _ = writeln!(
@@ -219,10 +224,10 @@ impl Summary {
                 )
             }
         };
-        // The inspector knows the scene's number of samples, not the number that a time or noise limit led to.
-        let of = match self.ended_by {
-            "time" | "noise" => format!(" --samples {samples}"),
-            _ => String::new(),
+        // The inspector knows the scene's number of samples, not the number that a limit or an allocation led to.
+        let of = match is_allocated || matches!(self.ended_by, "time" | "noise") {
+            true => format!(" --samples {samples}"),
+            false => String::new(),
         };
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
             let _ = write!(

@@ -276,8 +276,10 @@ impl Tonemap {
 pub struct RenderSettings {
     /// The integrator.
     pub integrator: Integrator,
-    /// Samples per pixel: ≥ 1.
+    /// Samples per pixel, in the mean: ≥ 1.
     pub samples: u32,
+    /// How the samples are spread over the pixels.
+    pub allocation: Allocation,
     /// The maximum path depth: the number of reflections, refractions and scatterings.
     pub depth: u32,
     /// Minimum throughput of a branch of the ray tree; branches below it are cut off (Whitted's adaptive depth control).
@@ -300,6 +302,27 @@ pub struct RenderSettings {
     /// Otherwise interfaces block shadow rays, but no others, as in pbrt's integrators without media. Absorption inside
     /// materials is always rendered.
     pub media: bool,
+}
+
+/// How samples are spread over the pixels of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Allocation {
+    /// Each pixel gets the same number.
+    #[default]
+    Uniform,
+    /// Half of them evenly, the other half where the first has shown noise: adaptive sampling without bias.
+    Adaptive,
+}
+
+impl Allocation {
+    /// The words for the allocations, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] =
+        &[("uniform", Self::Uniform), ("adaptive", Self::Adaptive)];
+
+    /// The word for this allocation.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
 }
 
 /// The meaning of the four lanes of a spectrum: RGB or wavelengths.
@@ -350,6 +373,7 @@ impl Default for RenderSettings {
         Self {
             integrator: Integrator::Whitted,
             samples: 16,
+            allocation: Allocation::Uniform,
             depth: 8,
             min_contribution: 1.0 / 512.0,
             sampler: Sampler::Sobol,

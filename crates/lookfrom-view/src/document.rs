@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, Weak};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::image::{self, Image};
+use lookfrom_scene::settings::Allocation;
 use lookfrom_scene::stamps::Stamps;
 use lookfrom_scene::{Disk, Error, ErrorKind, Inputs, LoadContext, Location, Result};
 
@@ -103,8 +104,12 @@ impl Document {
             image::read(path, &mut LoadContext::new(&inputs.record(&Disk, scene.display().to_string())))
         };
         let reference = reference.as_ref().map(picture).transpose()?;
-        let options =
-            Options { environment: environment.as_ref().map(picture).transpose()?, ..options.clone() };
+        let options = Options {
+            environment: environment.as_ref().map(picture).transpose()?,
+            // A picture in a window gets finer everywhere, pass by pass.
+            allocation: Some(Allocation::Uniform),
+            ..options.clone()
+        };
         let session = Session::open_on_record(scene, &options, inputs)?;
         Ok(Loaded { generation, session, options, reference })
     }

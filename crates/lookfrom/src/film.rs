@@ -9,6 +9,7 @@
 //!
 //! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
 
+pub mod allocation;
 pub mod aov;
 mod channels;
 mod fireflies;
@@ -248,11 +249,6 @@ impl Film {
             && like.is_ok_and(|like| like.stored_channels() == self.stored_channels())
     }
 
-    /// Forgets which tiles were clean enough to get no more samples.
-    pub(crate) fn forget_clean(&mut self) {
-        self.tile.ledger.forget_clean();
-    }
-
     pub(crate) fn ledger_mut(&mut self) -> &mut SampleLedger {
         &mut self.tile.ledger
     }
@@ -379,6 +375,11 @@ fn common(a: PixelBounds, b: PixelBounds) -> PixelBounds {
     } else {
         PixelBounds { x0: 0, y0: 0, x1: 0, y1: 0 }
     }
+}
+
+/// The smallest rectangle around two.
+pub(crate) fn union(a: PixelBounds, b: PixelBounds) -> PixelBounds {
+    PixelBounds { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) }
 }
 
 fn too_large(message: String) -> Error {

@@ -9,6 +9,7 @@ mod camera_warnings;
 mod cost;
 mod driver;
 mod first_hit;
+mod progress;
 mod sensor;
 mod start;
 mod transport;
@@ -28,7 +29,7 @@ use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
-use crate::film::{FilmTile, FirstHitSums, SampleSums};
+use crate::film::{FEATURE_SAMPLES, FilmTile, FirstHitSums, SampleSums};
 use crate::integrator::{
     Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
     StepOutput, resolve_shadows,
@@ -43,11 +44,16 @@ use first_hit::FirstHits;
 use start::Start;
 use transport::Transport;
 
-pub use driver::{FEWEST_SAMPLES, Progress, Rendered, StopCriteria, StopReason, TileDone};
+pub use driver::FEWEST_SAMPLES;
+pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
 pub const SAMPLING_VERSION: u32 = 5;
+
+/// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
+/// make batches of at least three quarters of those of a whole tile.
+const BATCH: usize = 1536;
 
 /// A world, a view of it and the render settings: everything that determines the light of a picture.
 ///
@@ -342,18 +348,31 @@ impl Renderer {
     /// # Errors
     /// `Invalid` where the tile has one of them already.
     pub fn render_tile(&self, samples: Range<u32>, tile: &mut FilmTile) -> Result<Rays> {
-        self.render_tile_in(&mut Batch::default(), samples, tile)
+        self.render_pixels(&mut Batch::default(), &[tile.area()], samples, tile)
     }
 
-    /// As [`Renderer::render_tile`], in the memory of earlier batches.
-    fn render_tile_in(&self, batch: &mut Batch, samples: Range<u32>, tile: &mut FilmTile) -> Result<Rays> {
-        tile.record(samples.clone())?;
+    /// The same for the pixels of parts of a tile, in the memory of earlier batches.
+    fn render_pixels(
+        &self,
+        batch: &mut Batch,
+        parts: &[PixelBounds],
+        samples: Range<u32>,
+        tile: &mut FilmTile,
+    ) -> Result<Rays> {
+        for part in parts {
+            tile.record_part(*part, samples.clone())?;
+        }
         let mut rays = Rays::default();
         let mut ids = std::mem::take(&mut batch.ids);
+        let pixels = blocks(parts);
+        let together = samples_together(pixels.len(), &samples);
         ids.clear();
-        ids.extend(blocks(tile.area()).map(|pixel| SampleId { pixel, sample: samples.start }));
-        for sample in samples {
-            ids.iter_mut().for_each(|id| id.sample = sample);
+        ids.extend(
+            pixels
+                .into_iter()
+                .flat_map(|pixel| (0..together).map(move |k| SampleId { pixel, sample: samples.start + k })),
+        );
+        for sample in samples.step_by(together as usize) {
             batch.first_hits.start(tile.wants_first_hit(sample));
             rays += self.integrator.trace(self, &ids, batch);
             self.add_first_hits(&ids, batch, tile);
@@ -362,6 +381,7 @@ impl Renderer {
                 self.light(batch, &mut light);
                 tile.add_samples(&ids, &light, &mut batch.sums);
                 batch.light = light;
+                ids.iter_mut().for_each(|id| id.sample += together);
                 continue;
             }
             for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
@@ -375,12 +395,26 @@ impl Renderer {
                     tile.add_channels(x, y, self.sensor.channels(traced.rgb));
                 }
             }
+            ids.iter_mut().for_each(|id| id.sample += together);
         }
         tile.add_sums(&ids, &mut batch.sums);
         tile.add_first_hit_sums(&ids, &mut batch.first_hit_sums);
         batch.ids = ids;
         Ok(rays)
     }
+}
+
+/// The number of samples of each pixel that make a batch together: several where there are few pixels. A batch is of samples
+/// that all count for the denoiser, or none.
+fn samples_together(pixels: usize, samples: &Range<u32>) -> u32 {
+    let mut together = 1;
+    while samples.start >= FEATURE_SAMPLES
+        && 2 * together as usize * pixels <= BATCH
+        && samples.len().is_multiple_of(2 * together as usize)
+    {
+        together *= 2;
+    }
+    together
 }
 
 /// The light-path expressions of layers, for the lights of a world.
@@ -398,13 +432,15 @@ fn lanes_by([u, _]: [f32; 2]) -> SpectralMode {
     SpectralMode::Spectral(Wavelengths::sample_visible(u))
 }
 
-/// The pixels of an area by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.
-fn blocks(area: PixelBounds) -> impl Iterator<Item = [u32; 2]> {
-    const SIDE: usize = 8;
-    let PixelBounds { x0, y0, x1, y1 } = area;
-    let corners = (y0..y1).step_by(SIDE).flat_map(move |y| (x0..x1).step_by(SIDE).map(move |x| [x, y]));
-    corners.flat_map(move |[x, y]| {
-        let end = |start: u32, end: u32| (start + SIDE as u32).min(end);
-        (y..end(y, y1)).flat_map(move |row| (x..end(x, x1)).map(move |column| [column, row]))
-    })
+/// The pixels of disjoint areas by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.
+fn blocks(areas: &[PixelBounds]) -> Vec<[u32; 2]> {
+    let Some(&PixelBounds { x0: left, y0: top, .. }) = areas.first() else { return Vec::new() };
+    let mut pixels: Vec<[u32; 2]> = areas
+        .iter()
+        .flat_map(|area| (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| [x, y])))
+        .collect();
+    // Blocks start at the corner of the first area.
+    let block = |at: u32, start: u32| (i64::from(at) - i64::from(start)).div_euclid(8);
+    pixels.sort_by_key(|[x, y]| (block(*y, top), block(*x, left)));
+    pixels
 }

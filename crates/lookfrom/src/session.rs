@@ -41,13 +41,14 @@ use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::digest::Digested;
 use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{ImageSettings, Layers, RenderSettings};
+use lookfrom_scene::settings::{Allocation, ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{
     Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Result, Scene, Warning, load,
 };
 
 use crate::core::clock::Stopwatch;
+use crate::film::allocation::MOST_TIMES_MEAN;
 use crate::film::{Film, Picture};
 use crate::integrator::Integrator;
 use crate::render::{Progress, Renderer, StopCriteria, Subject};
@@ -226,7 +227,7 @@ impl Session {
             scene.image.layers = Layers::None;
             scene.image.light_paths.clear();
         }
-        let range = options.range(scene.render.samples)?;
+        let range = options.range(&scene.render)?;
         scene.render.samples = range.end;
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
@@ -395,8 +396,8 @@ impl Session {
     }
 
     /// Goes on with a film of this session's picture: renders the samples that it lacks, and finishes the picture, which
-    /// is the same as if the film had not been interrupted. Where the limit of noise is another one than that of the
-    /// film, tiles that were clean enough may get other numbers of samples than in one render with the new limit.
+    /// is the same as if the film had not been interrupted. Where the limit of noise, or the mean number of samples of an
+    /// adaptive allocation, is another one than that of the film, pixels may get other numbers of samples than in one render.
     ///
     /// # Errors
     /// `Invalid` for a film of another picture; `Request` for one with samples that this session would not take; as
@@ -409,7 +410,9 @@ impl Session {
             let message = "a film of another size, crop or other layers than this picture".to_owned();
             return Err(Error::invalid(&Location::default(), message));
         }
-        let wanted = self.first_sample..self.settings().samples;
+        let settings = self.settings();
+        let times = if settings.allocation == Allocation::Adaptive { MOST_TIMES_MEAN } else { 1 };
+        let wanted = self.first_sample..settings.samples.saturating_mul(times);
         if let Some(range) = film.ledger().range()
             && (range.start < wanted.start || range.end > wanted.end)
         {
@@ -418,8 +421,8 @@ impl Session {
                 range.start, range.end, wanted.start, wanted.end
             )));
         }
-        if provenance.noise() != before.noise() {
-            film.forget_clean();
+        if !provenance.adapts_as(&before) {
+            film.ledger_mut().forget_goals();
         }
         let _memory = self.room_for_picture()?;
         self.render_onto(film, progress)

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use lookfrom::render::{FEWEST_SAMPLES, Progress, StopCriteria, StopReason, TileDone};
 use lookfrom_scene::Scene;
+use lookfrom_scene::settings::Allocation;
 use support::{Compiled, own_scene};
 
 fn small(samples: u32) -> Scene {
@@ -64,6 +65,63 @@ fn clean_tiles_get_no_more_samples_and_threads_do_not_matter() {
     let never = until(0.0, 2);
     assert!(never.reason == StopReason::Samples || never.reason == StopReason::Noise);
     assert!(never.error <= one.error);
+}
+
+fn allocated(samples: u32, seed: u64) -> Compiled {
+    let mut scene = small(samples);
+    (scene.render.allocation, scene.render.seed) = (Allocation::Adaptive, seed);
+    Compiled::new(scene)
+}
+
+#[test]
+fn allocated_samples_are_the_given_number_in_the_mean_for_any_number_of_threads() {
+    let one = allocated(32, 0).render(1);
+    assert!(one.film == allocated(32, 0).render(3).film);
+    let counts: Vec<u64> =
+        (0..50).flat_map(|y| (0..72).map(move |x| (x, y))).map(|(x, y)| one.film.samples(x, y)).collect();
+    let (least, most) = (*counts.iter().min().unwrap(), *counts.iter().max().unwrap());
+    assert!(least == 16 && [64, 128, 256].contains(&most), "{least} … {most}");
+    assert_eq!((one.reason, u64::from(one.samples)), (StopReason::Samples, most));
+    let total = counts.iter().sum::<u64>();
+    assert_eq!(one.samples_taken, total);
+    assert!(total <= 32 * 72 * 50 && total > 30 * 72 * 50, "{total}");
+    // The samples of a pixel are those of an even picture.
+    let even = Compiled::new(small(most as u32)).film();
+    for (x, y) in (0..50).flat_map(|y| (0..72).map(move |x| (x, y))) {
+        assert!(one.film.samples(x, y) < most || one.film.mean(x, y) == even.mean(x, y));
+    }
+}
+
+#[test]
+fn allocated_samples_have_less_noise_and_no_bias() {
+    let truth = Compiled::new(small(2048)).film();
+    let pixels = || (0..50).flat_map(|y| (0..72).map(move |x| (x, y)));
+    let mut errors = [0.0, 0.0];
+    let mut means = Vec::new();
+    for seed in 1..=24 {
+        let mut even = small(16);
+        even.render.seed = seed;
+        let films = [Compiled::new(even).film(), allocated(16, seed).film()];
+        for (error, film) in errors.iter_mut().zip(&films) {
+            let square = |(x, y)| f64::from(film.mean(x, y)[1] - truth.mean(x, y)[1]).powi(2);
+            *error += pixels().map(square).sum::<f64>();
+        }
+        means.push(films[1].mean_luminance() / truth.mean_luminance() - 1.0);
+    }
+    assert!(errors[1] < 0.7 * errors[0], "{errors:?}");
+    let n = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / n;
+    let deviation = (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
+    assert!(mean.abs() < 4.0 * deviation + 1e-5 && deviation < 1e-3, "{mean} {deviation}");
+}
+
+#[test]
+fn what_cannot_be_allocated_is_refused() {
+    let enough = StopCriteria { time: None, noise: Some(0.1) };
+    assert!(allocated(32, 0).renderer().render_until(&enough, None, &()).is_err());
+    // Too few to know anything.
+    let few = allocated(7, 0).render(1);
+    assert!(few.film == Compiled::new(small(7)).film() && few.samples == 7);
 }
 
 /// Breaks off after a number of tiles, and remembers how many samples there were after each.

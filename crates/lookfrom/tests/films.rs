@@ -8,7 +8,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use lookfrom::film::Film;
 use lookfrom::render::{Progress, StopCriteria, TileDone};
 use lookfrom::session::{Exposure, FilmFile, Finished, Fireflies, Format, Options, Session};
-use lookfrom_scene::settings::{Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds};
+use lookfrom_scene::settings::{
+    Allocation, Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds,
+};
 use lookfrom_scene::{Budget, ErrorKind, Location};
 
 const SCENE: &[u8] = br#"
@@ -153,7 +155,14 @@ fn stopped_and_resumed_again_and_again_it_is_the_same() {
         integrator: Some(Integrator::Path),
         ..Options::default()
     };
-    for (name, options) in kinds().into_iter().chain([("adaptive", adaptive)]) {
+    let allocated = Options {
+        allocation: Some(Allocation::Adaptive),
+        samples: Some(40),
+        integrator: Some(Integrator::Path),
+        ..Options::default()
+    };
+    let adaptive = [("adaptive", adaptive), ("allocated", allocated)];
+    for (name, options) in kinds().into_iter().chain(adaptive) {
         let whole = rendered(&options, 2);
         let mut so_far: Option<Vec<u8>> = None;
         let mut stops = 0;
@@ -204,7 +213,15 @@ fn every_checkpoint_leads_to_the_same_end() {
         ..Options::default()
     };
     let whitted = Options { integrator: Some(Integrator::Whitted), samples: Some(5), ..Options::default() };
-    for options in [adaptive, whitted] {
+    let allocated = Options {
+        allocation: Some(Allocation::Adaptive),
+        samples: Some(24),
+        integrator: Some(Integrator::Path),
+        layers: Some(Layers::Geometry),
+        denoise: Some(true),
+        ..Options::default()
+    };
+    for options in [adaptive, whitted, allocated] {
         let session = session(&options, 2);
         let whole = bytes(&session, &session.render(&()).expect("a picture"));
         let checkpoints = Checkpoints { session: &session, files: Mutex::default() };
@@ -223,9 +240,15 @@ fn every_checkpoint_leads_to_the_same_end() {
 #[test]
 fn more_samples_are_those_of_one_render() {
     let of = |samples| Options { samples: Some(samples), ..Options::default() };
-    let session = session(&of(33), 2);
-    let finished = session.resume(read(&rendered(&of(7), 1)), &()).expect("a picture");
-    assert!(bytes(&session, &finished) == rendered(&of(33), 2));
+    let more = session(&of(33), 2);
+    let finished = more.resume(read(&rendered(&of(7), 1)), &()).expect("a picture");
+    assert!(bytes(&more, &finished) == rendered(&of(33), 2));
+    // Of an adaptive picture the samples that are there count, and the rest is allocated anew.
+    let adaptive = |samples| Options { allocation: Some(Allocation::Adaptive), ..of(samples) };
+    let more = session(&adaptive(32), 1);
+    let finished = more.resume(read(&rendered(&adaptive(8), 2)), &()).expect("a picture");
+    assert!((28..=33).contains(&finished.samples_taken()), "{}", finished.samples_taken());
+    assert!(session(&of(8), 1).resume(read(&bytes(&more, &finished)), &()).is_err());
 }
 
 #[test]

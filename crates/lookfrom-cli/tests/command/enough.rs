@@ -50,6 +50,28 @@ fn a_clean_picture_ends() {
 }
 
 #[test]
+fn a_number_of_samples_is_spent_where_noise_is() {
+    let stage = Stage::new("allocation");
+    noisy(&stage);
+    let run = stage.done("render noisy.toml --json -o a.exr --allocation adaptive --samples 20 --width 60");
+    let summary = &run.json()[0];
+    let (most, mean) = (summary["samples"].as_u64().unwrap(), summary["samples_taken"].as_u64().unwrap());
+    assert!([40, 80, 160].contains(&most) && (18..=20).contains(&mean), "{mean} {most}");
+    assert_eq!(summary["ended_by"], "samples");
+    let words = format!("{mean} samples per pixel in the mean, at most {most}");
+    assert!(run.stderr.contains(&words), "{}", run.stderr);
+    stage.done("render noisy.toml -q -o b.exr --allocation adaptive --samples 20 --width 60 --threads 1");
+    assert!(stage.bytes("a.exr") == stage.bytes("b.exr"), "threads matter");
+    // A limit of noise has no number to spend, a part does not know the others, and few samples know nothing.
+    stage.run("render noisy.toml -o c.exr --allocation adaptive --noise 0.1").fails(2, &["limit of noise"]);
+    stage
+        .run("render noisy.toml -o c.exr --film --allocation adaptive --samples 16 --part 1/2")
+        .fails(2, &["cannot be adaptive"]);
+    let few = stage.done("render noisy.toml -o c.exr --allocation adaptive --samples 4 --width 60");
+    assert!(few.stderr.contains("at least 8 samples"), "{}", few.stderr);
+}
+
+#[test]
 fn the_picture_is_there_before_the_end() {
     let stage = Stage::new("preview");
     let mut command = stage.command("render scene.toml -q -o p.png --time 10m --write-every 100ms");

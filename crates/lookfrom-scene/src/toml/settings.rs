@@ -4,8 +4,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
-    ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds,
-    RenderSettings, Sampler, Sensor, Tonemap,
+    Allocation, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
+    PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -31,6 +31,7 @@ pub(super) const FILTER: &[&str] = &["type", "radius", "sigma", "b", "c"];
 pub(super) const RENDER: &[&str] = &[
     "integrator",
     "samples",
+    "allocation",
     "depth",
     "min_contribution",
     "sampler",
@@ -166,6 +167,7 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
     RenderSettings {
         integrator: table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS)),
         samples: table.or("samples", default.samples.into(), |value| value.integer(1, 1 << 24)) as u32,
+        allocation: table.or("allocation", default.allocation, |value| value.choice(Allocation::WORDS)),
         depth: table.or("depth", default.depth.into(), |value| value.integer(0, 256)) as u32,
         min_contribution: table.or("min_contribution", default.min_contribution, |value| {
             value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))

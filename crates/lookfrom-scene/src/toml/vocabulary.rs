@@ -58,7 +58,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
     use super::{sky, solid};
-    use crate::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
+    use crate::settings::{Allocation, ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
         words.iter().map(|(word, _)| *word).collect()
@@ -80,6 +80,7 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("filter", words(Filter::WORDS)),
         ("tonemap", words(Tonemap::WORDS)),
         ("integrator", words(Integrator::WORDS)),
+        ("allocation", words(Allocation::WORDS)),
         ("sampler", words(Sampler::WORDS)),
         ("color", words(ColorMode::WORDS)),
         ("light_sampler", words(LightSampler::WORDS)),

@@ -116,7 +116,7 @@ impl Eight {
 }
 
 impl FilmTile {
-    /// Adds the first hits of a sample of each pixel, of one number in all pixels, to the tile or to `sums`; always of the same
+    /// Adds the first hits of samples, all of which count for the denoiser or none, to the tile or to `sums`; always of the same
     /// pixels until [`FilmTile::add_first_hit_sums`].
     pub(crate) fn add_first_hits(&mut self, ids: &[SampleId], met: &[AovColumns], sums: &mut FirstHitSums) {
         let Some(&SampleId { sample, .. }) = ids.first() else { return };
@@ -132,7 +132,7 @@ impl FilmTile {
         dispatch(level(), AddEights { met, eights, has_layers: self.has_layers(), others, firsts });
         for (indices, is_first) in [(&sums.others, false), (&sums.firsts, true)] {
             for &index in indices {
-                let [x, y] = ids[index].pixel;
+                let SampleId { pixel: [x, y], sample } = ids[index];
                 let (place, aovs) = (self.index_inside(x, y), met[index / LANES].of(index % LANES));
                 let layer = self.layers.get_mut(place);
                 let features = self.features.get_mut(place).filter(|_| are_features);

@@ -37,8 +37,8 @@ struct Run {
 struct Entry {
     /// In ascending order; none empty, none touching the next.
     samples: Vec<Range<u32>>,
-    /// Whether adaptive sampling has found the pixel clean enough to get no more.
-    is_clean: bool,
+    /// Number of samples that adaptive sampling gives the pixel, once it has decided.
+    goal: Option<u32>,
 }
 
 /// Samples that would be added twice.
@@ -81,57 +81,87 @@ impl SampleLedger {
         for (area, entry) in entries() {
             self.update(area, |mine| {
                 entry.samples.iter().for_each(|samples| insert(&mut mine.samples, samples.clone()));
-                mine.is_clean |= entry.is_clean;
+                mine.goal = mine.goal.max(entry.goal);
             });
         }
         Ok(())
     }
 
-    /// The parts of `wanted` that pixels of an area lack and that adaptive sampling has not found clean, as disjoint
-    /// rectangles from the top left.
+    /// The parts of `wanted` that pixels of an area lack, up to the goals of adaptive sampling, as disjoint rectangles from the
+    /// top left.
     pub fn missing(&self, area: PixelBounds, wanted: &Range<u32>) -> Vec<(PixelBounds, Range<u32>)> {
         let mut missing = Vec::new();
         self.in_area(area, |part, entry| {
             let Some(entry) = entry else {
-                missing.push((part, wanted.clone()));
+                if !wanted.is_empty() {
+                    missing.push((part, wanted.clone()));
+                }
                 return;
             };
-            if entry.is_clean {
-                return;
-            }
-            let mut start = wanted.start;
-            for samples in &entry.samples {
-                let end = samples.start.min(wanted.end);
-                if start < end {
-                    missing.push((part, start..end));
-                }
-                start = start.max(samples.end);
-            }
-            if start < wanted.end {
-                missing.push((part, start..wanted.end));
-            }
+            let end = entry.goal.map_or(wanted.end, |goal| goal.min(wanted.end));
+            missing.extend(entry.missing(wanted.start..end).map(|samples| (part, samples)));
         });
-        missing.retain(|(_, samples)| !samples.is_empty());
         missing
     }
 
-    /// Marks the pixels of an area as clean enough for adaptive sampling: nothing of them is missing any more.
-    pub(crate) fn mark_clean(&mut self, area: PixelBounds) {
-        self.update(area, |entry| entry.is_clean = true);
+    /// Whether the pixels of an area have all samples of `wanted`, or of as many as their goals say.
+    pub fn is_complete(&self, area: PixelBounds, wanted: &Range<u32>) -> bool {
+        let mut is_complete = true;
+        self.in_area(area, |_, entry| {
+            let end = |entry: &Entry| entry.goal.unwrap_or(wanted.end);
+            is_complete &=
+                entry.is_some_and(|entry| entry.missing(wanted.start..end(entry)).next().is_none());
+        });
+        is_complete
     }
 
-    /// Takes back what [`Self::mark_clean`] did.
-    pub(crate) fn forget_clean(&mut self) {
-        for (area, _) in self.clone().entries() {
-            self.update(area, |entry| entry.is_clean = false);
+    /// Sets the number of samples that adaptive sampling gives each pixel of an area.
+    pub(crate) fn set_goal(&mut self, area: PixelBounds, goal: u32) {
+        self.update(area, |entry| entry.goal = Some(goal));
+    }
+
+    /// Sets that of each pixel that has samples, by column and row.
+    pub(crate) fn set_goals(&mut self, goal_of: impl Fn([u32; 2]) -> u32) {
+        for Band { rows, runs } in std::mem::take(&mut self.bands) {
+            for row in rows {
+                let mut changed = Vec::with_capacity(runs.len());
+                for Run { columns, entry } in &runs {
+                    let mut start = columns.start;
+                    while start < columns.end {
+                        let goal = goal_of([start, row]);
+                        let end = (start..columns.end).find(|column| goal_of([*column, row]) != goal);
+                        let columns = start..end.unwrap_or(columns.end);
+                        start = columns.end;
+                        push_run(&mut changed, columns, Entry { goal: Some(goal), ..entry.clone() });
+                    }
+                }
+                push_band(&mut self.bands, row..row + 1, changed);
+            }
         }
     }
 
-    /// Whether all pixels of an area are marked as clean.
-    pub(crate) fn is_clean(&self, area: PixelBounds) -> bool {
-        let mut clean = true;
-        self.in_area(area, |_, entry| clean &= entry.is_some_and(|entry| entry.is_clean));
-        clean
+    /// Takes back all goals.
+    pub(crate) fn forget_goals(&mut self) {
+        for Band { rows, runs } in std::mem::take(&mut self.bands) {
+            let mut changed = Vec::with_capacity(runs.len());
+            for Run { columns, entry } in runs {
+                push_run(&mut changed, columns, Entry { goal: None, ..entry });
+            }
+            push_band(&mut self.bands, rows, changed);
+        }
+    }
+
+    /// Whether all pixels of an area have goals.
+    pub(crate) fn has_goals(&self, area: PixelBounds) -> bool {
+        let mut has_goals = true;
+        self.in_area(area, |_, entry| has_goals &= entry.is_some_and(|entry| entry.goal.is_some()));
+        has_goals
+    }
+
+    /// The sum of all goals, and the largest; `None` if no pixel has one.
+    pub(crate) fn goals(&self) -> Option<(u64, u32)> {
+        let goals = self.entries().filter_map(|(area, entry)| Some((pixels(area), entry.goal?)));
+        goals.map(|(pixels, goal)| (pixels * u64::from(goal), goal)).reduce(|a, b| (a.0 + b.0, a.1.max(b.1)))
     }
 
     /// Number of samples of all pixels together.
@@ -154,12 +184,7 @@ impl SampleLedger {
 
     /// The smallest rectangle around all pixels that have samples; `None` if there are none.
     pub fn bounds(&self) -> Option<PixelBounds> {
-        self.entries().map(|(area, _)| area).reduce(|a, b| PixelBounds {
-            x0: a.x0.min(b.x0),
-            y0: a.y0.min(b.y0),
-            x1: a.x1.max(b.x1),
-            y1: a.y1.max(b.y1),
-        })
+        self.entries().map(|(area, _)| area).reduce(super::union)
     }
 
     /// The samples of all pixels of an area if they are the same.
@@ -212,10 +237,11 @@ impl SampleLedger {
             }
             let mut column = area.x0;
             let of_rows = |x0, x1| PixelBounds { x0, y0: rows.start, x1, y1: rows.end };
-            for run in &band.runs {
+            let first = band.runs.partition_point(|run| run.columns.end <= area.x0);
+            for run in &band.runs[first..] {
                 let columns = run.columns.start.max(area.x0)..run.columns.end.min(area.x1);
                 if columns.is_empty() {
-                    continue;
+                    break;
                 }
                 if column < columns.start {
                     visit(of_rows(column, columns.start), None);
@@ -252,98 +278,97 @@ impl SampleLedger {
         if area.x0 >= area.x1 || area.y0 >= area.y1 {
             return;
         }
-        // The bands that the area meets, and its rows between them, are replaced.
-        let first = self.bands.partition_point(|band| band.rows.end <= area.y0);
+        // The bands that the area meets are replaced, with one before and one behind that may become one with them.
+        let first = self.bands.partition_point(|band| band.rows.end <= area.y0).saturating_sub(1);
         let last = self.bands.partition_point(|band| band.rows.start < area.y1);
-        let met: Vec<Band> = self.bands.drain(first..last).collect();
+        let met: Vec<Band> = self.bands.drain(first..(last + 1).min(self.bands.len())).collect();
         let mut bands = Vec::with_capacity(met.len() + 2);
+        let mut changed = |runs: Vec<Run>| updated(runs, area.x0..area.x1, &mut change);
         let mut row = area.y0;
-        let mut changed = |rows: Range<u32>, runs: &[Run]| {
-            let runs = updated(runs, area.x0..area.x1, &mut change);
-            Band { rows, runs }
-        };
         for Band { rows, runs } in met {
-            if rows.start < area.y0 {
-                bands.push(Band { rows: rows.start..area.y0, runs: runs.clone() });
-            }
-            let common = rows.start.max(area.y0)..rows.end.min(area.y1);
+            let common = rows.start.clamp(area.y0, area.y1)..rows.end.clamp(area.y0, area.y1);
+            // The rows of the area in front of this band that had no entries.
             if row < common.start {
-                bands.push(changed(row..common.start, &[]));
+                push_band(&mut bands, row..common.start, changed(Vec::new()));
             }
-            bands.push(changed(common.clone(), &runs));
-            row = common.end;
-            if rows.end > area.y1 {
-                bands.push(Band { rows: area.y1..rows.end, runs });
+            row = row.max(common.end);
+            if common.is_empty() {
+                push_band(&mut bands, rows, runs);
+                continue;
             }
+            let above = (rows.start < common.start).then(|| runs.clone());
+            let below = (common.end < rows.end).then(|| runs.clone());
+            push_band(&mut bands, rows.start..common.start, above.unwrap_or_default());
+            push_band(&mut bands, common.clone(), changed(runs));
+            push_band(&mut bands, common.end..rows.end, below.unwrap_or_default());
         }
         if row < area.y1 {
-            bands.push(changed(row..area.y1, &[]));
+            push_band(&mut bands, row..area.y1, changed(Vec::new()));
         }
-        bands.retain(|band| !band.runs.is_empty());
-        // Neighbours with the same runs become one, together with the bands before and behind.
-        let start = first.saturating_sub(1);
-        let end = (first + 1).min(self.bands.len());
-        let before = self.bands.get(start..first).unwrap_or_default().to_vec();
-        let behind = self.bands.get(first..end).unwrap_or_default().to_vec();
-        let mut joined: Vec<Band> = Vec::with_capacity(bands.len() + 2);
-        for band in before.into_iter().chain(bands).chain(behind) {
-            match joined.last_mut() {
-                Some(last) if last.rows.end == band.rows.start && last.runs == band.runs => {
-                    last.rows.end = band.rows.end;
-                }
-                _ => joined.push(band),
-            }
+        self.bands.splice(first..first, bands);
+    }
+}
+
+/// Appends a band behind others; it becomes one with the last if it continues it.
+fn push_band(all: &mut Vec<Band>, rows: Range<u32>, runs: Vec<Run>) {
+    match all.last_mut() {
+        _ if rows.is_empty() || runs.is_empty() => {}
+        Some(last) if last.rows.end == rows.start && last.runs == runs => last.rows.end = rows.end,
+        _ => all.push(Band { rows, runs }),
+    }
+}
+
+/// The same for a run.
+fn push_run(all: &mut Vec<Run>, columns: Range<u32>, entry: Entry) {
+    match all.last_mut() {
+        _ if columns.is_empty() || entry == Entry::default() => {}
+        Some(last) if last.columns.end == columns.start && last.entry == entry => {
+            last.columns.end = columns.end;
         }
-        self.bands.splice(start..end, joined);
+        _ => all.push(Run { columns, entry }),
     }
 }
 
 /// The runs of a band after a change in some of its columns.
-fn updated(runs: &[Run], columns: Range<u32>, change: &mut impl FnMut(&mut Entry)) -> Vec<Run> {
+fn updated(runs: Vec<Run>, columns: Range<u32>, change: &mut impl FnMut(&mut Entry)) -> Vec<Run> {
     let mut all: Vec<Run> = Vec::with_capacity(runs.len() + 2);
-    let mut push = |columns: Range<u32>, entry: Entry| {
-        if columns.is_empty() || entry == Entry::default() {
-            return;
-        }
-        match all.last_mut() {
-            Some(last) if last.columns.end == columns.start && last.entry == entry => {
-                last.columns.end = columns.end;
-            }
-            _ => all.push(Run { columns, entry }),
-        }
-    };
     let mut column = columns.start;
-    let mut changed = |entry: &Entry| {
-        let mut entry = entry.clone();
+    let mut changed = |mut entry: Entry| {
         change(&mut entry);
         entry
     };
-    for run in runs {
-        let Run { columns: mine, entry } = run;
-        if mine.end <= columns.start {
-            push(mine.clone(), entry.clone());
+    for Run { columns: mine, entry } in runs {
+        let common = mine.start.clamp(columns.start, columns.end)..mine.end.clamp(columns.start, columns.end);
+        // The columns in front of this run that had no entry.
+        if column < common.start {
+            push_run(&mut all, column..common.start, changed(Entry::default()));
+        }
+        column = column.max(common.end);
+        if common.is_empty() {
+            push_run(&mut all, mine, entry);
             continue;
         }
-        if mine.start < columns.start {
-            push(mine.start..columns.start, entry.clone());
-        }
-        // The columns in front of this run that had no entry.
-        let common = mine.start.clamp(columns.start, columns.end)..mine.end.clamp(columns.start, columns.end);
-        if column < common.start {
-            push(column..common.start, changed(&Entry::default()));
-        }
-        push(common.clone(), changed(entry));
-        column = column.max(common.end);
-        push(mine.start.max(columns.end)..mine.end.max(columns.end), entry.clone());
+        let before = (mine.start < common.start).then(|| entry.clone());
+        let behind = (common.end < mine.end).then(|| entry.clone());
+        push_run(&mut all, mine.start..common.start, before.unwrap_or_default());
+        push_run(&mut all, common.clone(), changed(entry));
+        push_run(&mut all, common.end..mine.end, behind.unwrap_or_default());
     }
     if column < columns.end {
-        // Behind the last run that begins in front of the end; runs behind the end have been handled by their clamps.
-        push(column..columns.end, changed(&Entry::default()));
+        push_run(&mut all, column..columns.end, changed(Entry::default()));
     }
     all
 }
 
 impl Entry {
+    /// The parts of a range that are not there.
+    fn missing(&self, wanted: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+        let starts = std::iter::once(0).chain(self.samples.iter().map(|samples| samples.end));
+        let ends = self.samples.iter().map(|samples| samples.start).chain([u32::MAX]);
+        let gaps = starts.zip(ends).map(move |(start, end)| start.max(wanted.start)..end.min(wanted.end));
+        gaps.filter(|gap| !gap.is_empty())
+    }
+
     fn count(&self) -> u32 {
         self.samples.iter().map(|samples| samples.end - samples.start).sum()
     }

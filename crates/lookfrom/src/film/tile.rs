@@ -221,7 +221,15 @@ impl FilmTile {
     /// # Errors
     /// `Invalid` where it has one of them already.
     pub fn record(&mut self, samples: Range<u32>) -> Result<()> {
-        self.ledger.add(self.area, samples).map_err(|overlap| twice(&overlap))
+        self.record_part(self.area, samples)
+    }
+
+    /// The same for the pixels of a part.
+    ///
+    /// # Errors
+    /// As [`FilmTile::record`].
+    pub(crate) fn record_part(&mut self, part: PixelBounds, samples: Range<u32>) -> Result<()> {
+        self.ledger.add(part, samples).map_err(|overlap| twice(&overlap))
     }
 
     /// Adds the sums of another tile, whose pixels are all within this one.

@@ -1,9 +1,10 @@
-//! The render driver: threads, passes, tiles, stop criteria, progress.
+//! The render driver: threads, passes, tiles.
 //!
 //! The value of a sample does not depend on anything here: [`Renderer::render_tile`] computes it, and the film of a
 //! number of samples is the same for any division of the work. *Numbers* of samples depend, apart from the clock, only
 //! on the film at the ends of *rounds* (after 1, 2, 4 … 64 samples per pixel, then every 64): so adaptive pictures,
-//! too, are the same for any number of threads. Whether a tile has enough samples is decided from the samples of its
+//! too, are the same for any number of threads. There are two ways. The samples may be [allocated](crate::film::allocation)
+//! adaptively, without bias. Or a limit of noise decides for each tile whether it has enough, from the samples of its
 //! picture, which favours pictures that look clean by chance (a bias towards dark of the order of the remaining noise);
 //! it is kept small by a minimum of [`FEWEST_SAMPLES`], and because whole tiles are judged, not pixels.
 
@@ -12,13 +13,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use lookfrom_scene::Result;
-use lookfrom_scene::settings::PixelBounds;
+use lookfrom_scene::settings::{Allocation, PixelBounds, RenderSettings};
+use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
+use super::progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 use super::{Batch, Rays, Renderer};
 use crate::core::clock::Stopwatch;
 use crate::core::parallel;
-use crate::film::{Film, FilmTile, Picture};
+use crate::film::allocation::{self, LEAST_MEAN};
+use crate::film::{Film, FilmTile, union};
 
 /// Side of a tile in pixels. One sample of each pixel of a tile is a batch.
 const TILE: u32 = 32;
@@ -28,105 +31,6 @@ const LONGEST_ROUND: u32 = 64;
 
 /// Minimum number of samples per pixel before a tile or picture may count as clean.
 pub const FEWEST_SAMPLES: u32 = 16;
-
-/// Stop criteria, besides the number of samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StopCriteria {
-    /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
-    /// reached on wasm32-unknown-unknown, which has no clock.
-    pub time: Option<Duration>,
-    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when no
-    /// other tile is left.
-    pub noise: Option<f64>,
-}
-
-/// The reason why a render ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum StopReason {
-    /// Every pixel has all its samples.
-    Samples,
-    /// The time limit was reached.
-    Time,
-    /// Every tile was clean enough.
-    Noise,
-    /// It was cancelled.
-    Cancelled,
-}
-
-impl StopReason {
-    /// A word for summaries.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Samples => "samples",
-            Self::Time => "time",
-            Self::Noise => "noise",
-            Self::Cancelled => "interrupt",
-        }
-    }
-}
-
-/// A tile that has received more samples.
-#[derive(Clone, Debug)]
-pub struct TileDone {
-    /// Its pixels.
-    pub area: PixelBounds,
-    /// The new samples of each of them.
-    pub samples: Range<u32>,
-    /// Samples taken so far, of all pixels together.
-    pub done: u64,
-    /// Samples of all pixels together at the end; an estimate where a stop criterion may end the render.
-    pub total: u64,
-    /// Rays traced so far.
-    pub rays: u64,
-    /// The tile's picture so far, if [`Progress::wants_pixels`]: of the size of `area`, row by row from its top left,
-    /// linear light.
-    pub picture: Option<Picture>,
-}
-
-/// Receives the progress of a render, and may cancel it. Called from many threads; no lock is held during the call.
-pub trait Progress: Sync {
-    /// A tile has received more samples. Tiles may come in any order, those of one area in the order of their samples.
-    fn tile(&self, _done: TileDone) {}
-
-    /// Whether tiles should come with their pictures.
-    fn wants_pixels(&self) -> bool {
-        false
-    }
-
-    /// Whether to stop before the next tile.
-    fn cancelled(&self) -> bool {
-        false
-    }
-
-    /// Whether to pause before the next tile for [`Progress::checkpoint`].
-    fn wants_checkpoint(&self) -> bool {
-        false
-    }
-
-    /// The film so far. No thread works on it meanwhile; a parallel loop of rayon runs on the threads of the render.
-    fn checkpoint(&self, _film: &Film) {}
-}
-
-/// Ignores all progress.
-impl Progress for () {}
-
-/// The result of a render.
-#[derive(Debug)]
-pub struct Rendered {
-    /// The film.
-    pub film: Film,
-    /// Numbers of rays traced.
-    pub rays: Rays,
-    /// The reason why it ended.
-    pub reason: StopReason,
-    /// Maximum number of samples of a pixel, without a cancelled pass.
-    pub samples: u32,
-    /// Samples of all pixels together.
-    pub samples_taken: u64,
-    /// The [relative error](Film::relative_error) of the whole picture.
-    pub error: f64,
-}
 
 impl Renderer {
     /// Renders the whole picture with all its samples on `threads` threads (`None` is one per processor). Without the
@@ -160,7 +64,7 @@ impl Renderer {
     /// [checkpoint](Progress::checkpoint) or the end of a render with the same limit.
     ///
     /// # Errors
-    /// As [`Renderer::render`].
+    /// As [`Renderer::render`]; `Request` for adaptive allocation together with a limit of noise, or of a part of the samples.
     pub fn render_onto(
         &self,
         film: Film,
@@ -169,6 +73,11 @@ impl Renderer {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
+        let pilot = self.pilot();
+        if pilot.is_some() && (first != 0 || stop.noise.is_some()) {
+            let message = "adaptive allocation decides by half of a picture's samples: it needs all from the first on, and no limit of noise";
+            return Err(Error::new(ErrorKind::Request, &Location::default(), message));
+        }
         let tiles = tiles(film.area());
         let all: u64 = tiles.iter().map(area).sum();
         let end = self.settings.samples;
@@ -182,11 +91,17 @@ impl Renderer {
             film: Mutex::new((film, Rays::default())),
             batches: Mutex::default(),
         };
-        let (samples, reason) = parallel::on_threads(threads, || work.rounds(stop))??;
+        let (samples, reason) = parallel::on_threads(threads, || work.render(stop, pilot))??;
         let (film, rays) = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
         let error = film.relative_error(film.area(), film.mean_luminance());
         let samples_taken = film.ledger().total();
         Ok(Rendered { film, rays, reason, samples, samples_taken, error })
+    }
+
+    /// The number of samples per pixel after which the others are allocated; `None` where all pixels get the same.
+    fn pilot(&self) -> Option<u32> {
+        let RenderSettings { allocation, samples, .. } = self.settings;
+        (allocation == Allocation::Adaptive && samples >= LEAST_MEAN).then(|| allocation::pilot(samples))
     }
 }
 
@@ -204,29 +119,49 @@ struct Work<'a> {
     total: AtomicU64,
 }
 
+/// Pixels of a tile that lack the same samples.
+struct Part {
+    /// Disjoint.
+    areas: Vec<PixelBounds>,
+    samples: Range<u32>,
+}
+
 impl Work<'_> {
     /// Takes samples until a criterion is met. Returns the number of samples per pixel of tiles that are not clean, and
     /// the reason why it ended.
-    fn rounds(&self, stop: &StopCriteria) -> Result<(u32, StopReason)> {
-        let started = Stopwatch::start();
-        let Range { start: first, end } = self.wanted;
+    fn render(&self, stop: &StopCriteria, pilot: Option<u32>) -> Result<(u32, StopReason)> {
+        let mut clock = Clock { started: Stopwatch::start(), taken: 0 };
+        let Some(pilot) = pilot else { return self.rounds(0..self.wanted.end, stop, &mut clock) };
+        let (samples, reason) = self.rounds(0..pilot, stop, &mut clock)?;
+        if reason != StopReason::Samples {
+            return Ok((samples, reason));
+        }
+        let most = self.allocate();
+        let (samples, reason) = self.rounds(pilot..most, stop, &mut clock)?;
+        Ok((samples.max(pilot), reason))
+    }
+
+    /// Takes a range of samples in rounds, until a criterion is met.
+    fn rounds(
+        &self,
+        wanted: Range<u32>,
+        stop: &StopCriteria,
+        clock: &mut Clock,
+    ) -> Result<(u32, StopReason)> {
+        let first = self.wanted.start;
         let mut samples = 0;
-        let mut taken_now = 0;
-        for round in rounds(end).filter(|round| round.end > first) {
+        for round in rounds(wanted.clone()).filter(|round| round.end > first) {
             let mut start = round.start.max(first);
             while start < round.end {
-                let length = match stop.time {
-                    Some(time) => affordable(taken_now, started.elapsed(), time),
-                    None => u32::MAX,
-                };
+                let length = stop.time.map_or(u32::MAX, |time| clock.affordable(time));
                 let pass = start..round.end.min(start.saturating_add(length));
                 match self.pass(pass.clone())? {
                     Pass::Cancelled => return Ok((samples, StopReason::Cancelled)),
                     Pass::Complete => {}
-                    Pass::Done => taken_now += pass.end - pass.start,
+                    Pass::Done => clock.taken += pass.end - pass.start,
                 }
                 (start, samples) = (pass.end, pass.end - first);
-                if stop.time.is_some_and(|time| started.elapsed() >= time) && start < end {
+                if stop.time.is_some_and(|time| clock.started.elapsed() >= time) && start < wanted.end {
                     return Ok((samples, StopReason::Time));
                 }
             }
@@ -241,9 +176,10 @@ impl Work<'_> {
 
     /// Adds the samples to every pixel that lacks them and is not clean.
     fn pass(&self, samples: Range<u32>) -> Result<Pass> {
-        let missing = || -> Vec<(PixelBounds, Range<u32>)> {
+        let missing = || -> Vec<Part> {
             let guard = locked(&self.film);
-            self.tiles.iter().flat_map(|tile| guard.0.ledger().missing(*tile, &samples)).collect()
+            let of_tile = |tile: &PixelBounds| parts(guard.0.ledger().missing(*tile, &samples));
+            self.tiles.iter().flat_map(of_tile).collect()
         };
         let mut parts = missing();
         if parts.is_empty() {
@@ -255,8 +191,7 @@ impl Work<'_> {
                 if self.progress.cancelled() || index > 0 && self.progress.wants_checkpoint() {
                     return Ok(false);
                 }
-                let (area, samples) = &parts[index];
-                self.part(area, samples).map(|()| true)
+                self.part(&parts[index]).map(|()| true)
             });
             let done = done.into_iter().collect::<Result<Vec<bool>>>()?;
             if done.into_iter().all(|done| done) {
@@ -271,22 +206,23 @@ impl Work<'_> {
         Ok(Pass::Done)
     }
 
-    /// Adds samples to the pixels of an area.
-    fn part(&self, part: &PixelBounds, samples: &Range<u32>) -> Result<()> {
-        let mut tile = FilmTile::for_image(*part, self.renderer.image())?;
+    /// Adds the samples of a part.
+    fn part(&self, Part { areas, samples }: &Part) -> Result<()> {
+        let around = areas.iter().copied().reduce(union).unwrap_or(self.tiles[0]);
+        let mut tile = FilmTile::for_image(around, self.renderer.image())?;
         let mut batch = locked(&self.batches).pop().unwrap_or_default();
-        let rays = self.renderer.render_tile_in(&mut batch, samples.clone(), &mut tile)?;
+        let rays = self.renderer.render_pixels(&mut batch, areas, samples.clone(), &mut tile)?;
         locked(&self.batches).push(batch);
         let wants_pixels = self.progress.wants_pixels();
         let (rays, picture) = {
             let mut guard = locked(&self.film);
             guard.0.add_tile(&tile)?;
             guard.1 += rays;
-            (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(*part)))
+            (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(around)))
         };
-        let of_part = area(part) * u64::from(samples.end - samples.start);
+        let of_part = areas.iter().map(area).sum::<u64>() * u64::from(samples.end - samples.start);
         self.progress.tile(TileDone {
-            area: *part,
+            area: around,
             samples: samples.clone(),
             done: self.done.fetch_add(of_part, Ordering::Relaxed) + of_part,
             total: self.total.load(Ordering::Relaxed),
@@ -294,6 +230,21 @@ impl Work<'_> {
             picture,
         });
         Ok(())
+    }
+
+    /// At the end of the pilot: decides how many samples each pixel gets, unless an interrupted render has decided. Returns the
+    /// greatest number.
+    fn allocate(&self) -> u32 {
+        let mut guard = locked(&self.film);
+        let film = &mut guard.0;
+        let area @ PixelBounds { x0, y0, x1, .. } = film.area();
+        if !film.ledger().has_goals(area) {
+            let goals = film.allocation(self.renderer.settings.samples);
+            film.ledger_mut().set_goals(|[x, y]| goals[((y - y0) * (x1 - x0) + x - x0) as usize]);
+        }
+        let (total, most) = film.ledger().goals().unwrap_or_default();
+        self.total.store(total, Ordering::Relaxed);
+        most
     }
 
     /// At the end of a round: marks the tiles that are clean enough, and estimates the number of samples that the
@@ -307,7 +258,7 @@ impl Work<'_> {
             let mut total = self.done.load(Ordering::Relaxed) as f64;
             let mut clean = Vec::new();
             for tile in &self.tiles {
-                if film.ledger().is_clean(*tile) {
+                if film.ledger().has_goals(*tile) {
                     continue;
                 }
                 let error = film.relative_error(*tile, mean);
@@ -319,10 +270,10 @@ impl Work<'_> {
                     clean.push(*tile);
                 }
             }
-            clean.into_iter().for_each(|tile| film.ledger_mut().mark_clean(tile));
+            clean.into_iter().for_each(|tile| film.ledger_mut().set_goal(tile, samples));
             self.total.store(total as u64, Ordering::Relaxed);
         }
-        self.tiles.iter().all(|tile| film.ledger().is_clean(*tile))
+        self.tiles.iter().all(|tile| film.ledger().has_goals(*tile))
     }
 }
 
@@ -342,6 +293,20 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// What was taken, and since when.
+struct Clock {
+    started: Stopwatch,
+    /// Samples per pixel.
+    taken: u32,
+}
+
+impl Clock {
+    /// Number of samples per pixel in the next pass.
+    fn affordable(&self, time: Duration) -> u32 {
+        affordable(self.taken, self.started.elapsed(), time)
+    }
+}
+
 /// Number of samples per pixel in the next pass, if `samples` took `elapsed`: enough to reach the time limit, not to
 /// pass it by much.
 fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
@@ -350,6 +315,18 @@ fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
     }
     let left = time.saturating_sub(elapsed).as_secs_f64();
     ((left * f64::from(samples) / elapsed.as_secs_f64().max(1e-9)) as u32).max(1)
+}
+
+/// The missing samples of a tile's pixels, those with the same samples together.
+fn parts(missing: Vec<(PixelBounds, Range<u32>)>) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
+    for (area, samples) in missing {
+        match parts.iter_mut().find(|part| part.samples == samples) {
+            Some(part) => part.areas.push(area),
+            None => parts.push(Part { areas: vec![area], samples }),
+        }
+    }
+    parts
 }
 
 /// The parts of an area that threads work on.
@@ -371,11 +348,11 @@ fn area(tile: &PixelBounds) -> u64 {
     u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
 }
 
-/// 0..1, 1..2, 2..4, 4..8 … up to `samples`.
-fn rounds(samples: u32) -> impl Iterator<Item = Range<u32>> {
-    let mut start = 0;
+/// 0..1, 1..2, 2..4, 4..8 … up to the end of the samples, or as many from their start on.
+fn rounds(samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+    let Range { mut start, end } = samples;
     std::iter::from_fn(move || {
-        let length = start.clamp(1, LONGEST_ROUND).min(samples - start);
+        let length = start.clamp(1, LONGEST_ROUND).min(end.saturating_sub(start));
         let round = start..start + length;
         start = round.end;
         (!round.is_empty()).then_some(round)
@@ -389,11 +366,12 @@ mod tests {
     #[test]
     fn rounds_are_aligned_and_whole() {
         for samples in [1, 2, 3, 64, 65, 100, 1000] {
-            let rounds: Vec<_> = rounds(samples).collect();
+            let rounds: Vec<_> = rounds(0..samples).collect();
             assert_eq!((rounds[0].start, rounds[rounds.len() - 1].end), (0, samples));
             assert!(rounds.windows(2).all(|pair| pair[0].end == pair[1].start));
             assert!(rounds.iter().all(|round| round.len() <= 64));
         }
+        assert_eq!(rounds(20..90).collect::<Vec<_>>(), [20..40, 40..80, 80..90]);
     }
 
     #[test]

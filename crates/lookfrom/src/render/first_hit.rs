@@ -187,7 +187,8 @@ mod tests {
         renderer.render_tile(0..3, &mut together).unwrap();
         let space = CameraSpace::of(&renderer);
         for sample in 0..3 {
-            let ids: Vec<SampleId> = blocks(area).map(|pixel| SampleId { pixel, sample }).collect();
+            let ids: Vec<SampleId> =
+                blocks(&[area]).into_iter().map(|pixel| SampleId { pixel, sample }).collect();
             let mut batch = Batch::default();
             batch.first_hits.start(true);
             renderer.integrator.trace(&renderer, &ids, &mut batch);
@@ -205,7 +206,7 @@ mod tests {
             film.add_tile(&tile).unwrap();
             film
         });
-        for [x, y] in blocks(area) {
+        for [x, y] in blocks(&[area]) {
             let aovs = |film: &Film| (film.aovs(x, y), film.denoiser_features(x, y));
             assert_eq!(aovs(&together), aovs(&each), "{name}, {integrator:?}, {color:?}, pixel {x} {y}");
         }

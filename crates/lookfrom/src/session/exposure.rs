@@ -4,7 +4,7 @@
 //! chosen before the picture is rendered, so that all its parts, previews and films have the same.
 
 use lookfrom_scene::Result;
-use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+use lookfrom_scene::settings::{Allocation, ImageSettings, RenderSettings};
 
 use super::Session;
 use crate::post::exposure;
@@ -31,7 +31,11 @@ impl Session {
         let scale = f64::from(SIDE) / f64::from(image.width.max(image.height));
         let side = |pixels: u32| ((f64::from(pixels) * scale).round() as u32).max(1);
         small.set_image(image.of_light(side(image.width), side(image.height)))?;
-        small.set_settings(RenderSettings { samples: SAMPLES, ..self.settings().clone() })?;
+        small.set_settings(RenderSettings {
+            samples: SAMPLES,
+            allocation: Allocation::Uniform,
+            ..self.settings().clone()
+        })?;
         (small.first_sample, small.identity) = (0, None);
         (small.stop.time, small.stop.noise) = (None, None);
         let stops = exposure::stops(&small.render(&())?.picture);

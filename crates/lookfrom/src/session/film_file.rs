@@ -16,7 +16,7 @@ use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Result};
 
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
 use super::{Developed, Development, encode, finish, header};
-use crate::film::{Film, SampleId, SampleLedger};
+use crate::film::{Film, SampleId, SampleLedger, union};
 
 /// A film and its provenance, as a file has them.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,12 +101,11 @@ impl FilmFile {
     /// where there is no memory. Then no sample has been added.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         self.provenance.check_same(&other.provenance)?;
-        if self.provenance.noise() != other.provenance.noise() {
-            return Err(Error::invalid(&Location::default(), "films with different limits of noise"));
+        if !self.provenance.adapts_as(&other.provenance) {
+            let message = "films with different limits of noise, or different allocations of samples";
+            return Err(Error::invalid(&Location::default(), message));
         }
-        let [a, b] = [self.film.area(), other.film.area()];
-        let (x0, y0, x1, y1) = (a.x0.min(b.x0), a.y0.min(b.y0), a.x1.max(b.x1), a.y1.max(b.y1));
-        self.film.enlarge(PixelBounds { x0, y0, x1, y1 })?;
+        self.film.enlarge(union(self.film.area(), other.film.area()))?;
         self.film.merge(&other.film)?;
         // Of texts that may differ, such as names of files on other machines, the same ones for any order of the films.
         if other.provenance.order() < self.provenance.order() {

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds, Sensor};
+use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Sensor};
 
 use super::{Development, Fireflies, Session};
 use crate::core::color;
@@ -36,6 +36,9 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
     texts.extend(sensor(image));
     if let Some(noise) = session.stop.noise {
         texts.push((NOISE, noise.to_string()));
+    }
+    if render.allocation == Allocation::Adaptive {
+        texts.push((ALLOCATION, format!("adaptive, {} samples per pixel in the mean", render.samples)));
     }
     match camera.view {
         View::Look { lookfrom, lookat, up } => {
@@ -82,6 +85,9 @@ pub(super) fn light_paths(texts: &[(String, String)]) -> impl Iterator<Item = &s
 
 /// The name of the text with the relative error at which a tile gets no more samples.
 pub(super) const NOISE: &str = "noise";
+
+/// The name of the text of adaptive allocation.
+pub(super) const ALLOCATION: &str = "allocation";
 
 /// Names of the texts that [`finished`] adds.
 const OF_FINISHED: [&str; 7] =

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::digest::{Digest, Digested};
-use lookfrom_scene::settings::RenderSettings;
+use lookfrom_scene::settings::{Allocation, RenderSettings};
 use lookfrom_scene::{ImportOptions, Scene, Variables};
 
 use super::{Options, Provenance, Session, header};
@@ -91,7 +91,8 @@ impl Identity {
 
     /// The provenance of the picture that a session has now.
     pub(super) fn provenance(&self, session: &Session) -> Provenance {
-        let settings = RenderSettings { samples: 0, ..session.settings().clone() };
+        let settings =
+            RenderSettings { samples: 0, allocation: Allocation::Uniform, ..session.settings().clone() };
         let camera = Camera { at: lookfrom_scene::Location::default(), ..session.camera.clone() };
         let turn = session.turntable.as_ref().map(|turning| turning.degrees);
         let mut digest = Digest::default();

@@ -10,8 +10,8 @@ use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{
-    Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
-    PixelBounds, RenderSettings, Sampler, Tonemap,
+    Allocation, Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer,
+    LightSampler, PixelBounds, RenderSettings, Sampler, Tonemap,
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
@@ -41,6 +41,8 @@ pub struct Options {
     /// Whether the film will be kept in a file ([`Session::provenance`](super::Session::provenance)): the files of the
     /// scene are digested as they are read.
     pub film: bool,
+    /// How the samples are spread over the pixels.
+    pub allocation: Option<Allocation>,
     /// The light transport algorithm.
     pub integrator: Option<Integrator>,
     /// RGB or spectral.
@@ -175,6 +177,13 @@ impl Options {
         }
         replace(&mut image.tonemap, self.tonemap);
         replace(&mut render.samples, self.samples);
+        if self.allocation == Some(Allocation::Adaptive) && self.limits_noise() {
+            return Err(unsuitable(
+                "adaptive allocation spends a given number of samples; a limit of noise has no such number"
+                    .to_owned(),
+            ));
+        }
+        replace(&mut render.allocation, self.allocation);
         replace(&mut render.integrator, self.integrator);
         replace(&mut render.color, self.color);
         replace(&mut render.light_sampler, self.light_sampler);
@@ -192,11 +201,19 @@ impl Options {
         Ok(())
     }
 
-    /// The samples to take, of a picture with this number of samples per pixel.
+    /// Whether a limit of noise decides about numbers of samples.
+    pub(super) fn limits_noise(&self) -> bool {
+        self.stop.noise.is_some() || self.adaptive
+    }
+
+    /// The samples to take, of a picture with these settings.
     ///
     /// # Errors
     /// `Request` where there are none, and for a part of an adaptive picture.
-    pub(super) fn range(&self, samples: u32) -> Result<Range<u32>> {
+    pub(super) fn range(
+        &self,
+        &RenderSettings { samples, allocation, .. }: &RenderSettings,
+    ) -> Result<Range<u32>> {
         let all = self.first_sample..samples;
         let [part, parts] = self.part.map(|part| part.map(u64::from)).unwrap_or([1, 1]);
         let length = u64::from(all.end.saturating_sub(all.start));
@@ -208,7 +225,8 @@ impl Options {
                 all.start, all.end
             )));
         }
-        if range != (0..samples) && (self.stop.noise.is_some() || self.adaptive) {
+        let is_adaptive = self.limits_noise() || allocation == Allocation::Adaptive;
+        if range != (0..samples) && is_adaptive {
             return Err(unsuitable(
                 "adaptive sampling decides by all samples of a picture; a part of the samples cannot be adaptive"
                     .to_owned(),
@@ -348,19 +366,23 @@ mod tests {
 
     #[test]
     fn parts_make_the_whole() {
+        let of = |samples| RenderSettings { samples, ..RenderSettings::default() };
         for (first, samples, parts) in [(0, 64, 3), (16, 64, 7), (0, 5, 5), (3, 4, 1)] {
             let part =
                 |part| Options { first_sample: first, part: Some([part, parts]), ..Options::default() };
-            let ranges: Vec<_> = (1..=parts).map(|k| part(k).range(samples).unwrap()).collect();
+            let ranges: Vec<_> = (1..=parts).map(|k| part(k).range(&of(samples)).unwrap()).collect();
             assert_eq!((ranges[0].start, ranges[ranges.len() - 1].end), (first, samples));
             assert!(ranges.windows(2).all(|pair| pair[0].end == pair[1].start));
             let [least, most] = [ranges.iter().map(Range::len).min(), ranges.iter().map(Range::len).max()];
             assert!(most.unwrap() - least.unwrap() <= 1);
         }
         let none = Options { part: Some([2, 6]), ..Options::default() };
-        assert!(none.range(5).is_ok() && Options { part: Some([1, 6]), ..none }.range(5).is_err());
-        assert!(Options { first_sample: 5, ..Options::default() }.range(5).is_err());
-        assert!(Options { first_sample: 1, adaptive: true, ..Options::default() }.range(5).is_err());
+        assert!(none.range(&of(5)).is_ok() && Options { part: Some([1, 6]), ..none }.range(&of(5)).is_err());
+        assert!(Options { first_sample: 5, ..Options::default() }.range(&of(5)).is_err());
+        assert!(Options { first_sample: 1, adaptive: true, ..Options::default() }.range(&of(5)).is_err());
+        let adaptive = RenderSettings { allocation: Allocation::Adaptive, ..of(64) };
+        assert!(Options::default().range(&adaptive).is_ok());
+        assert!(Options { part: Some([1, 2]), ..Options::default() }.range(&adaptive).is_err());
     }
 
     #[test]

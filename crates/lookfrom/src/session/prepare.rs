@@ -4,10 +4,12 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::scene::SourceFormat;
+use lookfrom_scene::settings::Allocation;
 use lookfrom_scene::studio::{Turntable, Viewpoint};
 use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, load, studio};
 
 use super::options::{MOST_SAMPLES, Options};
+use crate::film::allocation::LEAST_MEAN;
 
 /// Results of the preparation besides the scene.
 pub(super) struct Prepared {
@@ -34,7 +36,17 @@ pub(super) fn prepare(
     };
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
     let origin = scene.source_format;
+    if options.limits_noise() {
+        scene.render.allocation = Allocation::Uniform;
+    }
     decide_settings(scene, options);
+    if scene.render.allocation == Allocation::Adaptive && scene.render.samples < LEAST_MEAN {
+        let samples = scene.render.samples;
+        warn(&format!(
+            "adaptive allocation needs at least {LEAST_MEAN} samples per pixel: all pixels get {samples}"
+        ));
+        scene.render.allocation = Allocation::Uniform;
+    }
     if scene.bounds().is_empty() {
         warn("this scene has no geometry: the picture shows only the background");
     }
@@ -116,8 +128,9 @@ fn decide_settings(scene: &mut Scene, options: &Options) {
     if options.samples.is_some() {
         return;
     }
-    if options.stop.time.is_some() || options.stop.noise.is_some() {
-        // A limit of time or noise replaces the scene's number of samples.
+    let is_allocated = scene.render.allocation == Allocation::Adaptive;
+    if options.stop.time.is_some() && !is_allocated || options.stop.noise.is_some() {
+        // A limit of time or noise replaces the scene's number of samples; but what is allocated must be known beforehand.
         scene.render.samples = MOST_SAMPLES;
     } else if is_model {
         // The few samples per pixel that suffice for the denoiser leave nothing to adapt.

@@ -93,11 +93,22 @@ impl Provenance {
 
     /// The limit of noise of adaptive sampling.
     pub fn noise(&self) -> Option<&str> {
-        let noise = self.header.iter().find(|(name, _)| name == header::NOISE);
-        noise.map(|(_, text)| text.as_str())
+        self.text(header::NOISE)
     }
 
-    /// Compares what two films are of, but for limits of noise, which end a render.
+    /// Whether both decide alike how many samples a pixel gets: by a limit of noise, by an allocation, or by none.
+    pub(super) fn adapts_as(&self, other: &Self) -> bool {
+        let texts =
+            |of: &Self| [header::NOISE, header::ALLOCATION].map(|name| of.text(name).map(str::to_owned));
+        texts(self) == texts(other)
+    }
+
+    fn text(&self, name: &str) -> Option<&str> {
+        let found = self.header.iter().find(|(known, _)| known == name);
+        found.map(|(_, text)| text.as_str())
+    }
+
+    /// Compares what two films are of, but for what decides about numbers of samples.
     ///
     /// # Errors
     /// `Invalid` with the first difference.
@@ -113,7 +124,9 @@ impl Provenance {
             ));
         }
         let settings = |of: &Self| {
-            let named = |(name, _): &&(String, String)| !matches!(name.as_str(), "software" | header::NOISE);
+            let named = |(name, _): &&(String, String)| {
+                !matches!(name.as_str(), "software" | header::NOISE | header::ALLOCATION)
+            };
             of.header.iter().filter(named).cloned().collect::<Vec<_>>()
         };
         let (mine, theirs) = (settings(self), settings(other));
@@ -184,7 +197,7 @@ impl Provenance {
             attributes.push(("film.arguments", self.arguments.join("\n")));
         }
         if let Some(goal) = &self.goal
-            && !film.ledger().missing(film.area(), goal).is_empty()
+            && !film.ledger().is_complete(film.area(), goal)
         {
             attributes.push(("film.goal", format!("{}..{}", goal.start, goal.end)));
         }

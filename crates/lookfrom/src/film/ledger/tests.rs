@@ -105,16 +105,53 @@ fn a_whole_film_is_one_line() {
     assert_eq!((ledger.most(), ledger.range(), ledger.total()), (4, Some(4..8), 480));
     ledger.add(WHOLE, 0..4).unwrap();
     assert!(ledger.is_from_start(WHOLE) && ledger.bounds() == Some(WHOLE));
-    ledger.mark_clean(PixelBounds { x0: 3, y0: 2, x1: 5, y1: 4 });
+    ledger.set_goal(PixelBounds { x0: 3, y0: 2, x1: 5, y1: 4 }, 8);
     let text = "0..2: 0..12 0..8\n2..4: 0..3 0..8; 3..5 0..8!; 5..12 0..8\n4..10: 0..12 0..8";
     assert_eq!(ledger.to_string(), text);
     assert_eq!(text.parse(), Ok(ledger.clone()));
     assert_eq!(ledger.missing(PixelBounds { x0: 3, y0: 3, x1: 6, y1: 4 }, &(0..9)).len(), 1);
-    ledger.forget_clean();
+    ledger.forget_goals();
     assert_eq!(ledger.uniform(WHOLE).as_deref(), Some(std::slice::from_ref(&(0..8))));
     for wrong in
         ["x", "0..1", "0..1:", "0..1: 0..1", "0..1: 1..0 0..1", "0..1: 0..1 0..2,1..3", "1..0: 0..1 0..1"]
     {
         assert!(wrong.parse::<SampleLedger>().is_err(), "{wrong}");
+    }
+}
+
+/// Of each pixel what its goal says is missing, and nothing else, whatever it has already.
+#[test]
+fn goals_of_pixels_are_met_one_by_one() {
+    for seed in 0..20 {
+        let (mut ledger, slow) = random(seed);
+        let goal = |[x, y]: [u32; 2]| (hash::pair(seed, u64::from(x + 12 * y)) % 4 * 5) as u32;
+        ledger.set_goals(goal);
+        assert!(slow.keys().all(|&[x, y]| ledger.has_goals(PixelBounds {
+            x0: x,
+            y0: y,
+            x1: x + 1,
+            y1: y + 1
+        })));
+        let sum = slow.keys().map(|at| u64::from(goal(*at))).sum();
+        assert_eq!(ledger.goals(), Some((sum, slow.keys().map(|at| goal(*at)).max().unwrap())));
+        assert_eq!(ledger.to_string().parse(), Ok(ledger.clone()), "{ledger}");
+        let mut met = ledger.clone();
+        for samples in [0..4, 4..9, 9..20] {
+            for (area, samples) in met.missing(WHOLE, &samples) {
+                met.add(area, samples).unwrap();
+            }
+        }
+        assert!(met.is_complete(WHOLE, &(0..20)) && met.missing(WHOLE, &(0..20)).is_empty());
+        for (at, samples) in plain(&met) {
+            let known = slow.get(&at);
+            // Pixels that had no samples have no goals.
+            let goal = if known.is_some() { goal(at) } else { 20 };
+            let mut all: Vec<u32> = (0..goal).chain(known.into_iter().flatten().copied()).collect();
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(samples, all, "{at:?}");
+        }
+        ledger.forget_goals();
+        assert_eq!((ledger.goals(), plain(&ledger)), (None, slow));
     }
 }

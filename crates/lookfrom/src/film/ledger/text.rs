@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use super::{Band, Entry, Run, SampleLedger};
 
-/// A band a line, `Y0..Y1: X0..X1 S0..S1,S2..S3; X1..X2 …`, where `!` marks a clean run.
+/// A band a line, `Y0..Y1: X0..X1 S0..S1,S2..S3; X1..X2 …`, where `!` or `!N` is the goal of a run: what it has,
+/// or N samples.
 impl fmt::Display for SampleLedger {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, Band { rows, runs }) in self.bands.iter().enumerate() {
@@ -19,8 +20,12 @@ impl fmt::Display for SampleLedger {
                     .map(|samples| format!("{}..{}", samples.start, samples.end))
                     .collect();
                 let separator = if index == 0 { "" } else { ";" };
-                let clean = if entry.is_clean { "!" } else { "" };
-                write!(f, "{separator} {}..{} {}{clean}", columns.start, columns.end, samples.join(","))?;
+                write!(f, "{separator} {}..{} {}", columns.start, columns.end, samples.join(","))?;
+                match entry.goal {
+                    None => {}
+                    Some(goal) if goal == end(&entry.samples) => write!(f, "!")?,
+                    Some(goal) => write!(f, "!{goal}")?,
+                }
             }
         }
         Ok(())
@@ -67,12 +72,23 @@ fn band(line: &str) -> Option<Band> {
     let (rows, runs) = line.split_once(": ")?;
     let runs = runs.split("; ").map(|run| {
         let (columns, samples) = run.split_once(' ')?;
-        let clean = samples.strip_suffix('!');
-        let samples = clean.unwrap_or(samples).split(',').filter(|samples| !samples.is_empty());
-        let samples = samples.map(range).collect::<Option<_>>()?;
-        Some(Run { columns: range(columns)?, entry: Entry { samples, is_clean: clean.is_some() } })
+        let (samples, goal) =
+            samples.split_once('!').map_or((samples, None), |(left, goal)| (left, Some(goal)));
+        let samples = samples.split(',').filter(|samples| !samples.is_empty());
+        let samples = samples.map(range).collect::<Option<Vec<_>>>()?;
+        let goal = match goal {
+            Some("") => Some(end(&samples)),
+            Some(goal) => Some(goal.parse().ok()?),
+            None => None,
+        };
+        Some(Run { columns: range(columns)?, entry: Entry { samples, goal } })
     });
     Some(Band { rows: range(rows)?, runs: runs.collect::<Option<_>>()? })
+}
+
+/// One more than the last sample.
+fn end(samples: &[Range<u32>]) -> u32 {
+    samples.last().map_or(0, |samples| samples.end)
 }
 
 fn range(text: &str) -> Option<Range<u32>> {

@@ -1,0 +1,108 @@
+//! What ends a render, what is told of it meanwhile, and what it leaves.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use lookfrom_scene::settings::PixelBounds;
+
+use super::Rays;
+use crate::film::{Film, Picture};
+
+/// Stop criteria, besides the number of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StopCriteria {
+    /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
+    /// reached on wasm32-unknown-unknown, which has no clock.
+    pub time: Option<Duration>,
+    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when no
+    /// other tile is left. Not with samples that are allocated adaptively.
+    pub noise: Option<f64>,
+}
+
+/// The reason why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum StopReason {
+    /// Every pixel has all its samples.
+    Samples,
+    /// The time limit was reached.
+    Time,
+    /// Every tile was clean enough.
+    Noise,
+    /// It was cancelled.
+    Cancelled,
+}
+
+impl StopReason {
+    /// A word for summaries.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Samples => "samples",
+            Self::Time => "time",
+            Self::Noise => "noise",
+            Self::Cancelled => "interrupt",
+        }
+    }
+}
+
+/// A tile that has received more samples.
+#[derive(Clone, Debug)]
+pub struct TileDone {
+    /// Its pixels.
+    pub area: PixelBounds,
+    /// The new samples of each of them.
+    pub samples: Range<u32>,
+    /// Samples taken so far, of all pixels together.
+    pub done: u64,
+    /// Samples of all pixels together at the end; an estimate where a stop criterion may end the render.
+    pub total: u64,
+    /// Rays traced so far.
+    pub rays: u64,
+    /// The tile's picture so far, if [`Progress::wants_pixels`]: of the size of `area`, row by row from its top left,
+    /// linear light.
+    pub picture: Option<Picture>,
+}
+
+/// Receives the progress of a render, and may cancel it. Called from many threads; no lock is held during the call.
+pub trait Progress: Sync {
+    /// A tile has received more samples. Tiles may come in any order, those of one area in the order of their samples.
+    fn tile(&self, _done: TileDone) {}
+
+    /// Whether tiles should come with their pictures.
+    fn wants_pixels(&self) -> bool {
+        false
+    }
+
+    /// Whether to stop before the next tile.
+    fn cancelled(&self) -> bool {
+        false
+    }
+
+    /// Whether to pause before the next tile for [`Progress::checkpoint`].
+    fn wants_checkpoint(&self) -> bool {
+        false
+    }
+
+    /// The film so far. No thread works on it meanwhile; a parallel loop of rayon runs on the threads of the render.
+    fn checkpoint(&self, _film: &Film) {}
+}
+
+/// Ignores all progress.
+impl Progress for () {}
+
+/// The result of a render.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The film.
+    pub film: Film,
+    /// Numbers of rays traced.
+    pub rays: Rays,
+    /// The reason why it ended.
+    pub reason: StopReason,
+    /// Maximum number of samples of a pixel, without a cancelled pass.
+    pub samples: u32,
+    /// Samples of all pixels together.
+    pub samples_taken: u64,
+    /// The [relative error](Film::relative_error) of the whole picture.
+    pub error: f64,
+}
