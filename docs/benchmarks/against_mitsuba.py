@@ -172,8 +172,9 @@ def read_exr(path):
 class Lookfrom:
     """The command, once for each picture."""
 
-    def __init__(self, binary, scenes, folder, threads, sampler):
-        self.name = f"lookfrom {sampler}"
+    def __init__(self, binary, scenes, folder, threads, sampler, allocation="uniform"):
+        self.name = f"lookfrom {sampler}" + (f", {allocation}" if allocation != "uniform" else "")
+        self.allocation = allocation
         self.binary, self.threads, self.sampler, self.folder = binary, threads, sampler, folder
         self.files = {name: write_pbrt(scene, folder, name) for name, scene in scenes.items()}
         self.start = {}
@@ -182,6 +183,8 @@ class Lookfrom:
         out = self.folder / "ours.exr"
         command = [self.binary, "render", self.files[scene], "-o", out, "--color", "rgb", "--json", "--quiet"]
         command += ["--threads", self.threads, "--samples", samples, "--seed", seed, "--sampler", self.sampler]
+        if self.allocation != "uniform" and samples > 1:
+            command += ["--allocation", self.allocation]
         child = subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE)
         summary = json.loads(child.stdout.read())
         _, status, used = os.wait4(child.pid, 0)
@@ -442,7 +445,8 @@ def main():
     samplers = args.mitsuba_sampler or ["independent", "multijitter"]
     references = {}
     for count in threads:
-        ours = [Lookfrom(args.lookfrom, scenes, folder, count, s) for s in ("independent", "sobol")]
+        ways = ("independent", "uniform"), ("sobol", "uniform"), ("sobol", "adaptive")
+        ours = [Lookfrom(args.lookfrom, scenes, folder, count, *way) for way in ways]
         theirs = [Mitsuba(v, args, folder, count, s) for v in variants for s in samplers]
         for name in scenes:
             if name not in references:
@@ -451,7 +455,7 @@ def main():
                     references[name] = np.load(kept)
                 else:
                     print(f"\n{name}: is it the same picture?")
-                    pair = [many(r, name, args.reference, 256, 100) for r in (ours[-1], theirs[len(samplers) - 1])]
+                    pair = [many(r, name, args.reference, 256, 100) for r in (ours[1], theirs[len(samplers) - 1])]
                     for label, picture in zip(("ours", "mitsuba"), pair):
                         np.save(folder / f"{name}-{label}.npy", picture[0])
                     references[name] = same_picture(*pair)
