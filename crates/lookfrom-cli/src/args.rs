@@ -379,7 +379,7 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "N|FROM..BEFORE", value_parser = values::samples)]
     pub(crate) samples: Option<Range<u32>>,
 
-    /// How samples are spread over the pixels: evenly, or adaptively where noise is, --samples then being the mean
+    /// Allocation of samples to pixels: uniform, or adaptive by the variances of a pilot, with --samples in the mean
     ///
     /// Adaptively every pixel gets half of the samples. Their variances decide which pixels get the other half, up to eight
     /// times --samples each: the light of a picture stays right in the mean, as a pixel does not decide about itself. It needs at

@@ -278,7 +278,7 @@ pub struct RenderSettings {
     pub integrator: Integrator,
     /// Samples per pixel, in the mean: ≥ 1.
     pub samples: u32,
-    /// How the samples are spread over the pixels.
+    /// The allocation of the samples to the pixels.
     pub allocation: Allocation,
     /// The maximum path depth: the number of reflections, refractions and scatterings.
     pub depth: u32,
@@ -304,7 +304,7 @@ pub struct RenderSettings {
     pub media: bool,
 }
 
-/// How samples are spread over the pixels of a picture.
+/// The allocation of a picture's samples to its pixels (of strata: Neyman 1934).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Allocation {
     /// Each pixel gets the same number.

@@ -381,18 +381,17 @@ impl Renderer {
                 self.light(batch, &mut light);
                 tile.add_samples(&ids, &light, &mut batch.sums);
                 batch.light = light;
-                ids.iter_mut().for_each(|id| id.sample += together);
-                continue;
-            }
-            for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
-                let [x, y] = id.pixel;
-                tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
-                if tile.has_light_paths() {
-                    let layers = self.light_by_paths(batch, slot, &traced);
-                    tile.add_light_paths(x, y, traced.rgb, layers);
-                }
-                if tile.has_channels() {
-                    tile.add_channels(x, y, self.sensor.channels(traced.rgb));
+            } else {
+                for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
+                    let [x, y] = id.pixel;
+                    tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
+                    if tile.has_light_paths() {
+                        let layers = self.light_by_paths(batch, slot, &traced);
+                        tile.add_light_paths(x, y, traced.rgb, layers);
+                    }
+                    if tile.has_channels() {
+                        tile.add_channels(x, y, self.sensor.channels(traced.rgb));
+                    }
                 }
             }
             ids.iter_mut().for_each(|id| id.sample += together);

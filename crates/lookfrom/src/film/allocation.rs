@@ -10,6 +10,7 @@
 //! *Without bias*: what a pixel gets depends on its neighbours alone, whose samples are independent of its own. (The
 //! threshold, one number for the whole picture, depends on all.) Powers of two keep the samples well distributed.
 
+use super::noise::SHARE_OF_MEAN;
 use super::{Film, Pixel};
 use crate::core::parallel;
 
@@ -24,9 +25,6 @@ pub const LEAST_MEAN: u32 = 8;
 
 /// Neighbours of a pixel are at most so many columns and rows away.
 const REACH: usize = 2;
-
-/// The fraction of the picture's mean luminance that is added to that of each pixel.
-const SHARE_OF_MEAN: f64 = 0.1;
 
 /// The number of samples of the pilot where `mean` are taken in the mean.
 pub(crate) fn pilot(mean: u32) -> u32 {

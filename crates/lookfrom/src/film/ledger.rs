@@ -4,33 +4,26 @@
 //! goes on with what is missing, and films of different parts are known to make a whole. It is kept in its one shortest
 //! form, bands of rows with runs of columns, so that equal films have equal ledgers, however they came about.
 
+mod spans;
 mod text;
 
 use std::ops::Range;
 
 use lookfrom_scene::settings::PixelBounds;
 
+use self::spans::Span;
+
 /// The samples that a film holds, by pixel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SampleLedger {
-    /// In ascending order, disjoint; neighbours that touch differ in their runs.
     bands: Vec<Band>,
 }
 
 /// Rows with the same samples in the same columns.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Band {
-    rows: Range<u32>,
-    /// In ascending order, disjoint, none empty; neighbours that touch differ in their entries.
-    runs: Vec<Run>,
-}
+type Band = Span<Vec<Run>>;
 
 /// Columns with the same samples.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Run {
-    columns: Range<u32>,
-    entry: Entry,
-}
+type Run = Span<Entry>;
 
 /// The samples of a pixel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -122,32 +115,32 @@ impl SampleLedger {
 
     /// Sets that of each pixel that has samples, by column and row.
     pub(crate) fn set_goals(&mut self, goal_of: impl Fn([u32; 2]) -> u32) {
-        for Band { rows, runs } in std::mem::take(&mut self.bands) {
+        for Band { at: rows, value: runs } in std::mem::take(&mut self.bands) {
             for row in rows {
                 let mut changed = Vec::with_capacity(runs.len());
-                for Run { columns, entry } in &runs {
+                for Run { at: columns, value: entry } in &runs {
                     let mut start = columns.start;
                     while start < columns.end {
                         let goal = goal_of([start, row]);
                         let end = (start..columns.end).find(|column| goal_of([*column, row]) != goal);
                         let columns = start..end.unwrap_or(columns.end);
                         start = columns.end;
-                        push_run(&mut changed, columns, Entry { goal: Some(goal), ..entry.clone() });
+                        spans::push(&mut changed, columns, Entry { goal: Some(goal), ..entry.clone() });
                     }
                 }
-                push_band(&mut self.bands, row..row + 1, changed);
+                spans::push(&mut self.bands, row..row + 1, changed);
             }
         }
     }
 
     /// Takes back all goals.
     pub(crate) fn forget_goals(&mut self) {
-        for Band { rows, runs } in std::mem::take(&mut self.bands) {
+        for Band { at: rows, value: runs } in std::mem::take(&mut self.bands) {
             let mut changed = Vec::with_capacity(runs.len());
-            for Run { columns, entry } in runs {
-                push_run(&mut changed, columns, Entry { goal: None, ..entry });
+            for Run { at: columns, value: entry } in runs {
+                spans::push(&mut changed, columns, Entry { goal: None, ..entry });
             }
-            push_band(&mut self.bands, rows, changed);
+            spans::push(&mut self.bands, rows, changed);
         }
     }
 
@@ -211,14 +204,10 @@ impl SampleLedger {
 
     fn entries(&self) -> impl Iterator<Item = (PixelBounds, &Entry)> {
         self.bands.iter().flat_map(|band| {
-            band.runs.iter().map(|run| {
-                let area = PixelBounds {
-                    x0: run.columns.start,
-                    y0: band.rows.start,
-                    x1: run.columns.end,
-                    y1: band.rows.end,
-                };
-                (area, &run.entry)
+            band.value.iter().map(|run| {
+                let area =
+                    PixelBounds { x0: run.at.start, y0: band.at.start, x1: run.at.end, y1: band.at.end };
+                (area, &run.value)
             })
         })
     }
@@ -226,9 +215,9 @@ impl SampleLedger {
     /// Calls `visit` with rectangles that together make `area`, and their entry if they have one.
     fn in_area(&self, area: PixelBounds, mut visit: impl FnMut(PixelBounds, Option<&Entry>)) {
         let mut row = area.y0;
-        let first = self.bands.partition_point(|band| band.rows.end <= area.y0);
+        let first = self.bands.partition_point(|band| band.at.end <= area.y0);
         for band in &self.bands[first..] {
-            let rows = band.rows.start.max(area.y0)..band.rows.end.min(area.y1);
+            let rows = band.at.start.max(area.y0)..band.at.end.min(area.y1);
             if rows.is_empty() {
                 break;
             }
@@ -237,16 +226,16 @@ impl SampleLedger {
             }
             let mut column = area.x0;
             let of_rows = |x0, x1| PixelBounds { x0, y0: rows.start, x1, y1: rows.end };
-            let first = band.runs.partition_point(|run| run.columns.end <= area.x0);
-            for run in &band.runs[first..] {
-                let columns = run.columns.start.max(area.x0)..run.columns.end.min(area.x1);
+            let first = band.value.partition_point(|run| run.at.end <= area.x0);
+            for run in &band.value[first..] {
+                let columns = run.at.start.max(area.x0)..run.at.end.min(area.x1);
                 if columns.is_empty() {
                     break;
                 }
                 if column < columns.start {
                     visit(of_rows(column, columns.start), None);
                 }
-                visit(of_rows(columns.start, columns.end), Some(&run.entry));
+                visit(of_rows(columns.start, columns.end), Some(&run.value));
                 column = columns.end;
             }
             if column < area.x1 {
@@ -275,89 +264,10 @@ impl SampleLedger {
 
     /// Changes the entries of all pixels of an area.
     fn update(&mut self, area: PixelBounds, mut change: impl FnMut(&mut Entry)) {
-        if area.x0 >= area.x1 || area.y0 >= area.y1 {
-            return;
-        }
-        // The bands that the area meets are replaced, with one before and one behind that may become one with them.
-        let first = self.bands.partition_point(|band| band.rows.end <= area.y0).saturating_sub(1);
-        let last = self.bands.partition_point(|band| band.rows.start < area.y1);
-        let met: Vec<Band> = self.bands.drain(first..(last + 1).min(self.bands.len())).collect();
-        let mut bands = Vec::with_capacity(met.len() + 2);
-        let mut changed = |runs: Vec<Run>| updated(runs, area.x0..area.x1, &mut change);
-        let mut row = area.y0;
-        for Band { rows, runs } in met {
-            let common = rows.start.clamp(area.y0, area.y1)..rows.end.clamp(area.y0, area.y1);
-            // The rows of the area in front of this band that had no entries.
-            if row < common.start {
-                push_band(&mut bands, row..common.start, changed(Vec::new()));
-            }
-            row = row.max(common.end);
-            if common.is_empty() {
-                push_band(&mut bands, rows, runs);
-                continue;
-            }
-            let above = (rows.start < common.start).then(|| runs.clone());
-            let below = (common.end < rows.end).then(|| runs.clone());
-            push_band(&mut bands, rows.start..common.start, above.unwrap_or_default());
-            push_band(&mut bands, common.clone(), changed(runs));
-            push_band(&mut bands, common.end..rows.end, below.unwrap_or_default());
-        }
-        if row < area.y1 {
-            push_band(&mut bands, row..area.y1, changed(Vec::new()));
-        }
-        self.bands.splice(first..first, bands);
+        spans::update(&mut self.bands, area.y0..area.y1, |runs| {
+            spans::update(runs, area.x0..area.x1, &mut change);
+        });
     }
-}
-
-/// Appends a band behind others; it becomes one with the last if it continues it.
-fn push_band(all: &mut Vec<Band>, rows: Range<u32>, runs: Vec<Run>) {
-    match all.last_mut() {
-        _ if rows.is_empty() || runs.is_empty() => {}
-        Some(last) if last.rows.end == rows.start && last.runs == runs => last.rows.end = rows.end,
-        _ => all.push(Band { rows, runs }),
-    }
-}
-
-/// The same for a run.
-fn push_run(all: &mut Vec<Run>, columns: Range<u32>, entry: Entry) {
-    match all.last_mut() {
-        _ if columns.is_empty() || entry == Entry::default() => {}
-        Some(last) if last.columns.end == columns.start && last.entry == entry => {
-            last.columns.end = columns.end;
-        }
-        _ => all.push(Run { columns, entry }),
-    }
-}
-
-/// The runs of a band after a change in some of its columns.
-fn updated(runs: Vec<Run>, columns: Range<u32>, change: &mut impl FnMut(&mut Entry)) -> Vec<Run> {
-    let mut all: Vec<Run> = Vec::with_capacity(runs.len() + 2);
-    let mut column = columns.start;
-    let mut changed = |mut entry: Entry| {
-        change(&mut entry);
-        entry
-    };
-    for Run { columns: mine, entry } in runs {
-        let common = mine.start.clamp(columns.start, columns.end)..mine.end.clamp(columns.start, columns.end);
-        // The columns in front of this run that had no entry.
-        if column < common.start {
-            push_run(&mut all, column..common.start, changed(Entry::default()));
-        }
-        column = column.max(common.end);
-        if common.is_empty() {
-            push_run(&mut all, mine, entry);
-            continue;
-        }
-        let before = (mine.start < common.start).then(|| entry.clone());
-        let behind = (common.end < mine.end).then(|| entry.clone());
-        push_run(&mut all, mine.start..common.start, before.unwrap_or_default());
-        push_run(&mut all, common.clone(), changed(entry));
-        push_run(&mut all, common.end..mine.end, behind.unwrap_or_default());
-    }
-    if column < columns.end {
-        push_run(&mut all, column..columns.end, changed(Entry::default()));
-    }
-    all
 }
 
 impl Entry {

@@ -7,8 +7,8 @@
 use super::{Film, Pixel, xyz};
 use lookfrom_scene::settings::PixelBounds;
 
-/// The fraction of the picture's mean luminance that is added to a pixel's luminance in its relative error.
-const SHARE_OF_MEAN: f64 = 0.1;
+/// The fraction of the picture's mean luminance that is added to a pixel's luminance where its noise is compared with it.
+pub(super) const SHARE_OF_MEAN: f64 = 0.1;
 
 impl Film {
     /// The mean luminance over [`Film::area`]; 0 for an empty one.

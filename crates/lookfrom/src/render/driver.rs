@@ -208,7 +208,7 @@ impl Work<'_> {
 
     /// Adds the samples of a part.
     fn part(&self, Part { areas, samples }: &Part) -> Result<()> {
-        let around = areas.iter().copied().reduce(union).unwrap_or(self.tiles[0]);
+        let Some(around) = areas.iter().copied().reduce(union) else { return Ok(()) };
         let mut tile = FilmTile::for_image(around, self.renderer.image())?;
         let mut batch = locked(&self.batches).pop().unwrap_or_default();
         let rays = self.renderer.render_pixels(&mut batch, areas, samples.clone(), &mut tile)?;
@@ -293,7 +293,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What was taken, and since when.
+/// The time since the start of a render, and the samples taken in it.
 struct Clock {
     started: Stopwatch,
     /// Samples per pixel.

@@ -1,4 +1,4 @@
-//! What ends a render, what is told of it meanwhile, and what it leaves.
+//! Stop criteria, progress and result of a render.
 
 use std::ops::Range;
 use std::time::Duration;

@@ -38,7 +38,10 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
         texts.push((NOISE, noise.to_string()));
     }
     if render.allocation == Allocation::Adaptive {
-        texts.push((ALLOCATION, format!("adaptive, {} samples per pixel in the mean", render.samples)));
+        texts.push((
+            ALLOCATION,
+            format!("{}, {} samples per pixel in the mean", render.allocation.word(), render.samples),
+        ));
     }
     match camera.view {
         View::Look { lookfrom, lookat, up } => {

@@ -41,7 +41,7 @@ pub struct Options {
     /// Whether the film will be kept in a file ([`Session::provenance`](super::Session::provenance)): the files of the
     /// scene are digested as they are read.
     pub film: bool,
-    /// How the samples are spread over the pixels.
+    /// The allocation of the samples to the pixels.
     pub allocation: Option<Allocation>,
     /// The light transport algorithm.
     pub integrator: Option<Integrator>,

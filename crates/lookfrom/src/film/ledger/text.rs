@@ -10,10 +10,10 @@ use super::{Band, Entry, Run, SampleLedger};
 /// or N samples.
 impl fmt::Display for SampleLedger {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, Band { rows, runs }) in self.bands.iter().enumerate() {
+        for (index, Band { at: rows, value: runs }) in self.bands.iter().enumerate() {
             let line = if index == 0 { "" } else { "\n" };
             write!(f, "{line}{}..{}:", rows.start, rows.end)?;
-            for (index, Run { columns, entry }) in runs.iter().enumerate() {
+            for (index, Run { at: columns, value: entry }) in runs.iter().enumerate() {
                 let samples: Vec<String> = entry
                     .samples
                     .iter()
@@ -57,9 +57,9 @@ impl SampleLedger {
                     end < start || end == start && may_touch(&pair[0], &pair[1])
                 })
         }
-        ascend(&self.bands, |band| &band.rows, |a, b| a.runs != b.runs)
-            && self.bands.iter().all(|Band { runs, .. }| {
-                !runs.is_empty() && ascend(runs, |run| &run.columns, |a, b| a.entry != b.entry)
+        ascend(&self.bands, |band| &band.at, |a, b| a.value != b.value)
+            && self.bands.iter().all(|Band { value: runs, .. }| {
+                !runs.is_empty() && ascend(runs, |run| &run.at, |a, b| a.value != b.value)
             })
             && self.entries().all(|(_, entry)| {
                 *entry != Entry::default() && ascend(&entry.samples, |samples| samples, |_, _| false)
@@ -81,9 +81,9 @@ fn band(line: &str) -> Option<Band> {
             Some(goal) => Some(goal.parse().ok()?),
             None => None,
         };
-        Some(Run { columns: range(columns)?, entry: Entry { samples, goal } })
+        Some(Run { at: range(columns)?, value: Entry { samples, goal } })
     });
-    Some(Band { rows: range(rows)?, runs: runs.collect::<Option<_>>()? })
+    Some(Band { at: range(rows)?, value: runs.collect::<Option<_>>()? })
 }
 
 /// One more than the last sample.
