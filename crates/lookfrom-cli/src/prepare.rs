@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::image::{self, Image};
-use lookfrom_scene::{Disk, Files, Inputs, LoadContext, load};
+use lookfrom_scene::light::panorama_fault;
+use lookfrom_scene::{Disk, Files, Inputs, LoadContext, Location, load};
 
 use crate::args::{Common, Overrides};
 use crate::exit::{self, Failure};
@@ -63,7 +64,13 @@ pub(crate) fn environment_from(
     common: &Common,
 ) -> Result<Option<Image>, Failure> {
     let Some(path) = &overrides.model.environment else { return Ok(None) };
-    Ok(Some(image::read(path, &mut LoadContext::within(&common.memory.budget(), files))?))
+    let mut context = LoadContext::within(&common.memory.budget(), files);
+    let image = image::read(path, &mut context)?;
+    if let Some(fault) = panorama_fault(&image) {
+        context.warn(&Location::file(path), fault);
+    }
+    exit::say_warnings(&context.warnings);
+    Ok(Some(image))
 }
 
 /// Reads scenes only to record their input files in `inputs`. Errors are ignored here; they are reported when the scenes are

@@ -8,6 +8,7 @@ pub mod flip;
 mod ktx2;
 mod metadata;
 mod openexr;
+mod radiance;
 mod read;
 mod srgb;
 mod texels;
@@ -17,7 +18,7 @@ pub use self::animation::{Animation, AnimationFormat};
 pub use self::encoding::Encoding;
 pub use self::metadata::Metadata;
 pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};
-pub use self::read::{decode, read, read_data, read_encoded, read_opacity};
+pub use self::read::{By, Reading, decode, read, read_as, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::{Image, Quad};
 pub use self::write::{

@@ -7,6 +7,7 @@
 use glam::{DMat4, DVec3};
 
 use crate::error::Location;
+use crate::image::Image;
 use crate::material::Color;
 use crate::scene::ImageId;
 
@@ -173,4 +174,23 @@ pub enum Sky {
         /// The transform from the light's space to the world: a rotation or reflection.
         world_from_light: DMat4,
     },
+}
+
+/// What is wrong with a picture as a map in latitude and longitude, by its shape; `None` if it may be one.
+pub fn panorama_fault(image: &Image) -> Option<String> {
+    let (width, height) = (u64::from(image.width), u64::from(image.height));
+    // Some rows or columns may be missing.
+    if width.abs_diff(2 * height) <= 2 + height / 50 {
+        return None;
+    }
+    let kind = match () {
+        () if width == height => "a square one is an octahedral map (in a scene `layout = \"octahedral\"`), or a mirror ball or an angular map",
+        () if width == 6 * height || height == 6 * width => "this one may be a strip of the six sides of a cube",
+        () if 3 * width == 4 * height || 4 * width == 3 * height => "this one may be a cross of the six sides of a cube",
+        () => "this one may be a part of a panorama",
+    };
+    Some(format!(
+        "a map in latitude and longitude is twice as wide as high, but this one is {width}×{height}, and it is stretched; {kind}. \
+         Mirror balls, angular maps and cubes are not read: convert them first"
+    ))
 }

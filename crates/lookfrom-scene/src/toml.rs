@@ -63,13 +63,14 @@ use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
 use crate::gltf::AT_REST;
+use crate::image::{self, Encoding, Reading};
 use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
-use crate::{image, load};
+use crate::load;
 
 pub use self::vocabulary::vocabulary;
 
@@ -138,7 +139,7 @@ struct Reader<'s, 'f> {
     textures: BTreeMap<String, TextureId>,
     objects: BTreeMap<String, ObjectId>,
     /// By file, and whether it contains data rather than colours.
-    images: BTreeMap<(PathBuf, bool), ImageId>,
+    images: BTreeMap<(PathBuf, Option<String>, bool), ImageId>,
     /// By description.
     curves: BTreeMap<String, CurveId>,
     /// By file and import options.
@@ -253,23 +254,35 @@ impl Reader<'_, '_> {
 
     /// An image; each file is read once.
     fn image(&mut self, value: Value<'_>) -> Result<ImageId> {
-        self.image_as(value, false)
+        self.image_as(value, None, false)
     }
 
-    /// An image of colours, or of data: then 8- and 16-bit values are linear.
-    fn image_as(&mut self, value: Value<'_>, is_data: bool) -> Result<ImageId> {
-        let read = if is_data { image::read_data } else { image::read };
-        self.image_by(value, is_data, read)
+    /// An image of colours, or of data: then 8- and 16-bit values are linear. `layer` is a part or layer of an OpenEXR file.
+    fn image_as(&mut self, value: Value<'_>, layer: Option<&str>, is_data: bool) -> Result<ImageId> {
+        let encoding = if is_data { Encoding::Linear } else { Encoding::Srgb };
+        if !value.is_table() {
+            return self.image_by(value, layer, is_data, |path, context| {
+                image::read_as(path, &Reading { layer, ..Reading::new(encoding) }, context)
+            });
+        }
+        let table = value.table("a picture")?;
+        table.allow(&[texture::PICTURE]);
+        let layer = table.maybe("layer", |value| value.text("the name of a layer").map(str::to_owned));
+        let file = table.find("file").filter(|file| !file.is_table());
+        let file = file.ok_or_else(|| value.wrong("a picture, such as { file = \"sky.exr\", layer = \"beauty\" }"))?;
+        self.image_as(file, layer.as_deref(), is_data)
     }
 
     /// The image that a file becomes, which is read once.
     fn image_by(
         &mut self,
         value: Value<'_>,
+        layer: Option<&str>,
         is_data: bool,
         read: impl FnOnce(&Path, &mut LoadContext<'_>) -> Result<image::Image>,
     ) -> Result<ImageId> {
-        let key = (self.resolve(value, "the name of a picture")?, is_data);
+        let path = self.resolve(value, "the name of a picture")?;
+        let key = (path, layer.map(str::to_owned), is_data);
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }

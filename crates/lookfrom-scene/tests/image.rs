@@ -286,11 +286,11 @@ fn errors_say_what_to_do() {
         image::encode_exr(1, 1, &[("X".to_owned(), &[0.0]), ("Z".to_owned(), &[0.0])], &[]).expect("EXR");
     assert_eq!(
         said("a.exr", &exr),
-        "a.exr: has the channels X, Z; expected R, G and B, or Y\n  help: write the picture again with channels of these names"
+        "a.exr: has the channels X, Z; expected R, G and B, or Y\n  help: write the picture again with channels of these names, or name a layer"
     );
     let nan = image::encode_pfm(2, 1, &[[f32::NAN, 1.0, f32::INFINITY], [0.5; 3]]).expect("PFM");
     let (read, warnings) = read_as("a.pfm", &nan, None).expect("bad values are survived");
-    assert_eq!((read.texel(0), warnings), ([0.0, 1.0, 0.0], 1));
+    assert_eq!((read.texel(0), warnings), ([0.0, 1.0, 65504.0], 2));
 }
 
 #[test]

@@ -3,7 +3,10 @@
 //! Reading uses the crate `exr`: whole pictures as floats here, rows of any numbers in `rows`. Writing is done in `write`,
 //! because that crate writes text attributes in a random order, and equal images should give equal bytes.
 
+mod colors;
 mod rows;
+mod subsampled;
+mod windows;
 mod write;
 
 use std::io::Cursor;
@@ -11,14 +14,17 @@ use std::path::Path;
 
 use ::exr::error::Error as ExrError;
 use ::exr::meta::MetaData;
-use ::exr::meta::attribute::AttributeValue;
+use ::exr::meta::attribute::{AttributeValue, Chromaticities};
+use ::exr::meta::header::Header;
 use ::exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
 
-use super::read::{Floats, check_size};
+use self::windows::{Window, Windows};
+use super::read::check_size;
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 
+pub(super) use colors::decode_rgb;
 pub use rows::ExrRows;
 pub use write::{ExrChannel, ExrHeader, encode_exr, write_exr};
 
@@ -48,58 +54,74 @@ impl Channels {
     }
 }
 
-/// Reads every channel of an OpenEXR file whose parts all have the same size; channels are prefixed with their part's name
-/// and a point.
+/// Reads every channel of an OpenEXR file, as far as the display window shows it; channels are prefixed with their part's
+/// name and a point.
 ///
 /// # Errors
 /// As [`super::read()`].
 pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> {
     let bytes = context.read(path)?;
-    let (channels, mut memory) = decode_channels(&bytes, &Location::file(path), context)?;
+    let at = Location::file(path);
+    let Decoded { parts, size, attributes, mut memory, .. } = decode(&bytes, Windows::Display, &at, context)?;
     memory.shrink(memory.bytes() / 2);
     context.kept.push(memory);
-    Ok(channels)
+    let several = parts.len() > 1;
+    let channels = parts.into_iter().flat_map(|part| {
+        let prefix = part.name.filter(|_| several);
+        part.channels.into_iter().map(move |(name, values)| (full_name(prefix.as_deref(), &name), values))
+    });
+    Ok(Channels { width: size[0], height: size[1], channels: channels.collect(), attributes })
 }
 
-/// The colours of an OpenEXR file: R, G, B if present, else Y, or its only channel.
-pub(super) fn decode_rgb(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<Floats> {
-    let (found, memory) = decode_channels(bytes, at, context)?;
-    let gray = match found.channels.as_slice() {
-        [(_, only)] => Some(only.as_slice()),
-        _ => found.channel("Y"),
-    };
-    let rgb = ["R", "G", "B"].map(|name| found.channel(name).or(gray));
-    let [Some(r), Some(g), Some(b)] = rgb else {
-        let names: Vec<&str> = found.channels.iter().map(|(name, _)| name.as_str()).collect();
-        return Err(Error::invalid(
-            at,
-            format!("has the channels {}; expected R, G and B, or Y", names.join(", ")),
-        )
-        .hint("write the picture again with channels of these names"));
-    };
-    let texels = r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]).collect();
-    Ok(Floats { width: found.width, height: found.height, texels, alpha: Vec::new(), memory })
+/// The name of a part's channel in the file.
+fn full_name(part: Option<&str>, channel: &str) -> String {
+    match part {
+        Some(part) if !channel.strip_prefix(part).is_some_and(|rest| rest.starts_with('.')) => {
+            format!("{part}.{channel}")
+        }
+        _ => channel.to_owned(),
+    }
 }
 
-/// The channels, and the memory of twice their values: as the crate returns them, or with the colours of a picture.
-fn decode_channels(
-    bytes: &[u8],
-    at: &Location,
-    context: &LoadContext<'_>,
-) -> Result<(Channels, Reservation)> {
-    let limits = &context.limits;
-    let fault = |error: &ExrError| fault(error, at);
+/// An OpenEXR file in memory.
+struct Decoded {
+    parts: Vec<Part>,
+    /// Columns and rows of the picture.
+    size: [u32; 2],
+    /// The header's attributes with text or integer values, by name.
+    attributes: Vec<(String, String)>,
+    /// The colours that R, G and B stand for, if the file tells.
+    chromaticities: Option<Chromaticities>,
+    /// Of twice the values: as the crate returns them, or with the colours of a picture.
+    memory: Reservation,
+}
+
+/// A part of a file: its name, and its channels with a value for each pixel of the picture, row 0 on top.
+struct Part {
+    name: Option<String>,
+    channels: Vec<(String, Vec<f32>)>,
+}
+
+/// Decodes all channels, into the picture that `windows` selects.
+fn decode(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadContext<'_>) -> Result<Decoded> {
+    let fault = |error: &ExrError| subsampled::told(bytes, at).unwrap_or_else(|| fault(error, at));
 
     // The headers first: nothing larger than the limits is decoded.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| fault(&error))?;
+    let (Some(first), data) = (meta.headers.first(), meta.headers.iter().map(data_window)) else {
+        return Err(Error::syntax(at, "an OpenEXR file without a picture"));
+    };
+    let picture = windows.picture(Window::of(first.shared_attributes.display_window), data, at, context);
+    check_size(picture.width, picture.height, at, &context.limits)?;
     let mut total = 0_u64;
     for header in &meta.headers {
-        let (width, height) = (header.layer_size.0 as u64, header.layer_size.1 as u64);
-        check_size(width, height, at, limits)?;
-        total = total.saturating_add((width * height).saturating_mul(header.channels.list.len() as u64));
+        let window = data_window(header);
+        check_size(window.width, window.height, at, &context.limits)?;
+        let pixels = (window.width * window.height).max(picture.width * picture.height);
+        total = total.saturating_add(pixels.saturating_mul(header.channels.list.len() as u64));
     }
     let channels: u64 = meta.headers.iter().map(|header| header.channels.list.len() as u64).sum();
-    if channels > MOST_CHANNELS || total / 16 > limits.texels {
+    if channels > MOST_CHANNELS || total / 16 > context.limits.texels {
         return Err(Error::new(
             ErrorKind::Limit,
             at,
@@ -111,7 +133,7 @@ fn decode_channels(
     let memory = total.saturating_mul(2 * size_of::<f32>() as u64);
     let memory = context.budget.reserve(memory, &format!("a picture of {channels} channels"), at)?;
 
-    let picture = exr_read()
+    let found = exr_read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
@@ -120,48 +142,35 @@ fn decode_channels(
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|error| fault(&error))?;
-    let Some(size) = picture.layer_data.first().map(|layer| layer.size) else {
-        return Err(Error::syntax(at, "an OpenEXR file without a picture"));
-    };
-    let mut found = Channels {
-        width: u32::try_from(size.0).unwrap_or(u32::MAX),
-        height: u32::try_from(size.1).unwrap_or(u32::MAX),
-        channels: Vec::new(),
-        attributes: Vec::new(),
-    };
-    for layer in &picture.layer_data {
-        if layer.size != size {
-            return Err(Error::new(
-                ErrorKind::Unsupported,
-                at,
-                "the parts of this OpenEXR file differ in size",
-            )
-            .hint("write each part to a file of its own"));
-        }
-        let prefix = layer.attributes.layer_name.as_ref().map_or_else(String::new, |name| format!("{name}."));
-        // The sums of a film are no picture (lookfrom's film files).
-        let is_sum = |name: &str| name.starts_with("film.");
-        for channel in layer.channel_data.list.iter().filter(|channel| !is_sum(&channel.name.to_string())) {
-            let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
-            if values.len() != size.0 * size.1 {
-                return Err(Error::new(
-                    ErrorKind::Unsupported,
-                    at,
-                    format!("channel {} has fewer values than pixels (subsampling)", channel.name),
-                ));
-            }
-            found.channels.push((format!("{prefix}{}", channel.name), values));
-        }
-        let texts = picture.attributes.other.iter().chain(&layer.attributes.other);
-        found.attributes.extend(texts.filter_map(|(name, value)| match value {
+    let mut attributes = Vec::new();
+    let mut parts = Vec::new();
+    for layer in found.layer_data {
+        let texts = found.attributes.other.iter().chain(&layer.attributes.other);
+        attributes.extend(texts.filter_map(|(name, value)| match value {
             AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
             AttributeValue::I32(number) => Some((name.to_string(), number.to_string())),
             _ => None,
         }));
+        let window = Window::new(layer.attributes.layer_position, layer.size);
+        // The sums of a film are no picture (lookfrom's film files).
+        let is_shown = |name: &str| !name.starts_with("film.");
+        let mut channels = Vec::new();
+        for channel in layer.channel_data.list {
+            let name = channel.name.to_string();
+            if is_shown(&name) {
+                channels.push((name, window.placed(channel.sample_data.values_as_f32().collect(), picture)));
+            }
+        }
+        parts.push(Part { name: layer.attributes.layer_name.map(|name| name.to_string()), channels });
     }
-    found.attributes.sort();
-    found.attributes.dedup();
-    Ok((found, memory))
+    attributes.sort();
+    attributes.dedup();
+    let size = [picture.width as u32, picture.height as u32];
+    Ok(Decoded { parts, size, attributes, chromaticities: found.attributes.chromaticities, memory })
+}
+
+fn data_window(header: &Header) -> Window {
+    Window::new(header.own_attributes.layer_position, header.layer_size)
 }
 
 /// The error of the crate `exr` as one of ours.

@@ -7,13 +7,17 @@ use std::path::Path;
 use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-use super::{Encoding, Image, ktx2, openexr};
+use super::{Encoding, Image, ktx2, openexr, radiance};
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
 /// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2";
+
+/// What to do about a damaged file.
+pub(super) const WHOLE: &str =
+    "check that the file is whole; opening it in another program and saving it again may repair it";
 
 /// Bytes of a texel for decoding 8 bits per channel, besides the decoder's result.
 const SHALLOW: u64 = 6;
@@ -22,7 +26,7 @@ const SHALLOW: u64 = 6;
 const DEEP: u64 = 20;
 
 /// Reads a colour image: 8- and 16-bit formats are taken to be sRGB-encoded and become linear, floating-point formats are
-/// linear already. Values that are not finite become 0, with a warning.
+/// linear already. +∞ becomes very bright and other values that are not finite 0, with a warning.
 ///
 /// # Errors
 /// `Io` if the file cannot be read; `Syntax` if it is not a complete image; `Unsupported` if its format is not known;
@@ -45,8 +49,52 @@ pub fn read_data(path: &Path, context: &mut LoadContext<'_>) -> Result<Image> {
 /// # Errors
 /// As [`read`].
 pub fn read_encoded(path: &Path, context: &mut LoadContext<'_>, encoding: Encoding<'_>) -> Result<Image> {
+    read_as(path, &Reading::new(encoding), context)
+}
+
+/// How a picture file is understood.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading<'a> {
+    /// The encoding of 8- and 16-bit values.
+    pub encoding: Encoding<'a>,
+    /// The layer or part of an OpenEXR file; `None` is the first with colours.
+    pub layer: Option<&'a str>,
+    /// Whose rules apply.
+    pub by: By,
+}
+
+/// Whose rules apply where programs differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum By {
+    /// The formats' own: the picture is an OpenEXR file's display window, light is divided by a Radiance picture's exposure,
+    /// and white of other primaries becomes our white.
+    #[default]
+    Standard,
+    /// pbrt-v4's for textures: the data window, and the exposure stays.
+    PbrtTexture,
+    /// pbrt-v4's for lights: the same, and white keeps its colour.
+    PbrtLight,
+}
+
+impl<'a> Reading<'a> {
+    /// The usual reading in this encoding.
+    pub fn new(encoding: Encoding<'a>) -> Self {
+        Self { encoding, layer: None, by: By::Standard }
+    }
+
+    /// Whether the values are no colours.
+    pub(super) fn is_data(&self) -> bool {
+        matches!(self.encoding, Encoding::Linear)
+    }
+}
+
+/// Reads an image as `reading` tells, else as [`read`].
+///
+/// # Errors
+/// As [`read`]; `Invalid` if there is no such layer.
+pub fn read_as(path: &Path, reading: &Reading<'_>, context: &mut LoadContext<'_>) -> Result<Image> {
     let bytes = context.read(path)?;
-    decode(&bytes, &path.display().to_string(), encoding, context)
+    decode_as(&bytes, &path.display().to_string(), reading, context)
 }
 
 /// Decodes an image file's content, as [`read_encoded`] does. `name` is the image's name and appears in messages.
@@ -59,16 +107,33 @@ pub fn decode(
     encoding: Encoding<'_>,
     context: &mut LoadContext<'_>,
 ) -> Result<Image> {
+    decode_as(bytes, name, &Reading::new(encoding), context)
+}
+
+fn decode_as(
+    bytes: &[u8],
+    name: &str,
+    reading: &Reading<'_>,
+    context: &mut LoadContext<'_>,
+) -> Result<Image> {
     let at = Location::file(Path::new(name));
+    let encoding = reading.encoding;
+    let is_exr = bytes.starts_with(&openexr::MAGIC);
+    if let (Some(layer), false) = (reading.layer, is_exr) {
+        return Err(Error::invalid(&at, format!("has no layer {layer:?}: only OpenEXR pictures have layers"))
+            .hint("leave `layer` out"));
+    }
     // Formats that the crate `image` does not support are recognised by their first bytes.
     if bytes.starts_with(&ktx2::MAGIC) {
         let ktx2::Pixels { width, height, texels, memory } = ktx2::decode(bytes, &at, context)?;
         return Ok(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context));
     }
-    let floats = if bytes.starts_with(&openexr::MAGIC) {
-        openexr::decode_rgb(bytes, &at, context)?
+    let floats = if is_exr {
+        openexr::decode_rgb(bytes, &at, reading, context)?
     } else if is_pfm(bytes) {
         decode_pfm(bytes, &at, context)?
+    } else if radiance::is(bytes) {
+        radiance::decode(bytes, &at, reading, context)?
     } else {
         match decode_common(bytes, Path::new(name), &at, context)? {
             (picture, memory) if is_deep(&picture) => floats_of(picture, memory, encoding),
@@ -79,18 +144,44 @@ pub fn decode(
             }
         }
     };
-    let Floats { width, height, mut texels, mut alpha, memory } = floats;
-    let mut bad = 0_usize;
-    for value in texels.iter_mut().flatten().chain(&mut alpha) {
-        if !value.is_finite() {
-            *value = 0.0;
-            bad += 1;
+    let Floats { width, height, mut texels, mut alpha, to_rec709, memory } = floats;
+    make_finite(&mut texels, &mut alpha, &at, context);
+    if let Some(matrix) = to_rec709 {
+        for texel in &mut texels {
+            *texel = matrix.map(|row| row[0] * texel[0] + row[1] * texel[1] + row[2] * texel[2]);
         }
     }
-    if bad > 0 {
-        context.warn(&at, format!("{bad} values are not finite numbers; each becomes 0"));
-    }
     Ok(kept(Image::from_linear_and_alpha(name, width, height, texels, alpha), memory, context))
+}
+
+/// The largest number of 16 bits: what is brighter overflows to +∞ in most files.
+const LARGEST_HALF: f32 = 65504.0;
+
+/// Replaces values that are no finite numbers, with a warning: +∞ is very bright, everything else 0.
+fn make_finite(
+    texels: &mut [[f32; 3]],
+    alpha: &mut [f32],
+    at: &Location,
+    context: &mut LoadContext<'_>,
+) {
+    let finite = texels.as_flattened().iter().filter(|value| value.is_finite());
+    let brightest = finite.fold(LARGEST_HALF, |most, &value| most.max(value));
+    let (mut bright, mut bad) = (0_usize, 0_usize);
+    for value in texels.as_flattened_mut().iter_mut().filter(|value| !value.is_finite()) {
+        let is_bright = *value > 0.0;
+        *value = if is_bright { brightest } else { 0.0 };
+        *(if is_bright { &mut bright } else { &mut bad }) += 1;
+    }
+    for value in alpha.iter_mut().filter(|value| !value.is_finite()) {
+        *value = 0.0;
+        bad += 1;
+    }
+    if bright > 0 {
+        context.warn(at, format!("{bright} values are infinite; each becomes {brightest}"));
+    }
+    if bad > 0 {
+        context.warn(at, format!("{bad} values are not finite numbers; each becomes 0"));
+    }
 }
 
 /// The texels of an image of at most 8 bits per channel, made at once from what the decoder returned.
@@ -123,7 +214,7 @@ pub fn read_opacity(
 ) -> Result<Option<Image>> {
     let at = Location::file(path);
     let bytes = context.read(path)?;
-    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) {
+    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) || radiance::is(&bytes) {
         return Ok(None);
     }
     let (picture, memory) = decode_common(&bytes, path, &at, context)?;
@@ -180,6 +271,8 @@ pub(super) struct Floats {
     pub(super) height: u32,
     pub(super) texels: Vec<[f32; 3]>,
     pub(super) alpha: Vec<f32>,
+    /// To linear Rec. 709, unless these are the colours.
+    pub(super) to_rec709: Option<[[f32; 3]; 3]>,
     /// The memory in which it was decoded.
     pub(super) memory: Reservation,
 }
@@ -242,7 +335,7 @@ fn floats_of(picture: DynamicImage, memory: Reservation, encoding: Encoding<'_>)
         } else {
             texels.extend(picture.into_rgb32f().pixels().map(|pixel| pixel.0));
         }
-        return Floats { width, height, texels, alpha, memory };
+        return Floats { width, height, texels, alpha, to_rec709: None, memory };
     }
     let table: Vec<f32> = (0..=u16::MAX).map(|value| encoding.decode(f32::from(value) / 65535.0)).collect();
     let pixels = picture.into_rgba16();
@@ -251,15 +344,13 @@ fn floats_of(picture: DynamicImage, memory: Reservation, encoding: Encoding<'_>)
     if has_alpha {
         alpha.extend(pixels.pixels().map(|pixel| f32::from(pixel.0[3]) / 65535.0));
     }
-    Floats { width, height, texels, alpha, memory }
+    Floats { width, height, texels, alpha, to_rec709: None, memory }
 }
 
 /// Our error for an error of the decoder.
 fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Error {
-    let whole =
-        "check that the file is whole; opening it in another program and saving it again may repair it";
     match error {
-        _ if bytes.is_empty() => Error::syntax(at, "the file is empty; expected a picture").hint(whole),
+        _ if bytes.is_empty() => Error::syntax(at, "the file is empty; expected a picture").hint(WHOLE),
         ImageError::Unsupported(_) => {
             Error::new(ErrorKind::Unsupported, at, format!("the picture format is not known: {error}"))
                 .hint(format!("save it as one of {KNOWN}"))
@@ -273,7 +364,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
             };
             Error::new(ErrorKind::Limit, at, message).hint("make the picture smaller")
         }
-        _ => Error::syntax(at, format!("not a complete picture: {error}")).hint(whole),
+        _ => Error::syntax(at, format!("not a complete picture: {error}")).hint(WHOLE),
     }
 }
 
@@ -319,5 +410,5 @@ fn decode_pfm(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<
             [value(0), value(1), value(2)]
         })
         .collect();
-    Ok(Floats { width, height, texels, alpha: Vec::new(), memory })
+    Ok(Floats { width, height, texels, alpha: Vec::new(), to_rec709: None, memory })
 }

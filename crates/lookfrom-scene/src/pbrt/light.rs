@@ -125,7 +125,7 @@ impl Reader<'_, '_> {
                 .hint("name a picture"));
         };
         let place: &Place = parameter.map_or(&p.place, |parameter| &parameter.place);
-        let id = self.picture(name, "sRGB", place)?;
+        let id = self.emitted_picture(name, place)?;
         let image = &self.scene.images[id.index()];
         if is_square && image.width != image.height {
             let message = format!(

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::Reader;
 use super::text::Place;
 use crate::error::{ErrorKind, Result};
-use crate::image::{self, Encoding, Image};
+use crate::image::{self, By, Encoding, Image, Reading};
 use crate::scene::ImageId;
 
 impl Reader<'_, '_> {
@@ -22,20 +22,32 @@ impl Reader<'_, '_> {
         Ok(self.push_picture(key, opacity))
     }
 
-    /// An image whose integer values are encoded as `sRGB`, `linear` or `gamma x`; each file is decoded once.
+    /// An image of a texture, whose integer values are encoded as `sRGB`, `linear` or `gamma x`; each file is decoded once.
     pub(super) fn picture(&mut self, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
+        self.picture_by(By::PbrtTexture, name, encoding, place)
+    }
+
+    /// An image of a light.
+    pub(super) fn emitted_picture(&mut self, name: &str, place: &Place) -> Result<ImageId> {
+        self.picture_by(By::PbrtLight, name, "sRGB", place)
+    }
+
+    fn picture_by(&mut self, by: By, name: &str, encoding: &str, place: &Place) -> Result<ImageId> {
         if name.is_empty() {
             return Err(place
                 .invalid("the name of the picture is empty")
                 .hint("give \"string filename\" a file's name"));
         }
         let path = self.resolve(name);
-        let key = (path.clone(), encoding.to_owned());
+        let key = (path.clone(), if by == By::PbrtLight { "light".to_owned() } else { encoding.to_owned() });
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
         let image =
-            with_encoding(encoding, place, |encoding| image::read_encoded(&path, self.context, encoding));
+            with_encoding(encoding, place, |encoding| {
+                let reading = Reading { by, ..Reading::new(encoding) };
+                image::read_as(&path, &reading, self.context)
+            });
         let image = self.or_blank(image, &path, place, blank(name))?;
         Ok(self.push_picture(key, image))
     }

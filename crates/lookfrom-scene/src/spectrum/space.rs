@@ -32,6 +32,62 @@ pub fn xyz_from(space: &str) -> Option<Matrix> {
     Some(primaries.map(|row| std::array::from_fn(|i| row[i] * scale[i])))
 }
 
+/// The colours that red, green, blue and white stand for, as CIE xy chromaticities: those that a picture file states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chromaticities {
+    /// Of red, green and blue.
+    pub primaries: [[f64; 2]; 3],
+    /// Of (1, 1, 1).
+    pub white: [f64; 2],
+}
+
+impl Chromaticities {
+    /// Rec. 709, and sRGB.
+    pub const REC709: Self = Self { primaries: [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]], white: [0.3127, 0.329] };
+
+    /// X, Y and Z themselves.
+    pub const XYZ: Self = Self { primaries: [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], white: [1.0 / 3.0, 1.0 / 3.0] };
+
+    /// Whether all of them are nearly those of another one, as far as files round them (pbrt-v4's tolerance).
+    fn nearly(&self, other: &Self) -> bool {
+        const TOLERANCE: f64 = 1e-3;
+        let pairs = self.primaries.iter().chain([&self.white]).zip(other.primaries.iter().chain([&other.white]));
+        pairs.flat_map(|(a, b)| a.iter().zip(b)).all(|(a, b)| (a - b).abs() <= TOLERANCE)
+    }
+
+    /// The matrix to XYZ; (1, 1, 1) has Y = 1. `None` if they span no colours.
+    pub fn xyz_from(&self) -> Option<Matrix> {
+        let column = |[x, y]: [f64; 2]| [x, y, 1.0 - x - y];
+        let columns = self.primaries.map(column);
+        let primaries: Matrix = std::array::from_fn(|row| columns.map(|column| column[row]));
+        let white = column(self.white).map(|value| value / self.white[1]);
+        let scale = apply(&inverse(&primaries), white);
+        let matrix: Matrix = primaries.map(|row| std::array::from_fn(|i| row[i] * scale[i]));
+        matrix.as_flattened().iter().all(|value| value.is_finite()).then_some(matrix)
+    }
+
+    /// The luminances of red, green and blue; their sum is 1.
+    pub fn luminance(&self) -> [f32; 3] {
+        self.xyz_from().map_or([0.2126, 0.7152, 0.0722], |matrix| matrix[1].map(|value| value as f32))
+    }
+
+    /// The matrix to linear Rec. 709; `None` if that is what they are, or if they span no colours. White becomes white (adapted as
+    /// by [`adapted`]) unless `keeps_white`. X, Y and Z stay the colours that they are.
+    pub fn rec709(&self, keeps_white: bool) -> Option<[[f32; 3]; 3]> {
+        if self.nearly(&Self::REC709) {
+            return None;
+        }
+        let (from, to) = (self.xyz_from()?, xyz_from("srgb")?);
+        let white = |matrix: &Matrix| apply(matrix, [1.0; 3]);
+        let from = match keeps_white || self.nearly(&Self::XYZ) {
+            true => from,
+            false => product(&adapted(white(&from), white(&to)), &from),
+        };
+        let matrix = product(&inverse(&to), &from).map(|row| row.map(|value| value as f32));
+        matrix.as_flattened().iter().all(|value| value.is_finite()).then_some(matrix)
+    }
+}
+
 /// The matrix from a space's RGB to linear Rec. 709 of the same XYZ, for light; `srgb` gives (nearly) the identity.
 ///
 /// The white of `aces2065-1` is warmer than that of Rec. 709 and stays so. For reflectances, whose white reflects all light,

@@ -72,7 +72,7 @@ impl Reader<'_, '_> {
     fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
         match value.as_text().filter(|name| ies::is_ies(name)) {
             Some(name) => {
-                self.image_by(value, true, |path, context| Ok(ies::read(path, context)?.octahedral(name)))
+                self.image_by(value, None, true, |path, context| Ok(ies::read(path, context)?.octahedral(name)))
             }
             None => self.octahedral_image(value),
         }

@@ -161,7 +161,7 @@ impl Reader<'_, '_> {
 
     fn bump_mapping(&mut self, table: &Table<'_>) -> BumpMapping {
         table.one_of(&["normal_map", "bump"]);
-        let normal_map = table.maybe("normal_map", |value| self.image_as(value, true));
+        let normal_map = table.maybe("normal_map", |value| self.image_as(value, None, true));
         let bump = table.maybe("bump", |value| self.scalar_where(value, "a number", |_| true));
         match (normal_map, bump) {
             (Some(image), _) => BumpMapping::NormalMap(image),

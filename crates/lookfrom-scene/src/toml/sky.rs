@@ -7,7 +7,7 @@ use super::light::{COMMON, power, turned};
 use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, Result};
-use crate::light::{LightKind, Power, Sky, is_rectangle};
+use crate::light::{LightKind, Power, Sky, is_rectangle, panorama_fault};
 use crate::scene::ImageId;
 
 /// The keys besides those of the colours.
@@ -63,6 +63,9 @@ impl Reader<'_, '_> {
         let turn = turned(table);
         let image = if is_octahedral { self.octahedral_image(value)? } else { self.image(value)? };
         if !is_octahedral {
+            if let Some(fault) = panorama_fault(&self.scene.images[image.index()]) {
+                self.context.warn(&value.at(), fault);
+            }
             return Ok(Sky::Image { image, scale, world_from_light: turn });
         }
         Ok(Sky::Octahedral { image, scale, world_from_light: turn * up_from_pole() })

@@ -14,7 +14,7 @@ use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The keys of textures, by type, in addition to `type` and those of `mapping`.
 pub(super) const KEYS: Kinds = &[
-    ("image", &["file", "encoding", "wrap", "filter", "multiply", "invert"]),
+    ("image", &["file", "layer", "encoding", "wrap", "filter", "multiply", "invert"]),
     ("checker", &["even", "odd"]),
     ("noise", &["low", "high", "octaves"]),
     ("marble", &["vein", "base", "octaves", "turbulence"]),
@@ -28,6 +28,9 @@ pub(super) const KEYS: Kinds = &[
     ("direction_mix", &["low", "high", "direction"]),
     ("vertex_color", &["tint"]),
 ];
+
+/// The keys of a picture with the name of its layer.
+pub(super) const PICTURE: &[&str] = &["file", "layer"];
 
 /// The words for encodings of an image, and whether they are linear.
 pub(super) const ENCODINGS: &[(&str, bool)] = &[("srgb", false), ("linear", true)];
@@ -180,8 +183,11 @@ impl Reader<'_, '_> {
 
     fn picture(&mut self, table: &Table<'_>) -> Result<TextureKind> {
         let is_data = table.or("encoding", false, |value| value.choice(ENCODINGS));
+        let layer = table.maybe("layer", |value| value.text("the name of a layer of an OpenEXR picture"));
         Ok(TextureKind::Image {
-            image: table.need("file", "\"picture.png\"", ImageId(0), |value| self.image_as(value, is_data)),
+            image: table.need("file", "\"picture.png\"", ImageId(0), |value| {
+                self.image_as(value, layer, is_data)
+            }),
             mapping: mapping(table, "uv")?,
             wrap: [table.or("wrap", Wrap::default(), |value| value.choice(WRAPS)); 2],
             filter: table.or("filter", TexelFilter::default(), |value| value.choice(FILTERS)),

@@ -31,6 +31,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("filter".to_owned(), settings::FILTER.to_vec()),
         ("[render]".to_owned(), settings::RENDER.to_vec()),
         ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
+        ("a picture".to_owned(), texture::PICTURE.to_vec()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
         ("[[solid.of]]".to_owned(), [shape::OPERAND, transform::KEYS].concat()),
