@@ -184,9 +184,15 @@ pub fn panorama_fault(image: &Image) -> Option<String> {
         return None;
     }
     let kind = match () {
-        () if width == height => "a square one is an octahedral map (in a scene `layout = \"octahedral\"`), or a mirror ball or an angular map",
-        () if width == 6 * height || height == 6 * width => "this one may be a strip of the six sides of a cube",
-        () if 3 * width == 4 * height || 4 * width == 3 * height => "this one may be a cross of the six sides of a cube",
+        () if width == height => {
+            "a square one is an octahedral map (in a scene `layout = \"octahedral\"`), or a mirror ball or an angular map"
+        }
+        () if width == 6 * height || height == 6 * width => {
+            "this one may be a strip of the six sides of a cube"
+        }
+        () if 3 * width == 4 * height || 4 * width == 3 * height => {
+            "this one may be a cross of the six sides of a cube"
+        }
         () => "this one may be a part of a panorama",
     };
     Some(format!(

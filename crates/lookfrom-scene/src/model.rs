@@ -3,8 +3,10 @@
 //! The reader is selected by the extension, or by the content if the extension is absent or wrong. Models in formats
 //! without a camera and lights are shown by [`crate::studio`].
 
+pub(crate) mod colors;
 pub(crate) mod lines;
 pub(crate) mod number;
+pub(crate) mod place;
 pub(crate) mod points;
 pub(crate) mod polygon;
 pub(crate) mod scan;
@@ -23,7 +25,7 @@ use crate::shape::{Mesh, Part};
 use crate::{obj, packed, ply, stl, subdivision};
 
 /// Bytes that a byte of a model becomes, at most, while the model is parsed.
-pub(crate) const PARSED: u64 = 3;
+pub(crate) const PARSED: u64 = 5;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {

@@ -1,11 +1,11 @@
 //! Reader for Wavefront OBJ files, to meshes and materials.
 //!
-//! `statement` parses the text, `build` makes one mesh per material, [`mtl`] parses material libraries (`map` their texture
+//! `statement` parses the text, `build` makes one mesh per material, `color` reads colours of vertices, [`mtl`] parses material libraries (`map` their texture
 //! maps), `subdivide` makes subdivision surfaces of polygons, `look` converts their materials, `physical` those that are physically based, and `maps` reads their images. The
-//! format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1; vertex colours after the coordinates
-//! are an extension that many programs write.
+//! format: Wavefront, "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
 
 mod build;
+mod color;
 mod look;
 mod map;
 mod maps;
@@ -18,7 +18,6 @@ use std::path::Path;
 
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
-use crate::image::linear_from_srgb;
 use crate::material::{Color, Whitted};
 use crate::model::surface::{push_material, unit_of_uv};
 use crate::model::{lines, points, text};
@@ -57,12 +56,15 @@ pub fn from_bytes(
             .hint("check that this is a Wavefront OBJ file and that it is whole"));
     }
     if statements.groups.iter().all(|group| group.faces.is_empty() && group.lines.is_empty()) {
-        return Ok(points::cloud(&statements.positions, &statements.colors, &file, context, scene));
+        let mut parts = points::cloud(&statements.positions, &statements.colors, &file, context, scene);
+        statements.place.put(&mut parts, &[], 0, &file, context);
+        return Ok(parts);
     }
     if let levels @ 1.. = context.import.subdivision {
         subdivide::subdivide(&mut statements, levels, &file, context)?;
     }
-    let colored = !statements.colors.is_empty();
+    let (colored, place) = (!statements.colors.is_empty(), statements.place);
+    let first = scene.meshes.len();
     let meshes = build::meshes(statements, &file, context)?;
     let mut looks = look::Looks::read(&meshes.libraries, path, context);
     let mut parts = Vec::new();
@@ -98,10 +100,6 @@ pub fn from_bytes(
         }
     }
     looks.warn(&file, context);
+    place.put(&mut parts, &scene.meshes[first..], 0, &file, context);
     Ok(parts)
-}
-
-/// Linear value of a component of a vertex colour; those of MeshLab, ZBrush and Blender are sRGB-encoded.
-fn linear_color(encoded: f32) -> f32 {
-    if encoded.is_finite() { linear_from_srgb(encoded.clamp(0.0, 1.0)) } else { 1.0 }
 }

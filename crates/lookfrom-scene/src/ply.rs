@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use crate::shape::Part;
 
 /// Reads a PLY file, ASCII or binary: one mesh, or wires along its edges if there are no faces, or a point cloud if there
-/// are no edges either. Integer colours are sRGB-encoded, floating-point ones linear; an image named by a comment
+/// are no edges either. Integer colours, and floating-point ones from 0 to 255, are sRGB-encoded, other floating-point ones linear; an image named by a comment
 /// `TextureFile` is used.
 ///
 /// # Errors
@@ -43,6 +43,10 @@ pub fn from_bytes(
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let header = header::parse(bytes, &file, context)?;
-    let content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
-    build::parts(content, &header, path, context, scene)
+    let mut content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
+    content.settle_colors(&file, context);
+    let (place, first) = (content.place, scene.meshes.len());
+    let (mut parts, flat) = build::parts(content, &header, path, context, scene)?;
+    place.put(&mut parts, &scene.meshes[first..], flat, &file, context);
+    Ok(parts)
 }

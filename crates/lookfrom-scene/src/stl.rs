@@ -7,12 +7,13 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 use crate::image::linear_from_srgb;
-use crate::model::number::parse_f32;
+use crate::model::number::parse_f64;
+use crate::model::place::{Place, placed};
 use crate::model::polygon::{Triangulator, has_area};
 use crate::model::scan::{Scanner, shown};
 use crate::model::surface::push_vertex_colors;
@@ -50,10 +51,12 @@ pub fn from_bytes(
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let mut triangles = Triangles::new(&context.limits);
-    let solids = if is_text(bytes) {
-        read_text(&text::utf8(bytes), &file, &mut triangles, context)?
+    let (solids, place) = if is_text(bytes) {
+        let facets = read_text(&text::utf8(bytes), &file, triangles.limit, context)?;
+        facets.solids(&mut triangles)
     } else {
-        vec![(None, read_binary(bytes, &file, &mut triangles, context)?)]
+        let (mesh, place) = read_binary(bytes, &file, &mut triangles, context)?;
+        (vec![(None, mesh)], place)
     };
     triangles.not_finite.warn(
         "triangle",
@@ -61,8 +64,9 @@ pub fn from_bytes(
         &file,
         context,
     );
+    let flat = triangles.flat.count();
     triangles.flat.notice("triangle", "left out: without area", &file, context);
-    let mut parts = Vec::new();
+    let (mut parts, first) = (Vec::new(), scene.meshes.len());
     for (name, mut mesh) in solids {
         if mesh.triangles.is_empty() {
             continue;
@@ -76,6 +80,7 @@ pub fn from_bytes(
     if parts.is_empty() {
         context.warn(&file, "there are no triangles");
     }
+    place.put(&mut parts, &scene.meshes[first..], flat, &file, context);
     Ok(parts)
 }
 
@@ -85,11 +90,13 @@ pub(crate) fn is_binary_by_length(bytes: &[u8]) -> bool {
         .is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64)
 }
 
-/// Whether the file has the text format. Headers of binary files may start with `solid`, too.
+/// Whether the file has the text format. Headers of binary files may start with `solid`, too; but the numbers
+/// behind them have zeros among their bytes, which no text has.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
     let text = text::utf8(&bytes[..bytes.len().min(1 << 12)]).to_ascii_lowercase();
     let is_word = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
     !is_binary_by_length(bytes)
+        && !text.contains(&0)
         && text.trim_ascii_start().starts_with(b"solid")
         && (is_word(b"facet") || is_word(b"endsolid"))
 }
@@ -162,7 +169,7 @@ fn read_binary(
     file: &Location,
     triangles: &mut Triangles,
     context: &mut LoadContext<'_>,
-) -> Result<Mesh> {
+) -> Result<(Mesh, Place)> {
     let Some(claimed) = claimed_triangles(bytes) else {
         let message = format!("{} bytes are too few for an STL file", bytes.len());
         return Err(Error::syntax(file, message).hint("the file may be empty or cut off"));
@@ -170,19 +177,29 @@ fn read_binary(
     let body = &bytes[HEADER..];
     let there = (body.len() / TRIANGLE) as u64;
     let is_whole = body.len().is_multiple_of(TRIANGLE);
-    let count = if claimed == 0 && is_whole && there > 0 {
+    let count = match claimed {
+        _ if claimed == there => claimed,
         // Some programs write the header before they know the number.
-        context.notice(file, format!("the header says that there are no triangles; all {there} are read"));
-        there
-    } else {
-        claimed
+        0 | 0xffff_ffff if is_whole && there > 0 => {
+            context.notice(
+                file,
+                format!("the header does not tell the number of triangles; all {there} are read"),
+            );
+            there
+        }
+        _ if is_whole && there > 0 => {
+            let message = format!("{claimed} triangles are declared, but there are {there}; all are read");
+            context.warn(file, message);
+            there
+        }
+        _ if claimed > there => {
+            let message = format!("{claimed} triangles are declared, but there are only bytes for {there}");
+            return Err(
+                Error::syntax(file, message).hint("the file may be cut off, or it may not be an STL file")
+            );
+        }
+        _ => claimed,
     };
-    if count > there {
-        let message = format!("{count} triangles are declared, but there are only bytes for {there}");
-        return Err(
-            Error::syntax(file, message).hint("the file may be cut off, or it may not be an STL file")
-        );
-    }
     if count as usize > triangles.limit {
         let message = format!("{count} triangles are more than the limit of {}", triangles.limit);
         return Err(Error::new(ErrorKind::Limit, file, message).hint("split the model into several files"));
@@ -205,9 +222,12 @@ fn read_binary(
     let first = facets().next().map_or(0, attributes);
     let has_colors = first & 0x7fff != 0 || facets().any(|facet| attributes(facet) != first);
     let default_color = if default_color == 0 && !has_colors { NO_COLOR } else { default_color };
-    for facet in facets() {
-        let value = |i: usize| f32::from_le_bytes([facet[i], facet[i + 1], facet[i + 2], facet[i + 3]]);
-        let point = |i: usize| Vec3::new(value(i), value(i + 4), value(i + 8));
+    let number =
+        |facet: &[u8], i: usize| f32::from_le_bytes([facet[i], facet[i + 1], facet[i + 2], facet[i + 3]]);
+    let point = |facet: &[u8], i: usize| [i, i + 4, i + 8].map(|i| f64::from(number(facet, i)));
+    let corners = |facet| [12, 24, 36].map(|i| DVec3::from(point(facet, i)));
+    let (positions, place) = placed(&facets().flat_map(corners).collect::<Vec<_>>(), true);
+    for (facet, points) in facets().zip(positions.as_chunks().0) {
         let bits = u32::from(attributes(facet));
         let color = match (magics.is_some(), bits >> 15 == 1) {
             _ if !has_colors => default_color,
@@ -216,33 +236,65 @@ fn read_binary(
             (false, true) => bits & 0x7fff,
             (false, false) => NO_COLOR,
         };
-        triangles.push([point(12), point(24), point(36)], color, 0);
+        triangles.push(*points, color, 0);
     }
-    Ok(triangles.take_mesh())
+    Ok((triangles.take_mesh(), place))
 }
 
 type Solid = (Option<String>, Mesh);
 
-fn read_text(
-    text: &[u8],
-    file: &Location,
-    triangles: &mut Triangles,
-    context: &mut LoadContext<'_>,
-) -> Result<Vec<Solid>> {
+/// The triangles of a text.
+#[derive(Default)]
+struct Facets {
+    /// Three for each triangle.
+    corners: Vec<DVec3>,
+    /// Their lines.
+    lines: Vec<u32>,
+    /// The names of the solids, and the number of triangles up to their ends.
+    ends: Vec<(Option<String>, usize)>,
+}
+
+impl Facets {
+    fn end_solid(&mut self, name: Option<String>) {
+        self.ends.push((name, self.lines.len()));
+    }
+
+    /// The meshes of the solids, and where they are.
+    fn solids(self, triangles: &mut Triangles) -> (Vec<Solid>, Place) {
+        let (positions, place) = placed(&self.corners, false);
+        let mut facets = positions.as_chunks().0.iter().zip(self.lines);
+        let mut done = 0;
+        let mut mesh = |end: usize| {
+            for (points, line) in facets.by_ref().take(end - done) {
+                triangles.push(*points, NO_COLOR, line);
+            }
+            done = end;
+            triangles.take_mesh()
+        };
+        (self.ends.into_iter().map(|(name, end)| (name, mesh(end))).collect(), place)
+    }
+}
+
+fn read_text(text: &[u8], file: &Location, limit: usize, context: &mut LoadContext<'_>) -> Result<Facets> {
     let mut scanner = Scanner::new(text);
     let mut triangulator = Triangulator::new();
-    let mut solids = Vec::new();
+    let mut facets = Facets::default();
     let mut name = None;
     let (mut points, mut cut) = (Vec::new(), Vec::new());
     let mut is_open = false;
     let mut is_in_facet = false;
     loop {
         let word = scanner.word_across_lines();
-        match word.to_ascii_lowercase().as_slice() {
+        let mut keyword = word.to_ascii_lowercase();
+        // Some programs write `end loop`, `end facet` and `end solid`.
+        if keyword == b"end" {
+            keyword.extend(scanner.word().to_ascii_lowercase());
+        }
+        match keyword.as_slice() {
             b"" => break,
             b"solid" => {
                 if is_open {
-                    solids.push((name.take(), triangles.take_mesh()));
+                    facets.end_solid(name.take());
                 }
                 let rest = scanner.rest_of_line();
                 name = (!rest.is_empty()).then(|| String::from_utf8_lossy(rest).into_owned());
@@ -265,17 +317,20 @@ fn read_text(
                 }
                 let line = scanner.line();
                 cut.clear();
-                if points.iter().all(|point: &Vec3| point.is_finite()) {
-                    triangulator.cut(&points, &mut cut);
+                if points.iter().all(|point: &DVec3| point.is_finite()) {
+                    let local: Vec<Vec3> =
+                        points.iter().map(|&point| (point - points[0]).as_vec3()).collect();
+                    triangulator.cut(&local, &mut cut);
                 } else {
                     cut.push([0, 1, 2]);
                 }
                 for triangle in &cut {
-                    triangles.push(triangle.map(|i| points[i as usize]), NO_COLOR, line);
+                    facets.corners.extend(triangle.map(|i| points[i as usize]));
+                    facets.lines.push(line);
                 }
                 points.clear();
-                if triangles.triangles.len() > triangles.limit {
-                    let message = format!("more than {} triangles", triangles.limit);
+                if facets.lines.len() > limit {
+                    let message = format!("more than {limit} triangles");
                     let error = Error::new(ErrorKind::Limit, &scanner.at(file), message);
                     return Err(error.hint("split the model into several files"));
                 }
@@ -283,7 +338,7 @@ fn read_text(
             b"endfacet" => is_in_facet = false,
             b"endsolid" => {
                 scanner.rest_of_line();
-                solids.push((name.take(), triangles.take_mesh()));
+                facets.end_solid(name.take());
                 is_open = false;
             }
             b"color" | b"material" => drop(scanner.rest_of_line()),
@@ -299,20 +354,20 @@ fn read_text(
     }
     if is_open {
         context.warn(&file.at(scanner.line(), 0), "`endsolid` is missing: the file may be cut off");
-        solids.push((name.take(), triangles.take_mesh()));
+        facets.end_solid(name.take());
     }
-    Ok(solids)
+    Ok(facets)
 }
 
-fn vertex(scanner: &mut Scanner<'_>, file: &Location) -> Result<Vec3> {
+fn vertex(scanner: &mut Scanner<'_>, file: &Location) -> Result<DVec3> {
     let mut point = [0.0; 3];
     for value in &mut point {
         let word = scanner.word_across_lines();
-        *value = parse_f32(word).ok_or_else(|| {
+        *value = parse_f64(word).ok_or_else(|| {
             let found =
                 if word.is_empty() { "the end of the file".to_owned() } else { format!("`{}`", shown(word)) };
             Error::syntax(&scanner.at(file), format!("expected a coordinate, found {found}"))
         })?;
     }
-    Ok(Vec3::from_array(point))
+    Ok(DVec3::from_array(point))
 }

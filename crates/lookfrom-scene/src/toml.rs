@@ -64,13 +64,13 @@ use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
 use crate::gltf::AT_REST;
 use crate::image::{self, Encoding, Reading};
+use crate::load;
 use crate::load::Model;
 use crate::material::MaterialKind;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
-use crate::load;
 
 pub use self::vocabulary::vocabulary;
 
@@ -269,7 +269,8 @@ impl Reader<'_, '_> {
         table.allow(&[texture::PICTURE]);
         let layer = table.maybe("layer", |value| value.text("the name of a layer").map(str::to_owned));
         let file = table.find("file").filter(|file| !file.is_table());
-        let file = file.ok_or_else(|| value.wrong("a picture, such as { file = \"sky.exr\", layer = \"beauty\" }"))?;
+        let file =
+            file.ok_or_else(|| value.wrong("a picture, such as { file = \"sky.exr\", layer = \"beauty\" }"))?;
         self.image_as(file, layer.as_deref(), is_data)
     }
 

@@ -3,18 +3,23 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, Layers, Vec2, WritableImage,
 };
-use exr::meta::attribute::Chromaticities;
 use lookfrom_scene::image::{self, By, Encoding as Curve, Image, Reading};
 use lookfrom_scene::{LoadContext, Memory};
 
 type Channel = (&'static str, Vec<f32>);
 
 /// A part at a place of the picture.
-fn part(name: Option<&str>, [x, y]: [i32; 2], [width, height]: [usize; 2], channels: &[Channel]) -> Layer<AnyChannels<FlatSamples>> {
+fn part(
+    name: Option<&str>,
+    [x, y]: [i32; 2],
+    [width, height]: [usize; 2],
+    channels: &[Channel],
+) -> Layer<AnyChannels<FlatSamples>> {
     let list = channels.iter().map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.clone())));
     let mut attributes = LayerAttributes::default();
     attributes.layer_name = name.map(|name| exr::prelude::Text::from(name));
@@ -39,7 +44,8 @@ fn read(bytes: &[u8], reading: &Reading<'_>) -> Result<(Image, Vec<String>), Str
     let mut files = Memory::default();
     files.0.insert("a.exr".into(), bytes.to_vec());
     let mut context = LoadContext::new(&files);
-    let image = image::read_as(Path::new("a.exr"), reading, &mut context).map_err(|error| error.to_string())?;
+    let image =
+        image::read_as(Path::new("a.exr"), reading, &mut context).map_err(|error| error.to_string())?;
     Ok((image, context.warnings.iter().map(|warning| warning.message.clone()).collect()))
 }
 

@@ -128,9 +128,13 @@ fn shapes_that_are_no_panorama_are_told() {
     for panorama in [[2, 1], [64, 32], [64, 31], [200, 99], [1, 1]] {
         assert_eq!(said(panorama), Vec::<String>::new(), "{panorama:?}");
     }
-    for (shape, word) in
-        [([64, 64], "mirror ball"), ([96, 16], "strip"), ([16, 96], "strip"), ([64, 48], "cross"), ([64, 20], "part")]
-    {
+    for (shape, word) in [
+        ([64, 64], "mirror ball"),
+        ([96, 16], "strip"),
+        ([16, 96], "strip"),
+        ([64, 48], "cross"),
+        ([64, 20], "part"),
+    ] {
         let said = said(shape);
         assert!(said.len() == 1 && said[0].starts_with("a.toml:6:9:") && said[0].contains(word), "{said:?}");
     }

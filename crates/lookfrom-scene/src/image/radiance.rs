@@ -69,8 +69,11 @@ pub(super) fn decode(
     let mut line = vec![[0; 4]; along.count as usize];
     for index in 0..lines.count {
         read_line(&mut rest, &mut line).ok_or_else(|| {
-            Error::syntax(at, format!("not a complete picture: ends in line {} of {}", index + 1, lines.count))
-                .hint(WHOLE)
+            Error::syntax(
+                at,
+                format!("not a complete picture: ends in line {} of {}", index + 1, lines.count),
+            )
+            .hint(WHOLE)
         })?;
         for (place, [r, g, b, exponent]) in (0..).zip(&line) {
             let (across, along_line) = (lines.place(index), along.place(place));
@@ -146,10 +149,8 @@ fn header(rest: &mut &[u8], at: &Location, context: &mut LoadContext<'_>) -> Res
                 found.applied = std::array::from_fn(|k| found.applied[k] * corrections[k]);
             }
             ("PRIMARIES", &[rx, ry, gx, gy, bx, by, wx, wy]) => {
-                found.chromaticities = Some(Chromaticities {
-                    primaries: [[rx, ry], [gx, gy], [bx, by]],
-                    white: [wx, wy],
-                });
+                found.chromaticities =
+                    Some(Chromaticities { primaries: [[rx, ry], [gx, gy], [bx, by]], white: [wx, wy] });
             }
             (name @ ("EXPOSURE" | "COLORCORR" | "PRIMARIES"), _) => {
                 context.warn(&at, format!("{name}={value:?} makes no sense and is ignored"));

@@ -120,8 +120,11 @@ fn decode_as(
     let encoding = reading.encoding;
     let is_exr = bytes.starts_with(&openexr::MAGIC);
     if let (Some(layer), false) = (reading.layer, is_exr) {
-        return Err(Error::invalid(&at, format!("has no layer {layer:?}: only OpenEXR pictures have layers"))
-            .hint("leave `layer` out"));
+        return Err(Error::invalid(
+            &at,
+            format!("has no layer {layer:?}: only OpenEXR pictures have layers"),
+        )
+        .hint("leave `layer` out"));
     }
     // Formats that the crate `image` does not support are recognised by their first bytes.
     if bytes.starts_with(&ktx2::MAGIC) {
@@ -158,12 +161,7 @@ fn decode_as(
 const LARGEST_HALF: f32 = 65504.0;
 
 /// Replaces values that are no finite numbers, with a warning: +∞ is very bright, everything else 0.
-fn make_finite(
-    texels: &mut [[f32; 3]],
-    alpha: &mut [f32],
-    at: &Location,
-    context: &mut LoadContext<'_>,
-) {
+fn make_finite(texels: &mut [[f32; 3]], alpha: &mut [f32], at: &Location, context: &mut LoadContext<'_>) {
     let finite = texels.as_flattened().iter().filter(|value| value.is_finite());
     let brightest = finite.fold(LARGEST_HALF, |most, &value| most.max(value));
     let (mut bright, mut bad) = (0_usize, 0_usize);
@@ -214,7 +212,11 @@ pub fn read_opacity(
 ) -> Result<Option<Image>> {
     let at = Location::file(path);
     let bytes = context.read(path)?;
-    if bytes.starts_with(&openexr::MAGIC) || bytes.starts_with(&ktx2::MAGIC) || is_pfm(&bytes) || radiance::is(&bytes) {
+    if bytes.starts_with(&openexr::MAGIC)
+        || bytes.starts_with(&ktx2::MAGIC)
+        || is_pfm(&bytes)
+        || radiance::is(&bytes)
+    {
         return Ok(None);
     }
     let (picture, memory) = decode_common(&bytes, path, &at, context)?;

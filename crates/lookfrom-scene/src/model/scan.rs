@@ -23,7 +23,7 @@ impl<'a> Scanner<'a> {
         Self { bytes, position: 0, line: 1, line_start: 0, word_start: 0, joins_lines: false }
     }
 
-    /// The same, for formats in which a backslash before a line end continues the line.
+    /// The same, for formats in which a backslash at the end of a line, before blanks or not, continues the line.
     pub(crate) fn joining_lines(bytes: &'a [u8]) -> Self {
         Self { joins_lines: true, ..Self::new(bytes) }
     }
@@ -53,7 +53,7 @@ impl<'a> Scanner<'a> {
         let length = rest.iter().position(|&byte| byte <= b' ').unwrap_or(rest.len());
         self.position += length;
         // A backslash that continues the line is not part of the word before it.
-        if self.joins_lines && length > 0 && rest[length - 1] == b'\\' && self.line_end(self.position) > 0 {
+        if self.joins_lines && length > 0 && rest[length - 1] == b'\\' && self.continued(self.position) > 0 {
             self.position -= 1;
             return &rest[..length - 1];
         }
@@ -98,7 +98,8 @@ impl<'a> Scanner<'a> {
 
     fn skip_blanks(&mut self) {
         while let Some(&byte) = self.bytes.get(self.position) {
-            let joined = if self.joins_lines && byte == b'\\' { self.line_end(self.position + 1) } else { 0 };
+            let joined =
+                if self.joins_lines && byte == b'\\' { self.continued(self.position + 1) } else { 0 };
             if joined > 0 {
                 self.pass_line_end(1 + joined);
             } else if byte <= b' ' && byte != b'\n' && byte != b'\r' {
@@ -115,6 +116,16 @@ impl<'a> Scanner<'a> {
             Some(b'\n') => 1,
             Some(b'\r') => 1 + usize::from(self.bytes.get(position + 1) == Some(&b'\n')),
             _ => 0,
+        }
+    }
+
+    /// The length in bytes of the line end behind a backslash at `position - 1`, and of blanks before it; 0 where there is none.
+    fn continued(&self, position: usize) -> usize {
+        let rest = &self.bytes[position.min(self.bytes.len())..];
+        let blanks = rest.iter().take_while(|&&byte| byte == b' ' || byte == b'\t').count();
+        match self.line_end(position + blanks) {
+            0 => 0,
+            length => blanks + length,
         }
     }
 
@@ -162,6 +173,15 @@ mod tests {
         assert_eq!(scanner.line(), 3);
         assert!(scanner.next_line());
         assert_eq!(scanner.word(), b"x\\y");
+    }
+
+    #[test]
+    fn blanks_behind_a_backslash_change_nothing() {
+        let mut scanner = Scanner::joining_lines(b"f 1 \\ \t\n2\\  \r\n3 \\ 4\n");
+        let words: Vec<_> =
+            std::iter::from_fn(|| Some(scanner.word()).filter(|word| !word.is_empty())).collect();
+        assert_eq!(words, [&b"f"[..], b"1", b"2", b"3", b"\\", b"4"]);
+        assert_eq!(scanner.line(), 3);
     }
 
     #[test]

@@ -5,11 +5,13 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
+use super::color::Colors;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
-use crate::model::number::parse_f32;
+use crate::model::number::{parse_f32, parse_f64};
+use crate::model::place::{Place, placed};
 use crate::model::scan::{Scanner, shown};
 use crate::model::tally::Tally;
 
@@ -51,6 +53,8 @@ pub(super) struct Group {
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) positions: Vec<Vec3>,
+    /// Where the positions are.
+    pub(super) place: Place,
     /// Linear colours of positions; may be shorter than `positions`: the rest is white.
     pub(super) colors: Vec<[f32; 3]>,
     pub(super) uvs: Vec<Vec2>,
@@ -72,6 +76,10 @@ struct Parser<'a> {
     scanner: Scanner<'a>,
     elements: usize,
     statements: Statements,
+    /// The positions as in the file.
+    positions: Vec<DVec3>,
+    /// The colours as in the file.
+    colors: Colors,
     group_of_material: HashMap<Option<Vec<u8>>, usize>,
     group: usize,
     object: Option<String>,
@@ -99,6 +107,8 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
         // Indices must also fit in 32 bits.
         elements: context.limits.elements.min(u64::from(u32::MAX) / 4) as usize,
         statements: Statements::default(),
+        positions: Vec::new(),
+        colors: Colors::default(),
         group_of_material: HashMap::new(),
         group: 0,
         object: None,
@@ -119,6 +129,9 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
             break;
         }
     }
+    (parser.statements.positions, parser.statements.place) = placed(&parser.positions, false);
+    parser.positions = Vec::new();
+    parser.statements.colors = std::mem::take(&mut parser.colors).linear(file, context);
     parser.drop_missing();
     parser.check_indices()?;
     parser.warn(context);
@@ -132,11 +145,11 @@ impl Parser<'_> {
             b"" => {}
             b"v" => self.position()?,
             b"vn" => {
-                let ([x, y, z], _) = self.numbers::<3>(3)?;
+                let ([x, y, z], _) = self.numbers(3, parse_f32)?;
                 self.statements.normals.push(Vec3::new(x, y, z));
             }
             b"vt" => {
-                let ([u, v], _) = self.numbers::<2>(1)?;
+                let ([u, v], _) = self.numbers(1, parse_f32)?;
                 self.statements.uvs.push(Vec2::new(u, v));
             }
             b"f" | b"fo" => self.face()?,
@@ -179,7 +192,7 @@ impl Parser<'_> {
             }
         }
         let statements = &self.statements;
-        let elements = statements.positions.len().max(statements.uvs.len()).max(statements.normals.len());
+        let elements = self.positions.len().max(statements.uvs.len()).max(statements.normals.len());
         if elements > self.elements {
             return Err(self.too_many("vertices"));
         }
@@ -187,27 +200,27 @@ impl Parser<'_> {
     }
 
     fn position(&mut self) -> Result<()> {
-        let (values, count) = self.numbers::<6>(3)?;
-        let [x, y, z, r, g, b] = values;
-        if count == 6 {
-            let colors = &mut self.statements.colors;
-            colors.resize(self.statements.positions.len(), [1.0; 3]);
-            colors.push([r, g, b].map(super::linear_color));
-        }
-        self.statements.positions.push(Vec3::new(x, y, z));
+        let (values, count) = self.numbers::<f64, 7>(3, parse_f64)?;
+        let [x, y, z, ..] = values;
+        self.colors.add(self.positions.len(), &values[3..count]);
+        self.positions.push(DVec3::new(x, y, z));
         Ok(())
     }
 
     /// Up to N numbers, at least `least`; more than N are ignored.
-    fn numbers<const N: usize>(&mut self, least: usize) -> Result<([f32; N], usize)> {
-        let mut values = [0.0; N];
+    fn numbers<T: Copy + Default, const N: usize>(
+        &mut self,
+        least: usize,
+        parse: fn(&[u8]) -> Option<T>,
+    ) -> Result<([T; N], usize)> {
+        let mut values = [T::default(); N];
         let mut count = 0;
         while count < N {
             let word = self.scanner.word();
             if word.is_empty() || word[0] == b'#' {
                 break;
             }
-            values[count] = parse_f32(word).ok_or_else(|| {
+            values[count] = parse(word).ok_or_else(|| {
                 let found = shown(word);
                 Error::syntax(&self.scanner.at(self.file), format!("expected a number, found `{found}`"))
             })?;
@@ -262,8 +275,7 @@ impl Parser<'_> {
 
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
     fn corner(&mut self, word: &[u8]) -> Result<Corner> {
-        let counts =
-            [self.statements.positions.len(), self.statements.uvs.len(), self.statements.normals.len()];
+        let counts = [self.positions.len(), self.statements.uvs.len(), self.statements.normals.len()];
         let mut indices = [NONE; 3];
         let mut rest = word;
         for kind in 0..3 {

@@ -141,6 +141,11 @@ fn mesh(path: &Path, context: &mut LoadContext<'_>) -> Result<Mesh> {
         context.warn(&at, "there are points but no faces: nothing is rendered");
     }
     let mut mesh = alone.meshes.into_iter().next().unwrap_or_default();
+    // As pbrt has them: in single precision where they are.
+    if let Some(part) = parts.first() {
+        let origin = part.world_from_object.w_axis.truncate();
+        mesh.positions.iter_mut().for_each(|point| *point = (point.as_dvec3() + origin).as_vec3());
+    }
     // Vertex colours are used only by a material of the PLY file's own.
     mesh.colors = Vec::new();
     context.keep(mesh.bytes(), "the mesh", &at)?;

@@ -43,11 +43,10 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let image =
-            with_encoding(encoding, place, |encoding| {
-                let reading = Reading { by, ..Reading::new(encoding) };
-                image::read_as(&path, &reading, self.context)
-            });
+        let image = with_encoding(encoding, place, |encoding| {
+            let reading = Reading { by, ..Reading::new(encoding) };
+            image::read_as(&path, &reading, self.context)
+        });
         let image = self.or_blank(image, &path, place, blank(name))?;
         Ok(self.push_picture(key, image))
     }

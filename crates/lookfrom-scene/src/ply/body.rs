@@ -3,22 +3,26 @@
 //! Vertices, faces and edges; other elements and properties are skipped. Headers are not trusted: declared sizes are compared
 //! with the remaining bytes before memory is allocated.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::edges::Edges;
 use super::header::{Element, Format, Header, Kind, Scalar};
 use super::values::Reader;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::Limits;
+use crate::files::{Limits, LoadContext};
 use crate::image::linear_from_srgb;
+use crate::model::colors::{Range, range};
+use crate::model::place::{Place, placed};
 use crate::model::scan::shown;
 use crate::model::tally::Tally;
 
 /// The supported content of a file.
 #[derive(Default)]
 pub(super) struct Content {
-    /// As in the file: not necessarily finite.
+    /// Not necessarily finite.
     pub(super) positions: Vec<Vec3>,
+    /// Where the positions are.
+    pub(super) place: Place,
     /// Empty, or one per vertex.
     pub(super) normals: Vec<Vec3>,
     /// Empty, or one per vertex.
@@ -127,7 +131,11 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
     }
     let has = |range: std::ops::Range<usize>| range.into_iter().all(|slot| columns[slot].is_some());
     let count = element.count as usize;
-    content.positions.reserve_exact(count);
+    let mut positions = Vec::with_capacity(count);
+    let is_single = |slot: usize| {
+        columns[slot].is_some_and(|column| element.properties[column].kind == Kind::One(Scalar::F32))
+    };
+    let is_single = reader.is_binary() && (0..3).all(is_single);
     let (normals, uvs, colors) = (has(3..6), has(6..8), has(8..11));
     let mut slots = vec![VERTEX.len(); element.properties.len()];
     for (slot, column) in columns.into_iter().enumerate() {
@@ -147,12 +155,13 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
         let mut row = [0.0_f64; VERTEX.len() + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.kind {
+                Kind::One(scalar) if slot < 3 => row[slot] = reader.exact_value(scalar)?,
                 Kind::One(scalar) => row[slot] = reader.value(scalar)?,
                 Kind::List { count, item } => reader.list(count, item, |_| {})?,
             }
         }
-        let [x, y, z, nx, ny, nz, s, t, ..] = row.map(|value| value as f32);
-        content.positions.push(Vec3::new(x, y, z));
+        let [_, _, _, nx, ny, nz, s, t, ..] = row.map(|value| value as f32);
+        positions.push(DVec3::new(row[0], row[1], row[2]));
         if normals {
             content.normals.push(Vec3::new(nx, ny, nz));
         }
@@ -164,10 +173,12 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
         }
         reader.end_row();
     }
+    (content.positions, content.place) = placed(&positions, is_single);
     Ok(())
 }
 
-/// The conversion of a colour to linear light: integers are sRGB-encoded, floating-point values are linear.
+/// The conversion of a colour to linear light: integers are sRGB-encoded, floating-point values are linear if they reach from
+/// 0 to 1, see [`Content::settle_colors`].
 pub(super) fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
     let bytes: Vec<f32> = (0..=255).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
     let full = match kind {
@@ -259,6 +270,17 @@ fn read_faces(
 }
 
 impl Content {
+    /// Decodes floating-point colours that reach from 0 to 255, which are sRGB-encoded as bytes are.
+    pub(super) fn settle_colors(&mut self, file: &Location, context: &mut LoadContext<'_>) {
+        let Self { colors, face_colors, edges, .. } = self;
+        let all = || colors.iter().chain(&*face_colors).chain(edges.colors());
+        if range(all().flatten().copied(), "they are taken as they are", file, context) == Range::Bytes {
+            for color in colors.iter_mut().chain(face_colors).chain(edges.colors_mut()) {
+                *color = color.map(|value| linear_from_srgb(value / 255.0));
+            }
+        }
+    }
+
     fn push_face(&mut self, face: &[f64], uvs: &[f32], line: u32) {
         if face.len() < 3 {
             let first = if self.thin.0 == 0 { line } else { self.thin.1 };

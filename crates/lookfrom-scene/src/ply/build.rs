@@ -21,14 +21,14 @@ use crate::scene::{MaterialId, MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Part};
 use crate::texture::Wrap;
 
-/// Adds the mesh (or the edges, or the points) and its material to the scene.
+/// Adds the mesh (or the edges, or the points) and its material to the scene; and the number of triangles without area.
 pub(super) fn parts(
     mut content: Content,
     header: &Header,
     path: &Path,
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
-) -> Result<Vec<Part>> {
+) -> Result<(Vec<Part>, u64)> {
     let file = Location::file(path);
     let mut thin = Tally::default();
     thin.add_many(content.thin.0, content.thin.1);
@@ -41,11 +41,11 @@ pub(super) fn parts(
     );
     if content.positions.is_empty() {
         context.warn(&file, "there are no vertices");
-        return Ok(Vec::new());
+        return Ok((Vec::new(), 0));
     }
     if content.faces.is_empty() && !content.edges.is_empty() {
         let Content { edges, positions, colors, .. } = content;
-        return Ok(edges.wires(&positions, &colors, &file, context, scene));
+        return Ok((edges.wires(&positions, &colors, &file, context, scene), 0));
     }
     if content.faces.is_empty() {
         let is_splat = |element: &Element| element.find(&[SPLAT_COLOR]).is_some();
@@ -56,18 +56,18 @@ pub(super) fn parts(
                  without their opacities and shapes",
             );
         }
-        return Ok(points::cloud(&content.positions, &content.colors, &file, context, scene));
+        return Ok((points::cloud(&content.positions, &content.colors, &file, context, scene), 0));
     }
     make_values_finite(&mut content, &file, context);
-    let mut mesh = mesh(content, &file, context);
+    let (mut mesh, flat) = mesh(content, &file, context);
     if mesh.triangles.is_empty() {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), flat));
     }
     mesh.name = file.file.to_string();
     let material = material(&mesh, header, path, context, scene);
     let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
     scene.meshes.push(mesh);
-    Ok(vec![Part { material, ..Part::new(None, geometry) }])
+    Ok((vec![Part { material, ..Part::new(None, geometry) }], flat))
 }
 
 fn make_values_finite(content: &mut Content, file: &Location, context: &mut LoadContext<'_>) {
@@ -83,7 +83,7 @@ fn make_values_finite(content: &mut Content, file: &Location, context: &mut Load
     tally.warn("normal or texture coordinate", "ignored: infinite or not a number", file, context);
 }
 
-fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mesh {
+fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Mesh, u64) {
     let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, face_colors, .. } =
         content;
     let mut triangulator = Triangulator::new();
@@ -131,7 +131,8 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
         for position in positions.iter_mut().filter(|position| !position.is_finite()) {
             *position = Vec3::ZERO;
         }
-        return Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
+        let mesh = Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
+        return (mesh, flat.count());
     }
     // A vertex with different texture coordinates or colours in different faces is split.
     let mut weld = Weld::new();
@@ -145,7 +146,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
     let keys = weld.keys();
     let uv_of = |key: &Key| Vec2::new(f32::from_bits(key[1]), f32::from_bits(key[2]));
     let color_of = |key: &Key| [key[3], key[4], key[5]].map(f32::from_bits);
-    Mesh {
+    let mesh = Mesh {
         positions: keys.iter().map(|key| positions[key[0] as usize]).collect(),
         triangles,
         normals: select(&normals, keys),
@@ -156,7 +157,8 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> Mes
             keys.iter().map(color_of).collect()
         },
         ..Mesh::default()
-    }
+    };
+    (mesh, flat.count())
 }
 
 /// A vertex, its texture coordinates and its colour, as bits.

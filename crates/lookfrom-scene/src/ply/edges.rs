@@ -59,6 +59,14 @@ impl Edges {
         Ok(edges)
     }
 
+    pub(super) fn colors(&self) -> &[[f32; 3]] {
+        &self.colors
+    }
+
+    pub(super) fn colors_mut(&mut self) -> &mut [[f32; 3]] {
+        &mut self.colors
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.vertices.is_empty()
     }

@@ -80,6 +80,15 @@ impl<'a> Reader<'a> {
         .hint("the file may be cut off, or its header may be wrong")
     }
 
+    pub(super) fn is_binary(&self) -> bool {
+        self.format != Format::Ascii
+    }
+
+    /// The next value, of which a text may tell more than its type holds.
+    pub(super) fn exact_value(&mut self, scalar: Scalar) -> Result<f64> {
+        self.value(if scalar == Scalar::F32 && !self.is_binary() { Scalar::F64 } else { scalar })
+    }
+
     /// The next value.
     pub(super) fn value(&mut self, scalar: Scalar) -> Result<f64> {
         match self.format {

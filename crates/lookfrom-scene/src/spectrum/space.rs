@@ -43,15 +43,18 @@ pub struct Chromaticities {
 
 impl Chromaticities {
     /// Rec. 709, and sRGB.
-    pub const REC709: Self = Self { primaries: [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]], white: [0.3127, 0.329] };
+    pub const REC709: Self =
+        Self { primaries: [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06]], white: [0.3127, 0.329] };
 
     /// X, Y and Z themselves.
-    pub const XYZ: Self = Self { primaries: [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], white: [1.0 / 3.0, 1.0 / 3.0] };
+    pub const XYZ: Self =
+        Self { primaries: [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]], white: [1.0 / 3.0, 1.0 / 3.0] };
 
     /// Whether all of them are nearly those of another one, as far as files round them (pbrt-v4's tolerance).
     fn nearly(&self, other: &Self) -> bool {
         const TOLERANCE: f64 = 1e-3;
-        let pairs = self.primaries.iter().chain([&self.white]).zip(other.primaries.iter().chain([&other.white]));
+        let pairs =
+            self.primaries.iter().chain([&self.white]).zip(other.primaries.iter().chain([&other.white]));
         pairs.flat_map(|(a, b)| a.iter().zip(b)).all(|(a, b)| (a - b).abs() <= TOLERANCE)
     }
 

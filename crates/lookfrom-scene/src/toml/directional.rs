@@ -71,9 +71,8 @@ impl Reader<'_, '_> {
     /// The octahedral map of a luminaire's photometric file, or of a picture.
     fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
         match value.as_text().filter(|name| ies::is_ies(name)) {
-            Some(name) => {
-                self.image_by(value, None, true, |path, context| Ok(ies::read(path, context)?.octahedral(name)))
-            }
+            Some(name) => self
+                .image_by(value, None, true, |path, context| Ok(ies::read(path, context)?.octahedral(name))),
             None => self.octahedral_image(value),
         }
     }

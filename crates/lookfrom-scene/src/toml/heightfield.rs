@@ -14,7 +14,8 @@ use crate::shape::{Geometry, Mesh};
 impl Reader<'_, '_> {
     /// A mesh with a vertex for each texel, centred on the origin in x and z; the picture's upper edge is towards −z.
     pub(super) fn heightfield(&mut self, table: &Table<'_>) -> Result<Geometry> {
-        let image = table.need("file", "\"heights.png\"", ImageId(0), |value| self.image_as(value, None, true));
+        let image =
+            table.need("file", "\"heights.png\"", ImageId(0), |value| self.image_as(value, None, true));
         let size = table.or("size", [1.0, 1.0], |value| {
             let expected = "two numbers > 0, [width, depth]";
             let size = value.numbers(expected)?;

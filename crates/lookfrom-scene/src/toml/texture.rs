@@ -185,9 +185,8 @@ impl Reader<'_, '_> {
         let is_data = table.or("encoding", false, |value| value.choice(ENCODINGS));
         let layer = table.maybe("layer", |value| value.text("the name of a layer of an OpenEXR picture"));
         Ok(TextureKind::Image {
-            image: table.need("file", "\"picture.png\"", ImageId(0), |value| {
-                self.image_as(value, layer, is_data)
-            }),
+            image: table
+                .need("file", "\"picture.png\"", ImageId(0), |value| self.image_as(value, layer, is_data)),
             mapping: mapping(table, "uv")?,
             wrap: [table.or("wrap", Wrap::default(), |value| value.choice(WRAPS)); 2],
             filter: table.or("filter", TexelFilter::default(), |value| value.choice(FILTERS)),

@@ -70,7 +70,8 @@ pub(in crate::image) fn decode_rgb(
         Chromaticities { primaries: [found.red, found.green, found.blue].map(pair), white: pair(found.white) }
     });
     let keeps_white = reading.by == By::PbrtLight;
-    let mut to_rec709 = chromaticities.filter(|_| !reading.is_data()).and_then(|colors| colors.rec709(keeps_white));
+    let mut to_rec709 =
+        chromaticities.filter(|_| !reading.is_data()).and_then(|colors| colors.rec709(keeps_white));
     let part = &mut parts[part];
     let mut take = |index: usize| std::mem::take(&mut part.channels[index].1);
     let planes = |[r, g, b]: [Vec<f32>; 3]| -> Vec<[f32; 3]> {
@@ -199,9 +200,7 @@ fn first(
 
 /// The layer with this name, or whose name ends so.
 fn named(layers: &[Layer], name: &str, at: &Location) -> Result<(usize, Kind)> {
-    let is_end = |layer: &&Layer| {
-        layer.name.strip_suffix(name).is_some_and(|rest| rest.ends_with('.'))
-    };
+    let is_end = |layer: &&Layer| layer.name.strip_suffix(name).is_some_and(|rest| rest.ends_with('.'));
     let found = layers.iter().find(|layer| layer.name == name).or_else(|| layers.iter().find(is_end));
     let Some(layer) = found else {
         let known = || layers.iter().map(|layer| layer.name.as_str()).filter(|name| !name.is_empty());

@@ -8,10 +8,12 @@ pub(super) fn told(bytes: &[u8], at: &Location) -> Option<Error> {
     let names = subsampled(bytes.strip_prefix(&MAGIC)?.get(4..)?)?;
     let is_chroma = names.iter().any(|name| name.ends_with("RY") || name.ends_with("BY"));
     let kind = if is_chroma { "luminance and subsampled chroma (Y, RY, BY)" } else { "subsampled channels" };
-    let message = format!("OpenEXR with {kind} is not read here: {} have fewer values than pixels", names.join(", "));
+    let message =
+        format!("OpenEXR with {kind} is not read here: {} have fewer values than pixels", names.join(", "));
     Some(
-        Error::new(ErrorKind::Unsupported, at, message)
-            .hint("the file is whole; save it with the channels R, G and B, each with a value for every pixel"),
+        Error::new(ErrorKind::Unsupported, at, message).hint(
+            "the file is whole; save it with the channels R, G and B, each with a value for every pixel",
+        ),
     )
 }
 

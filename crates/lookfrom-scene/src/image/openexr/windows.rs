@@ -49,12 +49,7 @@ impl Windows {
 
 impl Window {
     pub(super) fn new(position: Vec2<i32>, size: Vec2<usize>) -> Self {
-        Self {
-            left: position.0.into(),
-            top: position.1.into(),
-            width: size.0 as u64,
-            height: size.1 as u64,
-        }
+        Self { left: position.0.into(), top: position.1.into(), width: size.0 as u64, height: size.1 as u64 }
     }
 
     pub(super) fn of(bounds: IntegerBounds) -> Self {
