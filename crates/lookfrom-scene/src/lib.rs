@@ -7,6 +7,7 @@ pub mod atmosphere;
 mod boolean;
 pub mod budget;
 pub mod camera;
+mod chain;
 pub mod contents;
 pub mod count;
 pub mod digest;

@@ -37,6 +37,7 @@ use self::medium::NamedMedium;
 use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
+use crate::chain;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
@@ -221,6 +222,11 @@ impl Reader<'_, '_> {
             } else {
                 error
             });
+        }
+        let textures = chain::check(&self.scene.textures, 0..self.scene.textures.len());
+        let materials = chain::check(&self.scene.materials, 0..self.scene.materials.len());
+        if let Some(error) = textures.into_iter().chain(materials).next() {
+            return Err(error);
         }
         self.place_instances()?;
         curve::join(&mut self.scene.shapes);

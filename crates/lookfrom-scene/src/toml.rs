@@ -6,7 +6,6 @@
 //! decoder for each part of the vocabulary.
 
 mod camera;
-mod chain;
 mod clear_sky;
 mod color;
 mod color_names;

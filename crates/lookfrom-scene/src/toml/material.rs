@@ -4,7 +4,8 @@ use super::color::plain_color;
 use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, chain, principled};
+use super::{Reader, principled};
+use crate::chain;
 use crate::error::{Location, Result};
 use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
 use crate::scene::MaterialId;
@@ -64,23 +65,6 @@ pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
 
 /// The default material of shapes.
 pub(super) const DEFAULT: &str = "default";
-
-impl chain::Made for Material {
-    const WHAT: &'static str = "material";
-    const REMEDY: &'static str = "let one of them mix other materials";
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn at(&self) -> &Location {
-        &self.at
-    }
-    fn parts(&self) -> Vec<usize> {
-        match self.kind {
-            MaterialKind::Mix { materials, .. } => materials.map(MaterialId::index).to_vec(),
-            _ => Vec::new(),
-        }
-    }
-}
 
 impl Reader<'_, '_> {
     /// Reads `[materials]`: all names first, so that a mix may use materials that are defined later.

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
+use super::Reader;
 use super::color::plain_color;
 use super::mapping::mapping;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, chain};
-use crate::error::{Error, Location, Result};
+use crate::chain;
+use crate::error::{Error, Result};
 use crate::material::{Color, Scalar};
 use crate::scene::{ImageId, TextureId};
 use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
@@ -44,21 +45,6 @@ pub(super) const FILTERS: &[(&str, TexelFilter)] =
 /// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
     !["scale", "mix", "direction_mix", "vertex_color"].contains(&kind)
-}
-
-impl chain::Made for Texture {
-    const WHAT: &'static str = "texture";
-    const REMEDY: &'static str = "give one of them a plain colour";
-    fn name(&self) -> &str {
-        &self.name
-    }
-    fn at(&self) -> &Location {
-        &self.at
-    }
-    fn parts(&self) -> Vec<usize> {
-        let index = |color: Color| if let Color::Texture(id) = color { Some(id.index()) } else { None };
-        self.kind.parts().into_iter().filter_map(index).collect()
-    }
 }
 
 impl Reader<'_, '_> {
