@@ -37,6 +37,10 @@ impl Files for Piped {
         }
     }
 
+    fn length(&self, path: &Path) -> Option<u64> {
+        Disk.length(path)
+    }
+
     fn identities(&self, path: &Path) -> Vec<FileId> {
         // Stdin is no file that could be overwritten.
         if path == Path::new(PIPE) { Vec::new() } else { Disk.identities(path) }

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
 use std::path::{Component, Path, PathBuf};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use crate::budget::{Budget, Reservation, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -67,9 +68,31 @@ pub enum FileId {
 /// The maximum number of bytes read from a stream of unknown length.
 const MOST_OF_A_STREAM: u64 = 1 << 30;
 
-/// The file system.
+/// The file system. What can be read only once, such as a pipe, is kept.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
+
+/// What came from pipes and devices of this process, by path and [`FileId`]s: readers look at the beginning of a file before they
+/// read it.
+type Streams = HashMap<(PathBuf, Vec<FileId>), Vec<u8>>;
+
+fn streams() -> MutexGuard<'static, Streams> {
+    static STREAMS: LazyLock<Mutex<Streams>> = LazyLock::new(Mutex::default);
+    STREAMS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Disk {
+    /// What was read before from a path that is no file: opening a pipe again would wait for another writer.
+    fn kept(self, path: &Path, limit: u64) -> Option<Result<Vec<u8>>> {
+        if std::fs::metadata(path).ok()?.is_file() {
+            return None;
+        }
+        let streams = streams();
+        let bytes = streams.get(&(path.to_owned(), self.identities(path)))?;
+        let is_long = bytes.len() as u64 > limit;
+        Some(if is_long { Err(too_long(&Location::file(path), limit)) } else { Ok(bytes.clone()) })
+    }
+}
 
 impl Files for Disk {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
@@ -88,17 +111,28 @@ impl Files for Disk {
             };
             Error::new(ErrorKind::Io, &at, message).hint(hint)
         };
+        if let Some(bytes) = self.kept(path, limit) {
+            return bytes;
+        }
         let file = std::fs::File::open(path).map_err(|e| io(&e))?;
         let metadata = file.metadata().map_err(|e| io(&e))?;
         let length = metadata.len();
         if length > limit {
             return Err(too_long(&at, limit));
         }
-        // A device or a pipe reports length 0 and may never end: read at most one byte more than the limit.
-        let limit = if metadata.is_file() { limit } else { limit.min(MOST_OF_A_STREAM) };
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+        if metadata.is_file() {
+            file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
+            return if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) };
+        }
+        // A device or a pipe reports length 0 and may never end: read at most one byte more than the limit.
+        let limit = limit.min(MOST_OF_A_STREAM);
         file.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| io(&e))?;
-        if bytes.len() as u64 > limit { Err(too_long(&at, limit)) } else { Ok(bytes) }
+        if bytes.len() as u64 > limit {
+            return Err(too_long(&at, limit));
+        }
+        streams().insert((path.to_owned(), self.identities(path)), bytes.clone());
+        Ok(bytes)
     }
 
     fn length(&self, path: &Path) -> Option<u64> {

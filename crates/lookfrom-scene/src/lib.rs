@@ -11,6 +11,7 @@ mod chain;
 pub mod contents;
 pub mod count;
 pub mod digest;
+mod duplicates;
 pub mod error;
 pub mod excerpt;
 pub mod files;

@@ -9,7 +9,7 @@ use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Mesh, Part, Shape};
-use crate::{gltf, model, packed, pbrt, studio, subdivision, toml};
+use crate::{duplicates, gltf, model, packed, pbrt, studio, subdivision, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -19,7 +19,7 @@ pub const PIPE: &str = "-";
 
 /// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose
 /// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none.
-/// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`], what no other reader knows is our own format.
+/// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`] or another pipe, what no other reader knows is our own format.
 ///
 /// # Errors
 /// `Unsupported` if the format is not known, and the errors of the format's reader.
@@ -39,6 +39,7 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     if context.import.camera == CameraChoice::None {
         scene.camera = None;
     }
+    duplicates::remove(&mut scene, &Location::file(path), context);
     Ok(scene)
 }
 
@@ -62,7 +63,7 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
             scene.z_is_up = model.z_is_up && !model::stand::stands_on_y(points);
             model.parts
         }
-        Err(error) if error.kind == ErrorKind::Unsupported && path == Path::new(PIPE) => {
+        Err(error) if error.kind == ErrorKind::Unsupported && is_stream(path, context) => {
             return toml::read(path, context);
         }
         Err(error) => return Err(error),
@@ -80,6 +81,11 @@ pub fn has_known_name(path: &Path) -> bool {
         || extension(&packed::unpacked_name(path)) == "pbrt"
         || GLTF.contains(&&*extension(path))
         || model::is_model(path)
+}
+
+/// Whether a path is a pipe, whose name says nothing: `-`, or one of the system's without an extension.
+fn is_stream(path: &Path, context: &LoadContext<'_>) -> bool {
+    path == Path::new(PIPE) || (path.extension().is_none() && context.files.length(path).is_none())
 }
 
 /// Whether a file has the name of a scene in our own format.

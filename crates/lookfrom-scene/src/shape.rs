@@ -38,18 +38,7 @@ pub struct Shape {
 impl Shape {
     /// Bytes of itself and of the arrays that only it has: its meshes are the scene's.
     pub fn bytes(&self) -> u64 {
-        let arrays = match &self.geometry {
-            Geometry::Spheres(spheres) => size_of_val(&**spheres),
-            Geometry::Curves(strands) => size_of_val(&**strands),
-            Geometry::Bilinear(patches) => {
-                size_of_val(&*patches.positions)
-                    + size_of_val(&*patches.patches)
-                    + size_of_val(&*patches.normals)
-                    + size_of_val(&*patches.uvs)
-            }
-            _ => 0,
-        };
-        (size_of::<Self>() + arrays) as u64
+        size_of::<Self>() as u64 + self.geometry.bytes()
     }
 
     /// A geometry with a material, at the origin, opaque, without emission.
@@ -276,6 +265,22 @@ impl Shape {
 }
 
 impl Geometry {
+    /// Bytes of the arrays that only it has: meshes are the scene's.
+    pub fn bytes(&self) -> u64 {
+        let bytes = match self {
+            Self::Spheres(spheres) => size_of_val(&**spheres),
+            Self::Curves(strands) => size_of_val(&**strands),
+            Self::Bilinear(patches) => {
+                size_of_val(&*patches.positions)
+                    + size_of_val(&*patches.patches)
+                    + size_of_val(&*patches.normals)
+                    + size_of_val(&*patches.uvs)
+            }
+            _ => 0,
+        };
+        bytes as u64
+    }
+
     /// The bounding box of the geometry, transformed by `matrix`.
     pub fn bounds(&self, meshes: &[Mesh], matrix: &DMat4) -> Bounds {
         let sphere = |sphere: &Sphere| {

@@ -50,6 +50,16 @@ fn claims_of_models_are_refused() {
         within(LITTLE, "a.gltf", &gltf(zeros)),
         "an accessor of 60000000 elements takes 686.6 MiB of memory",
     );
+    // Each of several fits, but not all of them.
+    let zeros = r#"{"componentType":5126,"count":2000000,"type":"VEC3"},{"componentType":5126,"count":2000000,"type":"VEC3"},
+        {"componentType":5126,"count":2000000,"type":"VEC4"}"#;
+    let several = String::from_utf8(gltf(zeros)).expect("text");
+    let several = several.replace("\"POSITION\":0", "\"POSITION\":0,\"NORMAL\":1,\"COLOR_0\":2");
+    refused(within(LITTLE, "a.gltf", several.as_bytes()), "an accessor of 2000000 elements takes");
+    let points =
+        String::from_utf8(gltf(r#"{"componentType":5126,"count":2000000,"type":"VEC3"}"#)).expect("text");
+    let points = points.replace("\"attributes\"", "\"mode\":0,\"attributes\"");
+    refused(within(LITTLE, "a.gltf", points.as_bytes()), "a primitive takes 244.1 MiB of memory");
     let beyond = r#"{"bufferView":0,"componentType":5126,"count":99999999999,"type":"VEC3"}"#;
     refused(within(LITTLE, "a.gltf", &gltf(beyond)), "99999999999");
     let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty float x\n\

@@ -31,7 +31,7 @@ fn files_that_are_no_models() {
          help: check that this is a Wavefront OBJ file and that it is whole\n\
          a.obj:1: 2 lines with an unknown keyword ignored, such as `<html>` (the first is here)"
     );
-    assert_eq!(said("a.ply", "v 1 2 3"), "a.ply:1:1: not a PLY file: it does not start with `ply`");
+    assert_eq!(said("a.ply", "v 1 2 3"), "a.ply: not a PLY file: it does not start with `ply`");
     assert_eq!(
         said("a.stl", "what?"),
         "a.stl: 5 bytes are too few for an STL file\n  help: the file may be empty or cut off"

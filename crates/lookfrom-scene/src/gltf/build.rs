@@ -260,7 +260,9 @@ impl Builder<'_, '_, '_> {
         pointer: &str,
     ) -> Result<Vec<Piece>> {
         let document = self.document;
-        let Some(mut vertices) = mesh::vertices(document, primitive, pointer, self.context)? else {
+        let at = document.at(pointer);
+        let Some((mut vertices, mut memory)) = mesh::vertices(document, primitive, pointer, self.context)?
+        else {
             return Ok(Vec::new());
         };
         if !primitive.targets.is_empty() {
@@ -279,10 +281,13 @@ impl Builder<'_, '_, '_> {
         }
         let mut pieces = Vec::new();
         let before = self.scene.meshes.len();
+        memory.join(self.context.budget.reserve(mesh::memory(&vertices, primitive), "a primitive", &at)?);
         let geometries =
             mesh::geometry(document, primitive, vertices, name, pointer, self.context, self.scene)?;
-        let meshes = self.scene.meshes[before..].iter().map(Mesh::bytes).sum();
-        self.context.keep(meshes, "a primitive", &document.at(pointer))?;
+        drop(memory);
+        let meshes: u64 = self.scene.meshes[before..].iter().map(Mesh::bytes).sum();
+        let others: u64 = geometries.iter().map(|(_, geometry)| geometry.bytes()).sum();
+        self.context.keep(meshes + others, "a primitive", &at)?;
         for (color, geometry) in geometries {
             let colors = color.map_or(Colors::None, |color| Colors::One(color.map(f32::to_bits)));
             let brought = if is_surface { brought } else { Brought { colors, opacities: false } };

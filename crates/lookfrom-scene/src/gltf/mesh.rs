@@ -8,6 +8,7 @@ use super::file::Document;
 use super::json::{Primitive, Whole};
 use super::material::{Brought, Colors};
 use super::tangents;
+use crate::budget::Reservation;
 use crate::error::Result;
 use crate::files::LoadContext;
 use crate::model::polygon::has_area;
@@ -96,6 +97,7 @@ impl Vertices {
 }
 
 /// Reads the attributes and indices of a primitive at `pointer`. `None`, with a warning, if it has no positions.
+/// The memory is that of the vertices.
 ///
 /// # Errors
 /// If an accessor cannot be read, or does not fit the attribute.
@@ -104,7 +106,7 @@ pub(crate) fn vertices(
     primitive: &Primitive,
     pointer: &str,
     context: &mut LoadContext<'_>,
-) -> Result<Option<Vertices>> {
+) -> Result<Option<(Vertices, Reservation)>> {
     let place = |name: &str| format!("{pointer}/attributes/{name}");
     let find = |name: &str| primitive.attributes.get(name).copied();
     let Some(positions) = find("POSITION") else {
@@ -112,11 +114,13 @@ pub(crate) fn vertices(
         context.warn(&at, "the primitive has no POSITION and is left out");
         return Ok(None);
     };
-    let positions: Vec<Vec3> = vectors(document.vectors(positions, &place("POSITION"))?);
+    let memory = document.budget.reserve(0, "a primitive", &document.at(pointer))?;
+    let mut attributes = Attributes { document, memory };
+    let positions: Vec<Vec3> = vectors(attributes.vectors(positions, &place("POSITION"))?);
     let count = positions.len();
     let mut vertices = Vertices { positions, ..Vertices::default() };
     if let Some(index) = find("NORMAL") {
-        vertices.normals = vectors(document.vectors(index, &place("NORMAL"))?);
+        vertices.normals = vectors(attributes.vectors(index, &place("NORMAL"))?);
         check_count(document, vertices.normals.len(), count, &place("NORMAL"))?;
         vertices
             .normals
@@ -124,7 +128,7 @@ pub(crate) fn vertices(
             .filter(|normal| !normal.is_finite())
             .for_each(|normal| *normal = Vec3::ZERO);
         if let Some(index) = find("TANGENT") {
-            let tangents = document.vectors(index, &place("TANGENT"))?;
+            let tangents = attributes.vectors(index, &place("TANGENT"))?;
             vertices.tangents = tangents.into_iter().map(Vec4::from_array).collect();
             check_count(document, vertices.tangents.len(), count, &place("TANGENT"))?;
             vertices
@@ -136,18 +140,18 @@ pub(crate) fn vertices(
     }
     for set in 0..Mesh::MOST_UV_SETS {
         let name = format!("TEXCOORD_{set}");
-        let uvs = find(&name).map(|index| coordinates(document, index, count, &place(&name))).transpose()?;
+        let uvs =
+            find(&name).map(|index| coordinates(&mut attributes, index, count, &place(&name))).transpose()?;
         vertices.uvs.push(uvs.unwrap_or_default());
     }
     while vertices.uvs.last().is_some_and(Vec::is_empty) {
         vertices.uvs.pop();
     }
     if let Some(index) = find("COLOR_0") {
-        colors(document, index, count, &place("COLOR_0"), &mut vertices)?;
+        colors(&mut attributes, index, count, &place("COLOR_0"), &mut vertices)?;
     }
     if let Some(index) = primitive.indices {
-        let indices = document.whole_vectors::<1>(index, &format!("{pointer}/indices"))?;
-        vertices.indices = Some(indices.into_flattened());
+        vertices.indices = Some(attributes.indices(index, &format!("{pointer}/indices"))?);
     }
     if let Some(mesh) = primitive
         .extensions
@@ -159,7 +163,42 @@ pub(crate) fn vertices(
         // A Draco mesh always has indices, but files may omit the accessor.
         vertices.indices.get_or_insert_with(|| mesh.indices.clone());
     }
-    Ok(Some(vertices))
+    Ok(Some((vertices, attributes.memory)))
+}
+
+/// The bytes of the geometry that vertices become, besides their own.
+pub(super) fn memory(vertices: &Vertices, primitive: &Primitive) -> u64 {
+    /// Bytes of a corner: of a triangle's three there are twelve, of a point its position, colour and sphere, of a line its wire.
+    const OF_SURFACE: u64 = 16;
+    const OF_OTHERS: u64 = 128;
+    let corners = vertices.indices.as_ref().map_or(vertices.positions.len(), Vec::len) as u64;
+    corners * if is_surface(primitive) { OF_SURFACE } else { OF_OTHERS }
+}
+
+/// The accessors of a primitive, with the memory of all that was read.
+struct Attributes<'a> {
+    document: &'a Document,
+    memory: Reservation,
+}
+
+impl Attributes<'_> {
+    fn vectors<const N: usize>(&mut self, index: Whole, asked: &str) -> Result<Vec<[f32; N]>> {
+        let values = self.document.vectors(index, asked)?;
+        self.keep(&values, asked)?;
+        Ok(values)
+    }
+
+    fn indices(&mut self, index: Whole, asked: &str) -> Result<Vec<u32>> {
+        let values = self.document.whole_vectors::<1>(index, asked)?;
+        self.keep(&values, asked)?;
+        Ok(values.into_flattened())
+    }
+
+    fn keep<T>(&mut self, values: &[T], asked: &str) -> Result<()> {
+        let (what, at) = (format!("an accessor of {} elements", values.len()), self.document.at(asked));
+        self.memory.join(self.document.budget.reserve(size_of_val(values) as u64, &what, &at)?);
+        Ok(())
+    }
 }
 
 fn vectors(values: Vec<[f32; 3]>) -> Vec<Vec3> {
@@ -174,9 +213,14 @@ fn check_count(document: &Document, found: usize, expected: usize, pointer: &str
     Err(document.invalid(pointer, message).hint("the file was written wrongly: export it again"))
 }
 
-fn coordinates(document: &Document, index: Whole, count: usize, pointer: &str) -> Result<Vec<Vec2>> {
-    let uvs = document.vectors::<2>(index, pointer)?;
-    check_count(document, uvs.len(), count, pointer)?;
+fn coordinates(
+    attributes: &mut Attributes<'_>,
+    index: Whole,
+    count: usize,
+    pointer: &str,
+) -> Result<Vec<Vec2>> {
+    let uvs = attributes.vectors::<2>(index, pointer)?;
+    check_count(attributes.document, uvs.len(), count, pointer)?;
     // v runs down in glTF and up here.
     let flipped =
         |[u, v]: [f32; 2]| if u.is_finite() && v.is_finite() { Vec2::new(u, 1.0 - v) } else { Vec2::ZERO };
@@ -184,22 +228,22 @@ fn coordinates(document: &Document, index: Whole, count: usize, pointer: &str) -
 }
 
 fn colors(
-    document: &Document,
+    attributes: &mut Attributes<'_>,
     index: Whole,
     count: usize,
     pointer: &str,
     vertices: &mut Vertices,
 ) -> Result<()> {
     let fit = |value: f32| if value >= 0.0 { value.min(1e30) } else { 0.0 };
-    if document.shape(index, pointer)?.0 == 4 {
-        let colors = document.vectors::<4>(index, pointer)?;
+    if attributes.document.shape(index, pointer)?.0 == 4 {
+        let colors = attributes.vectors::<4>(index, pointer)?;
         vertices.colors = colors.iter().map(|&[r, g, b, _]| [r, g, b].map(fit)).collect();
         vertices.opacities = colors.iter().map(|&[_, _, _, a]| fit(a).min(1.0)).collect();
     } else {
-        vertices.colors = document.vectors::<3>(index, pointer)?;
+        vertices.colors = attributes.vectors::<3>(index, pointer)?;
         vertices.colors.iter_mut().for_each(|color| *color = color.map(fit));
     }
-    check_count(document, vertices.colors.len(), count, pointer)
+    check_count(attributes.document, vertices.colors.len(), count, pointer)
 }
 
 /// The geometry of a primitive: triangles as a mesh of the scene, points as spheres, lines as curves; coloured points and lines

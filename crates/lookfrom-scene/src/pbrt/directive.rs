@@ -19,7 +19,7 @@ use crate::suggest::nearest;
 /// The maximum nesting depth of attributes.
 const DEEPEST: usize = 1 << 16;
 
-const DIRECTIVES: &[&str] = &[
+pub(super) const DIRECTIVES: &[&str] = &[
     "Accelerator",
     "ActiveTransform",
     "AreaLightSource",

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::Reader;
+use super::directive::DIRECTIVES;
 use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -80,10 +81,31 @@ impl Reader<'_, '_> {
                 .error(ErrorKind::Limit, message)
                 .hint("each file counts as often as it is included: objects (`ObjectBegin`) and their instances take less"));
         }
+        if packed::unpacked_name(&path).extension().is_none_or(|extension| extension != "pbrt")
+            && !self.is_scene(&path)
+        {
+            let error = place.invalid(format!(
+                "{} is not a part of a scene: it does not begin with a directive",
+                path.display()
+            ));
+            return Err(error.hint("included files are scenes of pbrt"));
+        }
         match self.file(&path) {
             // Only this file: missing files that it names have been noted already.
             Err(error) if error.kind == ErrorKind::Io => self.missing.add_text(&path, place.blame(error)),
             result => result.map_err(|error| place.blame(error)),
+        }
+    }
+
+    /// Whether a file begins as a scene does, if it can be read: errors quote the scene's files, and no others.
+    fn is_scene(&self, path: &Path) -> bool {
+        let Ok(bytes) = packed::read(path, self.context) else { return true };
+        let text = Text::new(path, bytes);
+        let mut lexer = Lexer::new(&text);
+        match lexer.token() {
+            Ok(None) => true,
+            Ok(Some(Token::Word(word))) => DIRECTIVES.iter().any(|known| known.as_bytes() == word),
+            _ => false,
         }
     }
 

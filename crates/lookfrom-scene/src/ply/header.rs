@@ -105,7 +105,7 @@ impl Element {
 pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Header> {
     let mut scanner = Scanner::new(bytes);
     if scanner.word() != b"ply" {
-        return Err(Error::syntax(&file.at(1, 1), "not a PLY file: it does not start with `ply`"));
+        return Err(Error::syntax(file, "not a PLY file: it does not start with `ply`"));
     }
     let mut format = None;
     let mut elements: Vec<Element> = Vec::new();

@@ -29,6 +29,11 @@ pub fn read_spd(path: &Path, context: &mut LoadContext<'_>) -> Result<Curve> {
         for word in line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
             let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
             let number = parse_f32(word).ok_or_else(|| {
+                if values.is_empty() && path.extension().is_none_or(|extension| extension != "spd") {
+                    // Whatever it is, it is not quoted.
+                    let message = "this is not a table of a spectrum: it does not begin with two numbers";
+                    return Error::syntax(&file, message).hint(HINT);
+                }
                 Error::syntax(&at(), format!("expected a number, found `{shown}`")).hint(HINT)
             })?;
             if !number.is_finite() {
