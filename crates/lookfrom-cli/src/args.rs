@@ -59,6 +59,16 @@ Exit codes:
 
 Manual: docs/guide/command.md, scene files: docs/guide/scene-format.md";
 
+const RENDER_SHORT_EXAMPLES: &str = "\
+Examples:
+  lookfrom render scene.toml -o picture.exr --samples 64
+  lookfrom render model.glb --size 512 --floor --background transparent
+  lookfrom render model.obj --lookfrom -3,2,5 --up z
+  lookfrom render shop/ --size 256 -o thumbs/            all scenes and models of a folder
+  lookfrom render scene.toml --watch --show
+
+All options, and more about each: lookfrom render --help. Manual: docs/guide/command.md";
+
 const RENDER_EXAMPLES: &str = "\
 Examples:
   lookfrom render scene.toml -o picture.exr --samples 64
@@ -122,7 +132,7 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Render pictures of scenes and models
-    #[command(after_help = RENDER_EXAMPLES)]
+    #[command(after_help = RENDER_SHORT_EXAMPLES, after_long_help = RENDER_EXAMPLES)]
     Render(RenderArguments),
     /// Go on with a render that was stopped, or take more samples
     #[command(after_help = film::RESUME_EXAMPLES)]
@@ -361,7 +371,6 @@ pub(crate) struct Common {
 
 /// Settings of the scene that the command line overrides.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Scene overrides")]
 pub(crate) struct Overrides {
     /// Width in pixels; alone it keeps the aspect ratio
     #[arg(long, value_name = "PIXELS", value_parser = values::whole(1, u32::MAX))]

@@ -9,7 +9,7 @@ use lookfrom_scene::settings::{Background, Tonemap};
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
 
 use crate::args::DevelopArguments;
-use crate::exit::{DONE, Failure};
+use crate::exit::{self, DONE, Failure};
 use crate::naming;
 use crate::output::Target;
 
@@ -58,6 +58,7 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
             Picture { width: image.width, height: image.height, pixels: image.texels().collect(), alpha };
         of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
     };
+    target.format().check_background(developed.development.background).map_err(exit::in_scene(path))?;
     let bytes = developed.encode(target.format());
     target.write(&bytes.map_err(|error| target.cannot_encode(&error))?, &inputs)
 }

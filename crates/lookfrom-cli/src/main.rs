@@ -13,6 +13,7 @@ mod exit;
 mod farm;
 mod files;
 mod film;
+mod help;
 mod html;
 mod info;
 mod inspect;
@@ -38,12 +39,12 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory, FromArgMatches};
+use clap::FromArgMatches;
 
 use crate::args::{Arguments, Command};
 
 fn main() -> ExitCode {
-    let matches = Arguments::command().try_get_matches();
+    let matches = help::command().try_get_matches();
     let parsed = matches.and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?, matches)));
     let (arguments, matches) = match parsed {
         Ok(parsed) => parsed,

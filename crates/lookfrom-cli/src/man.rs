@@ -2,12 +2,11 @@
 
 use std::io::Write;
 
-use clap::CommandFactory;
 use clap_mangen::Man;
 use lookfrom_scene::suggest::nearest;
 
-use crate::args::Arguments;
 use crate::exit::{DONE, Failure};
+use crate::help;
 
 /// Prints the page of the whole command, or of one of its subcommands, in roff.
 pub(crate) fn run(of: Option<&str>) -> u8 {
@@ -15,7 +14,7 @@ pub(crate) fn run(of: Option<&str>) -> u8 {
 }
 
 fn page(of: Option<&str>) -> Result<(), Failure> {
-    let mut command = Arguments::command();
+    let mut command = help::command();
     command.build();
     let found = match of {
         None => command,
@@ -29,7 +28,7 @@ fn page(of: Option<&str>) -> Result<(), Failure> {
                     known.join(", ")
                 ))
             })?;
-            found.clone()
+            help::explained(found)
         }
     };
     let mut text = Vec::new();

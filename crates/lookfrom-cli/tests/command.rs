@@ -8,6 +8,7 @@ mod command {
     mod farm;
     mod film;
     mod guide;
+    mod help;
     mod info;
     mod inputs;
     mod inspect;

@@ -37,7 +37,6 @@ Examples:
 
 /// Keeping the film of a render in a file.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Films and parts of pictures")]
 pub(crate) struct KeepArguments {
     /// Keep the film: the EXR also holds the exact sums of the samples, to go on with (resume), add up (merge) and develop
     #[arg(long)]

@@ -14,7 +14,6 @@ use crate::values;
 
 /// The surroundings of a model, and the selected parts of its file.
 #[derive(Args, Clone, Debug, Default)]
-#[command(next_help_heading = "Models and environment")]
 pub(crate) struct ModelArguments {
     /// Width and height in pixels at once: 256 (a square) or 640x360
     #[arg(long, value_name = "N|WxH", value_parser = values::size, conflicts_with_all = ["width", "height"])]
@@ -30,8 +29,8 @@ pub(crate) struct ModelArguments {
 
     /// Background where the camera sees no surface: environment, transparent, white, black or #rrggbb
     ///
-    /// The light stays that of the environment. Transparent pictures need PNG (straight alpha) or EXR (premultiplied alpha). A
-    /// colour is shown as given, without exposure and tone map.
+    /// The light stays that of the environment. Transparent pictures need PNG or WebP (straight alpha) or EXR (premultiplied
+    /// alpha). A colour is shown as given, without exposure and tone map.
     #[arg(long, value_name = "BACKGROUND", value_parser = values::background)]
     pub(crate) background: Option<Background>,
 

@@ -11,7 +11,6 @@ use lookfrom_scene::studio::Viewpoint;
 use crate::values;
 
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Several pictures of a scene")]
 pub(crate) struct SeriesArguments {
     /// Render this many pictures of each scene, evenly around it, as on a turntable: NAME-000.png, NAME-001.png …
     ///

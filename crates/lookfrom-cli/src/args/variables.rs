@@ -9,7 +9,6 @@ use lookfrom_scene::variables::FPS;
 use crate::values;
 
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Variables and animation")]
 pub(crate) struct VariableArguments {
     /// Value of a variable of the scene, in place of that in its [variables]; may be repeated
     ///

@@ -36,8 +36,8 @@ fn every_option_is_in_the_guide() {
         // An option's own line in the help begins with it; others only mention it.
         for line in help.lines().map(str::trim_start).filter(|line| line.starts_with('-')) {
             let Some(long) = line.split_whitespace().find(|word| word.starts_with("--")) else { continue };
-            // Dots are behind those that may be repeated.
-            let long = long.trim_end_matches("...");
+            // Dots are behind those that may be repeated, commas in lists.
+            let long = long.trim_end_matches("...").trim_end_matches(',');
             assert!(guide.contains(&format!("`{long}")), "{long} is not in the guide");
             options += 1;
         }

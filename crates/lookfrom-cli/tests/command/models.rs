@@ -103,6 +103,31 @@ fn a_scene_turns_around_what_it_looks_at_and_a_model_around_what_is_asked_for() 
 }
 
 #[test]
+fn transparency_needs_a_format_with_alpha() {
+    let stage = Stage::new("no-alpha");
+    let transparent = "-q --size 8 --samples 1 --background transparent";
+    for format in ["jpg", "ppm", "hdr", "pfm"] {
+        let says = ["alpha", ".png", ".webp", ".exr", "--background"];
+        let file = format!("p.{format}");
+        for call in [
+            format!("render model.obj {transparent} -o {file}"),
+            format!("render model.obj {transparent} --format {format} -o -"),
+            format!("render scene.toml {transparent} -o {file}"),
+        ] {
+            stage.run(&call).fails(2, &says);
+        }
+        assert!(!stage.path(&file).exists());
+    }
+    stage.run(&format!("render model.obj {transparent} --views all --sheet 4 -o s.jpg")).fails(2, &["alpha"]);
+    stage.done(&format!("render model.obj {transparent} --denoise off -o p.exr"));
+    stage.run("develop p.exr -o p.jpg").fails(2, &["JPEG", "--background"]);
+    stage.done("develop p.exr -o p.jpg --background white");
+    for format in ["png", "webp", "exr", "gif", "apng"] {
+        stage.done(&format!("render model.obj {transparent} -o q.{format}"));
+    }
+}
+
+#[test]
 fn transparent_pictures_hide_only_what_the_model_hides() {
     let stage = Stage::new("transparent");
     let common = "render model.obj -q --size 32 --samples 8 --denoise off --filter box --background";

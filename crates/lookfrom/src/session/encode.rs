@@ -84,6 +84,40 @@ impl Format {
         !matches!(self, Self::Exr | Self::Hdr | Self::Pfm)
     }
 
+    /// Whether the format can hold a transparent background.
+    pub fn has_alpha(self) -> bool {
+        !matches!(self, Self::Jpeg(_) | Self::Ppm | Self::Hdr | Self::Pfm)
+    }
+
+    /// Refuses a transparent background where the format cannot hold it.
+    ///
+    /// # Errors
+    /// `Request` for a transparent background in a format without alpha.
+    pub fn check_background(self, background: Background) -> Result<()> {
+        if background != Background::Transparent || self.has_alpha() {
+            return Ok(());
+        }
+        let message = format!("the background is transparent, and {} pictures have no alpha", self.name());
+        Err(unsuitable(message).hint(
+            "a .png, .webp or .exr holds transparency; --background white, or any other colour, is for all formats",
+        ))
+    }
+
+    /// The name of the format, as people write it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Png | Self::Png16 => "PNG",
+            Self::Jpeg(_) => "JPEG",
+            Self::WebP => "WebP",
+            Self::Exr => "OpenEXR",
+            Self::Hdr => "Radiance",
+            Self::Pfm => "PFM",
+            Self::Ppm => "PPM",
+            Self::Gif => "GIF",
+            Self::Apng => "APNG",
+        }
+    }
+
     /// Whether the format can hold AOVs.
     pub fn has_layers(self) -> bool {
         self == Self::Exr
@@ -102,7 +136,7 @@ impl Developed {
     /// The bytes of a file of the picture. AOVs and the header are for formats that can hold them.
     ///
     /// # Errors
-    /// `Invalid` or `Limit` where the format cannot hold the picture.
+    /// `Invalid`, `Limit` or `Request` where the format cannot hold the picture.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
         encode(format, &self.picture, &self.layers, &self.development, &self.header)
     }
@@ -117,6 +151,7 @@ pub(super) fn encode(
 ) -> Result<Vec<u8>> {
     let (width, height) = (picture.width, picture.height);
     let &Development { exposure, tonemap, background, .. } = development;
+    format.check_background(background)?;
     let is_transparent = background == Background::Transparent;
     let background = behind(background);
     let developed = || srgb8_before(picture, background, exposure, tonemap);

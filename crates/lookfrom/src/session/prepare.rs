@@ -35,6 +35,9 @@ pub(super) fn prepare(
         warnings.push(Warning::new(&Location::file(file), message));
     };
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
+    if let Some(format) = options.format {
+        format.check_background(scene.image.background)?;
+    }
     let origin = scene.source_format;
     if options.limits_noise() {
         scene.render.allocation = Allocation::Uniform;

@@ -48,10 +48,13 @@ impl Shown {
     /// The bytes of a file.
     ///
     /// # Errors
-    /// `Request` for a format of linear light or of 16 bits; `Invalid` where the format cannot hold so many pixels.
+    /// `Request` for a format of linear light or of 16 bits, and for one without alpha where this has alpha; `Invalid` where the format cannot hold so many pixels.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
         let size = [self.width, self.height];
         let rgb = || without_alpha(&self.rgba);
+        if self.has_alpha {
+            format.check_background(Background::Transparent)?;
+        }
         match format {
             Format::Png if self.has_alpha => encode_png_of(size, Pixels::Rgba8(&self.rgba), None),
             Format::Png => encode_png_of(size, Pixels::Rgb8(&rgb()), None),
