@@ -6,6 +6,12 @@ use glam::{DMat3, DMat4, DVec3};
 use crate::error::Location;
 use crate::scene::MediumId;
 
+/// An up vector, along an axis, that is not parallel to a direction: y, or z for what looks up or down.
+pub fn up_across(direction: DVec3) -> DVec3 {
+    let is_upright = direction.y.abs() > 0.9 * direction.length();
+    if is_upright { DVec3::Z } else { DVec3::Y }
+}
+
 /// A camera description. It is validated when its matrices are computed.
 #[derive(Clone, Debug)]
 pub struct Camera {

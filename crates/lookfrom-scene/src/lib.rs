@@ -29,6 +29,7 @@ pub mod obj;
 mod packed;
 mod parallel;
 pub mod pbrt;
+pub mod plural;
 pub mod ply;
 pub mod scene;
 pub mod settings;

@@ -171,7 +171,7 @@ fn read_binary(
     context: &mut LoadContext<'_>,
 ) -> Result<(Mesh, Place)> {
     let Some(claimed) = claimed_triangles(bytes) else {
-        let message = format!("{} bytes are too few for an STL file", bytes.len());
+        let message = format!("{} too few for an STL file", crate::plural::are(bytes.len() as u64, "byte"));
         return Err(Error::syntax(file, message).hint("the file may be empty or cut off"));
     };
     let body = &bytes[HEADER..];
@@ -193,7 +193,7 @@ fn read_binary(
             there
         }
         _ if claimed > there => {
-            let message = format!("{claimed} triangles are declared, but there are only bytes for {there}");
+            let message = format!("{} declared, but there are only bytes for {there}", crate::plural::are(claimed, "triangle"));
             return Err(
                 Error::syntax(file, message).hint("the file may be cut off, or it may not be an STL file")
             );
@@ -207,7 +207,7 @@ fn read_binary(
     let used = TRIANGLE * count as usize;
     let rest = body.len() - used;
     if rest > 0 {
-        let message = format!("{rest} bytes after the last triangle are ignored");
+        let message = format!("{} after the last triangle ignored", crate::plural::are(rest as u64, "byte"));
         // The rest may contain triangles; less than one is padding.
         if rest >= TRIANGLE { context.warn(file, message) } else { context.notice(file, message) }
     }
@@ -312,7 +312,10 @@ fn read_text(text: &[u8], file: &Location, limit: usize, context: &mut LoadConte
             b"vertex" => points.push(vertex(&mut scanner, file)?),
             b"endloop" => {
                 if points.len() < 3 {
-                    let message = format!("a facet with {} vertices, expected 3", points.len());
+                    let message = format!(
+                        "a facet with {}, expected 3",
+                        crate::plural::counted(points.len(), "vertex")
+                    );
                     return Err(Error::syntax(&scanner.at(file), message));
                 }
                 let line = scanner.line();

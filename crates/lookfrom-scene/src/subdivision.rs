@@ -90,8 +90,10 @@ pub(crate) fn check(
 ) -> Result<Reservation> {
     let (count, most) = (cage.count_after(levels), context.limits.elements.min(MOST_FACES));
     if count > most {
-        let message =
-            format!("{levels} levels of subdivision make {count} faces, more than the limit of {most}");
+        let message = format!(
+            "{} of subdivision make {count} faces, more than the limit of {most}",
+            crate::plural::counted(levels, "level")
+        );
         return Err(Error::new(ErrorKind::Limit, file, message).hint("subdivide fewer times"));
     }
     let reservation = context.budget.reserve(count * BYTES_OF_FACE, "the subdivision surface", file)?;

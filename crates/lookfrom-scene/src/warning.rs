@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 
 use crate::error::Location;
+use crate::plural;
 
 /// The severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -60,7 +61,7 @@ impl Warning {
 impl fmt::Display for Counted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { count, noun } = self;
-        write!(f, "{count} {noun}{} ", if *count == 1 { "" } else { "s" })
+        write!(f, "{} ", plural::counted(*count, noun))
     }
 }
 

@@ -164,7 +164,7 @@ fn stl() {
     binary[80] = 1;
     assert_eq!(
         said("a.stl", &binary),
-        "a.stl: 1 triangles are declared, but there are only bytes for 0\n  \
+        "a.stl: 1 triangle is declared, but there are only bytes for 0\n  \
          help: the file may be cut off, or it may not be an STL file"
     );
     assert_eq!(

@@ -229,13 +229,17 @@ impl Document {
         let (numbers, rows) = shape_of(&accessor.kind)
             .ok_or_else(|| wrong(format!("has the unknown type {:?}", accessor.kind)))?;
         if numbers != N {
-            return Err(wrong(format!("is {}: {numbers} numbers per element; expected {N}", accessor.kind)));
+            return Err(wrong(format!(
+                "is {}: {} per element; expected {N}",
+                accessor.kind,
+                crate::plural::counted(numbers, "number")
+            )));
         }
         let layout = Layout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
         let count = accessor.count.index();
         self.count(count as u64, asked)?;
         let memory = (count as u64).saturating_mul(size_of::<[V; N]>() as u64);
-        let what = format!("an accessor of {count} elements");
+        let what = format!("an accessor of {}", crate::plural::counted(count, "element"));
         let _memory = self.budget.reserve(memory, &what, &self.at(asked))?;
 
         // A part of a compressed mesh; if it cannot be decompressed, the uncompressed fallback, where there is one.
@@ -286,7 +290,10 @@ impl Document {
             },
         };
         if found != N {
-            let message = format!("the compressed mesh has {found} numbers per element; expected {N}");
+            let message = format!(
+                "the compressed mesh has {} per element; expected {N}",
+                crate::plural::counted(found, "number")
+            );
             return Err(self.invalid(asked, message));
         }
         let one = if normalized { one } else { None };
@@ -308,8 +315,10 @@ impl Document {
         let stride = found.stride.unwrap_or(size);
         if stride < size {
             let message = format!(
-                "buffer view {} has an element every {stride} bytes, but elements have {size} bytes",
-                view.0
+                "buffer view {} has an element every {}, but elements have {}",
+                view.0,
+                crate::plural::counted(stride, "byte"),
+                crate::plural::counted(size, "byte")
             );
             return Err(self.invalid(asked, message));
         }
@@ -321,10 +330,12 @@ impl Document {
         let end = length.and_then(|length| start.checked_add(length));
         let bytes = end.and_then(|end| found.bytes.get(start..end)).ok_or_else(|| {
             let message = format!(
-                "{count} elements of {size} bytes, one every {stride}, from byte {start} on are beyond the end of buffer \
-                 view {}, which has {} bytes",
+                "{} of {}, one every {stride}, from byte {start} on {} beyond the end of buffer view {}, which has {}",
+                crate::plural::counted(count, "element"),
+                crate::plural::counted(size, "byte"),
+                crate::plural::be(count as u64),
                 view.0,
-                found.bytes.len()
+                crate::plural::counted(found.bytes.len(), "byte")
             );
             self.invalid(asked, message).hint("the file is cut off or was written wrongly: export it again")
         })?;
@@ -343,7 +354,14 @@ impl Document {
         };
         let replaced = sparse.count.index();
         if replaced > count {
-            return Err(self.invalid(asked, format!("{replaced} sparse values for only {count} elements")));
+            return Err(self.invalid(
+                asked,
+                format!(
+                    "{} for only {}",
+                    crate::plural::counted(replaced, "sparse value"),
+                    crate::plural::counted(count, "element")
+                ),
+            ));
         }
         let layout = Layout::new(component, false, 1, 1);
         let indices: Vec<[u32; 1]> =

@@ -245,7 +245,9 @@ impl Document {
         let end = start.checked_add(length);
         end.and_then(|end| bytes.get(start..end)).ok_or_else(|| {
             let message = format!(
-                "{length} bytes from byte {start} on are beyond the end of buffer {}, which has {}",
+                "{} from byte {start} on {} beyond the end of buffer {}, which has {}",
+                crate::plural::counted(length, "byte"),
+                crate::plural::be(length as u64),
                 buffer.0,
                 bytes.len()
             );
@@ -278,7 +280,10 @@ impl Document {
                 let expected = buffer.byte_length.0;
                 context.notice(
                     &self.at(&place),
-                    format!("the file announces {expected} bytes for the buffer; it has {length}"),
+                    format!(
+                        "the file announces {} for the buffer; it has {length}",
+                        crate::plural::counted(expected, "byte")
+                    ),
                 );
             }
             buffers.push(bytes);
@@ -361,8 +366,14 @@ fn chunks(
         return Err(unsupported(at, &format!("version {version} of the GLB container")));
     }
     if length as usize != content.len() {
-        context
-            .notice(at, format!("the GLB header announces {length} bytes; the file has {}", content.len()));
+        context.notice(
+            at,
+            format!(
+                "the GLB header announces {}; the file has {}",
+                crate::plural::counted(length, "byte"),
+                content.len()
+            ),
+        );
     }
 
     let mut json = None;
@@ -374,7 +385,8 @@ fn chunks(
         let Some(end) = end else {
             let left = content.len() - first;
             return Err(bad(format!(
-                "a chunk of {length} bytes starts at byte {start}, but only {left} follow"
+                "a chunk of {} starts at byte {start}, but only {left} follow",
+                crate::plural::counted(length, "byte")
             )));
         };
         match kind {

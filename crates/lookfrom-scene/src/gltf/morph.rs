@@ -117,6 +117,10 @@ fn check_count(document: &Document, found: usize, expected: usize, pointer: &str
     if found == expected {
         return Ok(());
     }
-    let message = format!("{found} displacements for {expected} vertices: there must be one for each");
+    let message = format!(
+        "{} for {}: there must be one for each",
+        crate::plural::counted(found, "displacement"),
+        crate::plural::counted(expected, "vertex")
+    );
     Err(document.invalid(pointer, message).hint("the file was written wrongly: export it again"))
 }

@@ -178,7 +178,11 @@ fn sample(
     let is_rotation = width == Some(4);
     let width = width.unwrap_or(values.len() / elements);
     if values.len() != elements * width || width == 0 {
-        let message = format!("{} numbers for {} keys: each has {word} values", values.len(), times.len());
+        let message = format!(
+            "{} for {}: each has {word} values",
+            crate::plural::counted(values.len(), "number"),
+            crate::plural::counted(times.len(), "key")
+        );
         return Err(document.invalid(&asked, message).hint("the file was written wrongly: export it again"));
     }
     let track = Track { times: &times, values: &values, width, interpolation };

@@ -92,8 +92,12 @@ impl Skin {
             let weights = document.vectors::<4>(weights, &at_weights)?;
             let count = vertices.positions.len();
             if joints.len() != count || weights.len() != count {
-                let message =
-                    format!("{} joints and {} weights for {count} vertices", joints.len(), weights.len());
+                let message = format!(
+                    "{} and {} for {}",
+                    crate::plural::counted(joints.len(), "joint"),
+                    crate::plural::counted(weights.len(), "weight"),
+                    crate::plural::counted(count, "vertex")
+                );
                 return Err(document
                     .invalid(&at_joints, message)
                     .hint("the file was written wrongly: export it again"));

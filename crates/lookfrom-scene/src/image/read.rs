@@ -397,7 +397,11 @@ fn decode_pfm(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<
 
     let row = width as usize * channels * 4;
     if rest.len() / row < height as usize {
-        return Err(bad(format!("ends early: {} bytes of {}", rest.len(), row * height as usize)));
+        return Err(bad(format!(
+            "ends early: {} of {}",
+            crate::plural::counted(rest.len(), "byte"),
+            row * height as usize
+        )));
     }
     let memory = room([width, height], size_of::<[f32; 3]>() as u64, at, context)?;
     let number = |b: &[u8]| {

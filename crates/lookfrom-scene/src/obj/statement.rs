@@ -227,7 +227,7 @@ impl Parser<'_> {
             count += 1;
         }
         if count < least {
-            let message = format!("expected {least} numbers, found {count}");
+            let message = format!("expected {}, found {count}", crate::plural::counted(least, "number"));
             return Err(Error::syntax(&self.scanner.at(self.file), message));
         }
         Ok((values, count))

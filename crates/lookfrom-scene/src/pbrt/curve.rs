@@ -50,7 +50,11 @@ impl Reader<'_, '_> {
         };
         let normals = p.vectors("N", Kind::Normal)?;
         if form == Form::Ribbon && normals.len() != segments + 1 {
-            let expected = format!("{} normals for {segments} segments of a ribbon", segments + 1);
+            let expected = format!(
+                "{} normals for {} of a ribbon",
+                segments + 1,
+                crate::plural::counted(segments, "segment")
+            );
             return Err(p.refuse("N", &format!("{expected}, found {}", normals.len())));
         }
 

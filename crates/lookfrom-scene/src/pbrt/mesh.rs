@@ -110,8 +110,11 @@ impl Reader<'_, '_> {
         if values.is_empty() || values.len() == count {
             return values;
         }
-        let message =
-            format!("{:?} has {} values for {count} vertices: they are left out", name, values.len());
+        let message = format!(
+            "{name:?} has {} for {}: left out",
+            crate::plural::counted(values.len(), "value"),
+            crate::plural::counted(count, "vertex")
+        );
         self.context.warn(&p.place.location(), message);
         Vec::new()
     }
@@ -148,5 +151,8 @@ fn faces<const N: usize>(p: &Parameters, count: usize) -> Result<Vec<[u32; N]>> 
 
 fn index_error(p: &Parameters, order: usize, index: i32, count: usize) -> Error {
     p.refuse("indices", &format!("indices from 0 to {}, found {index} as number {}", count - 1, order + 1))
-        .hint(format!("there are {count} vertices in \"point3 P\"; indices count from 0"))
+        .hint(format!(
+            "{} in \"point3 P\"; indices count from 0",
+            crate::plural::there_are(count as u64, "vertex")
+        ))
 }

@@ -466,7 +466,8 @@ impl Parameters {
                 // Another parameter has the same name.
                 "it is overridden by another one".into()
             } else {
-                match nearest(&parameter.name, names) {
+                let given = |name: &&str| self.own.iter().any(|own| own.name == *name);
+                match nearest(&parameter.name, names.into_iter().filter(|name| !given(name))) {
                     Some(meant) => format!("did you mean {meant:?}?").into(),
                     None => "it has no effect".into(),
                 }

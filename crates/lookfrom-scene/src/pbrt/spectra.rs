@@ -186,9 +186,10 @@ fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
 fn inline(parameter: &Parameter) -> Result<Curve> {
     let numbers = parameter.numbers();
     if !numbers.len().is_multiple_of(2) {
-        return Err(
-            parameter.wrong(format!("pairs of a wavelength and a value, found {} numbers", numbers.len()))
-        );
+        return Err(parameter.wrong(format!(
+            "pairs of a wavelength and a value, found {}",
+            crate::plural::counted(numbers.len(), "number")
+        )));
     }
     let wavelengths: Vec<f32> = numbers.iter().copied().step_by(2).collect();
     if let Some(pair) = wavelengths.windows(2).find(|pair| pair[1] <= pair[0]) {

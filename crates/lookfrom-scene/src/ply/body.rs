@@ -15,6 +15,7 @@ use crate::model::colors::{Range, range};
 use crate::model::place::{Place, placed};
 use crate::model::scan::shown;
 use crate::model::tally::Tally;
+use crate::plural::{are, counted};
 
 /// The supported content of a file.
 #[derive(Default)]
@@ -113,8 +114,12 @@ pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limi
 fn too_short(element: &Element, least: u64, there: u64) -> Error {
     let Element { name, count, at, .. } = element;
     let message = format!(
-        "{count} rows of `{}` are declared, of at least {least} bytes each, but only {there} bytes are left",
-        shown(name.as_bytes())
+        "{} of `{}` {} declared, of at least {} each, but only {} left",
+        counted(*count, "row"),
+        shown(name.as_bytes()),
+        crate::plural::be(*count),
+        counted(least, "byte"),
+        are(there, "byte")
     );
     Error::syntax(at, message).hint("the file may be cut off, or its header may be wrong")
 }
@@ -244,7 +249,10 @@ fn read_faces(
         for value in &face {
             let is_restart = strips && *value == -1.0;
             if !is_restart && (value.fract() != 0.0 || *value < 0.0 || *value >= vertices as f64) {
-                let message = format!("vertex index {value} is out of range: there are {vertices} vertices");
+                let message = format!(
+                    "vertex index {value} is out of range: {}",
+                    crate::plural::there_are(vertices as u64, "vertex")
+                );
                 return Err(reader.error_at(line, place, ErrorKind::Invalid, message));
             }
         }

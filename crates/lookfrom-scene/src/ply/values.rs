@@ -143,7 +143,11 @@ impl<'a> Reader<'a> {
         let position = self.position();
         let values = self.value(count)?;
         if values < 0.0 || values.fract() != 0.0 || values > self.left() as f64 {
-            let message = format!("a list of {values} values, but only {} bytes are left", self.left());
+            let message = format!(
+                "a list of {}, but only {} left",
+                crate::plural::counted(values as u64, "value"),
+                crate::plural::are(self.left() as u64, "byte")
+            );
             return Err(self
                 .error_at(self.line(), position, ErrorKind::Syntax, message)
                 .hint("the file may be cut off, or its header may be wrong"));

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::table::Table;
 use super::value::Value;
-use crate::camera::{Camera, Lens, Projection, View, Window};
+use crate::camera::{Camera, Lens, Projection, View, Window, up_across};
 use crate::error::Result;
 
 /// The keys of `[camera]`.
@@ -51,7 +51,7 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
         let key = if table.has("up") { "up" } else { "lookat" };
         return Err(table
             .error_at(key, format!("up {up} is parallel to the view from lookfrom to lookat"))
-            .hint("give another `up`, such as [0, 0, 1] for a view straight down"));
+            .hint(format!("give another `up`, such as {}", up_across(w))));
     }
 
     let focus_distance = match focus {

@@ -7,6 +7,7 @@ use super::light::{aim, falloff, position, power, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
 use super::value::Value;
+use crate::camera::up_across;
 use crate::error::Result;
 use crate::ies;
 use crate::light::{LightKind, Power};
@@ -51,7 +52,7 @@ impl Reader<'_, '_> {
                 if up.cross(forward).length_squared() < 1e-20 {
                     return Err(table
                         .error_at("up", format!("up {up} is parallel to the direction of the light"))
-                        .hint("give another `up`, such as [0, 0, 1] for a light straight down"));
+                        .hint(format!("give another `up`, such as {}", up_across(forward))));
                 }
                 up
             }

@@ -115,8 +115,10 @@ fn item(list: Quantity, at: usize, index: Quantity, at_index: usize) -> Result<Q
         }
         other => {
             let message = format!("there is no item {}; expected a whole number from 0", other.what());
-            return Err(Fault::new(at_index, message)
-                .hint(format!("the list has {} values; the first is item 0", items.len())));
+            return Err(Fault::new(at_index, message).hint(format!(
+                "the list has {}; the first is item 0",
+                crate::plural::counted(items.len(), "value")
+            )));
         }
     };
     Ok(items.swap_remove(place))

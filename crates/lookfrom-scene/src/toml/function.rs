@@ -62,7 +62,10 @@ pub(super) fn call(name: &str, arguments: &[Quantity], at: usize) -> Result<Quan
     };
     if !(least..=most).contains(&arguments.len()) {
         let expected = if most == ANY { format!("at least {least}") } else { least.to_string() };
-        let message = format!("`{name}` is given {} values; expected {expected}", arguments.len());
+        let message = format!(
+            "`{name}` is given {}; expected {expected}",
+            crate::plural::counted(arguments.len(), "value")
+        );
         return Err(Fault::new(at, message));
     }
     numbers(arguments, name, at, &f)

@@ -97,11 +97,9 @@ fn for_vertices<'a, T>(
     let is_counted = table.sound(&["positions", "vertices"]).is_ok();
     table.or(key, Vec::new(), |value| {
         let items = value.list("a list with a value for each vertex")?;
-        let found = items.len();
-        if is_counted && found != expected {
-            return Err(
-                value.error(format!("`{key}` has {found} values; expected {expected}, one for each vertex"))
-            );
+        if is_counted && items.len() != expected {
+            let found = crate::plural::counted(items.len(), "value");
+            return Err(value.error(format!("`{key}` has {found}; expected {expected}, one for each vertex")));
         }
         items.map(decode).collect()
     })

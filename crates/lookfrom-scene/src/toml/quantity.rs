@@ -33,8 +33,7 @@ impl Quantity {
             Self::Truth(truth) => truth.to_string(),
             Self::Text(text) if text.chars().count() > 40 => "a long text".to_owned(),
             Self::Text(text) => format!("{text:?}"),
-            Self::List(items) if items.len() == 1 => "a list of 1 value".to_owned(),
-            Self::List(items) => format!("a list of {} values", items.len()),
+            Self::List(items) => format!("a list of {}", crate::plural::counted(items.len(), "value")),
             Self::Table(_) => "a table".to_owned(),
         }
     }

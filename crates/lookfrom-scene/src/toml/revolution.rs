@@ -87,7 +87,10 @@ impl Reader<'_, '_> {
         });
         table.sound(&["axis", "profile"])?;
         if points.len() < 2 {
-            let message = format!("a profile of {} points; expected at least two", points.len());
+            let message = format!(
+                "a profile of {}; expected at least two",
+                crate::plural::counted(points.len(), "point")
+            );
             return Err(table.error_at("profile", message));
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[0] == pair[1]) {

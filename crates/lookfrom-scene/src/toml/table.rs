@@ -94,6 +94,7 @@ impl<'a> Table<'a> {
 
     /// A suggestion for an unknown key, as a question.
     fn suggestion(&self, word: &str, known: &[&'static str]) -> Option<String> {
+        let known = &self.absent(known);
         let ask = |keys: &[&'static str]| {
             self.assume(keys);
             format!("did you mean `{}`?", keys.join("` and `"))
@@ -115,6 +116,11 @@ impl<'a> Table<'a> {
             [] => None,
             meant => Some(format!("did you mean `{}` in {title}?", meant.join("` and `"))),
         })
+    }
+
+    /// Those of the keys that the table does not have yet: no other can be meant by an unknown one.
+    fn absent(&self, keys: &[&'static str]) -> Vec<&'static str> {
+        keys.iter().copied().filter(|key| !self.has(key)).collect()
     }
 
     /// Records these keys as suggestions.
@@ -163,7 +169,7 @@ impl<'a> Table<'a> {
             }
             let message = format!("{} of type {word:?} has no `{name}`", self.title);
             let elsewhere = format!("is for type = {}", others.join(" or "));
-            let meant = synonyms::keys(name, &known);
+            let meant = synonyms::keys(name, &self.absent(&known));
             self.assume(meant);
             let hint = match meant {
                 [] => format!("it {elsewhere}"),

@@ -67,10 +67,7 @@ impl<'a> Value<'a> {
             DeValue::Float(number) => number.to_string(),
             DeValue::Boolean(truth) => truth.to_string(),
             DeValue::Datetime(_) => "a date".to_owned(),
-            DeValue::Array(items) => match items.len() {
-                1 => "a list of 1 value".to_owned(),
-                count => format!("a list of {count} values"),
-            },
+            DeValue::Array(items) => format!("a list of {}", crate::plural::counted(items.len(), "value")),
             DeValue::Table(_) => "a table".to_owned(),
         }
     }
