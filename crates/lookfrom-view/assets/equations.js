@@ -2,7 +2,7 @@
 
 import { display, formula, frac } from "./formula.js";
 import { byId, h, replace } from "./html.js";
-import { exact, fileName, lanes, point, short, swatch } from "./format.js";
+import { counted, exact, fileName, lanes, point, short, swatch } from "./format.js";
 import { candidateTable } from "./candidates.js";
 import { ends } from "./tree.js";
 
@@ -51,7 +51,7 @@ function theRay(ray) {
 
 /** @param {Ray} ray */
 function theTests(ray) {
-    const cost = ray.traversal && h("p", { class: "hint" }, `${ray.traversal.nodes} nodes of the BVH visited, ${ray.traversal.culled} boxes culled, ${ray.traversal.tests} primitives tested.`);
+    const cost = ray.traversal && h("p", { class: "hint" }, `${counted(ray.traversal.nodes, "node")} of the BVH visited, ${counted(ray.traversal.culled, "box")} culled, ${counted(ray.traversal.tests, "primitive")} tested.`);
     if (ray.candidates.length === 0) return section("Tested primitives", cost ?? h("p", { class: "hint" }, "None: the tree of boxes excludes everything."));
     const sorted = [...ray.candidates].sort((a, b) => Number(b.is_nearest) - Number(a.is_nearest));
     const others = sorted.slice(1);

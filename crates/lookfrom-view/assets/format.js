@@ -77,3 +77,6 @@ export const duration = (seconds) =>
 /** @param {number} n */
 export const count = (n) =>
     n >= 1e9 ? `${(n / 1e9).toFixed(1)} G` : n >= 1e6 ? `${(n / 1e6).toFixed(1)} M` : n >= 1e4 ? `${(n / 1e3).toFixed(0)} k` : String(Math.round(n));
+
+/** A number of things: "1 node", "2 nodes", "2 boxes". @param {number} n @param {string} noun */
+export const counted = (n, noun) => `${n} ${n === 1 ? noun : noun.endsWith("x") ? `${noun}es` : `${noun}s`}`;

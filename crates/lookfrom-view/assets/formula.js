@@ -1,34 +1,21 @@
-// Formulas as MathML, from the way they are written in a line: `k_d Σ (N·L_j) I_j`, `frac(a, b)`.
+// Formulas, from the way they are written in a line: `k_d Σ (N·L_j) I_j`, `frac(a, b)`.
+//
+// Elements of HTML, not of MathML: that needs a font with a table for mathematics, which few systems have; without one its
+// roots do not meet their bars and its subscripts stand apart.
 
-import { append } from "./html.js";
-
-const MATHML = "http://www.w3.org/1998/Math/MathML";
+import { h } from "./html.js";
 
 /** @typedef {Node | string} Part */
-
-/**
- * @param {string} tag
- * @param {Record<string, string>} attributes
- * @param {...Part} children
- * @returns {Element}
- */
-function m(tag, attributes, ...children) {
-    const element = document.createElementNS(MATHML, tag);
-    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-    append(element, children);
-    return element;
-}
 
 const TOKENS = /\s+|[A-Za-zα-ωΑ-ΡΤ-Ωη₁₂]+'?|\d+(?:\.\d+)?(?:e[-−]?\d+)?|./gu;
 const SUPERSCRIPTS = /** @type {Record<string, string>} */ ({ "²": "2", "⁵": "5", ᵀ: "T", ⁿ: "n" });
 
 /** @param {string} token */
 function atom(token) {
-    if (/^[\d]/.test(token)) return m("mn", {}, token);
-    // One letter is a variable, in italics; a word stands upright.
-    if (/^[\p{L}]/u.test(token)) return m("mi", token.length > 1 && !/^[A-Za-z][0-9₁₂]?$/.test(token) ? { mathvariant: "normal" } : {}, token);
-    if (token === ",") return m("mo", { separator: "true", lspace: "0", rspace: "0.9em" }, token);
-    return m("mo", /^[()[\]|]$/.test(token) ? { stretchy: "false" } : {}, token);
+    // One letter is a variable, in italics; a word and a number stand upright.
+    if (/^\p{L}/u.test(token)) return token.length > 1 && !/^[A-Za-z][0-9₁₂]?$/.test(token) ? h("span", {}, token) : h("i", {}, token);
+    if (token === ",") return h("span", { class: "comma" }, token);
+    return h("span", { class: /^[+−±=·×<>≤≥]$/.test(token) ? "operator" : null }, token);
 }
 
 /**
@@ -40,35 +27,37 @@ function atoms(text) {
     const tokens = [...text.matchAll(TOKENS)].map(([token]) => token).filter((token) => token.trim() !== "");
     /** @type {Element[]} */
     const elements = [];
+    // An index and an exponent stay beside what they belong to.
+    const join = (/** @type {Element} */ script) => elements.push(h("span", { class: "joined" }, elements.pop(), script));
     for (let i = 0; i < tokens.length; i++) {
-        if (tokens[i] === "_" && elements.length > 0) elements.push(m("msub", {}, /** @type {Element} */ (elements.pop()), atom(tokens[++i] ?? "")));
-        else if (tokens[i] in SUPERSCRIPTS && elements.length > 0) elements.push(m("msup", {}, /** @type {Element} */ (elements.pop()), atom(SUPERSCRIPTS[tokens[i]])));
+        if (tokens[i] === "_" && elements.length > 0) join(h("sub", {}, atom(tokens[++i] ?? "")));
+        else if (tokens[i] in SUPERSCRIPTS && elements.length > 0) join(h("sup", {}, atom(SUPERSCRIPTS[tokens[i]])));
         else elements.push(atom(tokens[i]));
     }
     return elements;
 }
 
 /** Parts side by side, as one. @param {Part[]} parts */
-export const row = (...parts) => m("mrow", {}, ...parts.flatMap((part) => (typeof part === "string" ? atoms(part) : [part])));
+export const row = (...parts) => h("span", {}, ...parts.flatMap((part) => (typeof part === "string" ? atoms(part) : [part])));
 
 /** @param {Part} above @param {Part} below */
-export const frac = (above, below) => m("mfrac", {}, row(above), row(below));
+export const frac = (above, below) => h("span", { class: "frac" }, row(above), row(below));
 
 /** @param {Part} inside */
-export const sqrt = (inside) => m("msqrt", {}, row(inside));
+export const sqrt = (inside) => h("span", { class: "root-of" }, "√", h("span", {}, row(inside)));
 
 /** @param {readonly (readonly string[])[]} rows */
 export const matrix = (rows) =>
-    m("mtable", { class: "matrix" }, ...rows.map((cells) => m("mtr", {}, ...cells.map((cell) => m("mtd", {}, m("mn", {}, cell))))));
+    h("span", { class: "matrix" }, ...rows.map((cells) => h("span", {}, ...cells.map((cell) => h("span", {}, cell)))));
 
 /**
  * A formula of strings and parts.
  * @param {...Part} parts
  */
-export const formula = (...parts) => m("math", {}, row(...parts));
+export const formula = (...parts) => h("span", { class: "math", role: "math" }, row(...parts));
 
 /**
  * A formula on a line of its own.
  * @param {...Part} parts
  */
-export const display = (...parts) => m("math", { display: "block" }, row(...parts));
+export const display = (...parts) => h("div", { class: "math", role: "math" }, row(...parts));

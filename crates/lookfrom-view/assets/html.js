@@ -1,4 +1,4 @@
-// Elements of HTML, SVG and MathML, made by a call each.
+// Elements of HTML and SVG, made by a call each.
 
 /** @typedef {Node | string | number | null | undefined | false} Child */
 /** @typedef {Record<string, any>} Attributes */

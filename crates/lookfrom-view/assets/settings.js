@@ -2,7 +2,7 @@
 
 import { byId, h, replace } from "./html.js";
 import { field, number, select, slider } from "./fields.js";
-import { count } from "./format.js";
+import { count, counted } from "./format.js";
 
 /** @typedef {import("./app.js").App} App */
 /** @typedef {import("./protocol.js").Scene} Scene */
@@ -79,8 +79,7 @@ function showRendering(app, scene) {
     const focused = focusedName("settings");
     /** @param {Partial<View>} change */
     const set = (change) => app.view.set(change);
-    const [width, height] = scene.size;
-    const sizes = [1, 0.5, 0.25].map((part) => /** @type {[number, number]} */ ([Math.max(1, Math.round(width * part)), Math.max(1, Math.round(height * part))]));
+    const sizes = sizesOf(scene, view.size ?? scene.size);
     const animation = view.animation === null ? null : scene.animations[view.animation];
     // Expressions have no end: ten seconds of them.
     const seconds = animation ? animation.seconds : scene.duration === 0 ? 10 : scene.duration;
@@ -92,7 +91,7 @@ function showRendering(app, scene) {
             field("Depth", number(view.depth, { min: 0, max: 1000, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
             field("Samples", number(view.samples, { min: 1, max: 1e6, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
             field("Min. contribution", number(view.minContribution, { min: 0, max: 1, placeholder: String(scene.minContribution) }, (minContribution) => set({ minContribution })), "Branches of Whitted's tree with a smaller share are not followed"),
-            field("Size", select(sizes.map((size) => [size.join("x"), size.join(" × ")]), (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {any} */ (text.split("x").map(Number)) }))),
+            field("Size", select(sizes, (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {any} */ (text.split("x").map(Number)) }))),
         ),
         group(
             "Scene",
@@ -107,10 +106,32 @@ function showRendering(app, scene) {
         group(
             "Contents",
             h("dl", { class: "facts" }, Object.entries(scene.counts ?? {}).flatMap(([name, n]) => [h("dt", {}, name), h("dd", {}, contents(n))])),
-            scene.warnings.length > 0 && h("details", { class: "warnings" }, h("summary", {}, `${scene.warnings.length} warnings`), h("ul", {}, scene.warnings.map((warning) => h("li", {}, warning)))),
+            scene.warnings.length > 0 && h("details", { class: "warnings" }, h("summary", {}, counted(scene.warnings.length, "warning")), h("ul", {}, scene.warnings.map((warning) => h("li", {}, warning)))),
         ),
     );
     refocus("settings", focused);
+}
+
+/** The most pixels of a view, as the server has it. */
+const MOST_PIXELS = 3840 * 2160;
+
+/**
+ * The sizes to choose from: the scene's, parts of it, twice it, that of the window, and the one that is chosen.
+ * @param {Scene} scene
+ * @param {readonly [number, number]} chosen
+ * @returns {[value: string, title: string][]}
+ */
+function sizesOf(scene, chosen) {
+    const [width, height] = scene.size;
+    const stage = byId("picture-overlay").getBoundingClientRect();
+    const window_ = (Math.min(stage.width / width, stage.height / height) || 1) * (window.devicePixelRatio || 1);
+    /** @type {(part: number) => [number, number]} */
+    const scaled = (part) => [Math.max(1, Math.round(width * part)), Math.max(1, Math.round(height * part))];
+    const named = /** @type {[[number, number], string][]} */ ([
+        [scaled(1), ", the scene's"], [scaled(0.5), ""], [scaled(0.25), ""], [scaled(2), ", 2 ×"], [scaled(window_), ", fits the window"], [[...chosen], ""],
+    ]);
+    const sizes = new Map(named.filter(([[x, y]]) => x * y <= MOST_PIXELS).reverse().map(([size, name]) => [size.join("x"), size.join(" × ") + name]));
+    return [...sizes].reverse();
 }
 
 /** A count, or counts by kind. @param {any} n @returns {string} */

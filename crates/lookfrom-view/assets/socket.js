@@ -78,13 +78,14 @@ export function connect() {
         open,
         send,
         /**
-         * Sends a question. A later one of the same type replaces it: then this promise is never settled.
+         * Sends a question. A later one of the same type replaces it: then this promise is never settled, and the answer to
+         * it, an error too, concerns nobody.
          * @param {string} type
          * @param {object} [body]
          * @returns {Promise<any>}
          */
         request(type, body = {}) {
-            for (const [id, question] of waiting) if (question.type === type) waiting.delete(id);
+            for (const question of waiting.values()) if (question.type === type) question.resolve = question.reject = () => {};
             return new Promise((resolve, reject) => waiting.set(send(type, body), { type, resolve, reject }));
         },
         /**

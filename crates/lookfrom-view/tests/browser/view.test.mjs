@@ -197,3 +197,48 @@ test("a slow network delays pictures and breaks nothing", async () => {
     assert.deepEqual(errors, []);
     await context.close();
 });
+
+test("a hand that moves the camera sees no messages of the inside", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await page.evaluate(() => {
+        window.toasts = [];
+        new MutationObserver(() => window.toasts.push(document.getElementById("toast").textContent)).observe(document.getElementById("toast"), { childList: true });
+    });
+    await inspect(page, 50, 90);
+    const at = await placeOf(page, 60, 60);
+    for (let round = 0; round < 4; round++) {
+        await page.mouse.move(at.x, at.y);
+        await page.mouse.down();
+        for (let i = 0; i < 30; i++) await page.mouse.move(at.x + 3 * i, at.y + i);
+        await page.mouse.up();
+        for (let i = 0; i < 30; i++) {
+            await page.mouse.move(at.x + 2 * i, at.y - i);
+            await page.waitForTimeout(15);
+        }
+    }
+    await finished(page);
+    assert.deepEqual(await page.evaluate(() => window.toasts), []);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("a picture may be larger than the scene's, and formulas fit the panel", async () => {
+    const { page, context, errors } = await open(browser, server.url, { viewport: { width: 1440, height: 900 } });
+    await finished(page);
+    const width = () => page.locator("#picture").evaluate((canvas) => canvas.width);
+    const own = await width();
+    await page.getByRole("tab", { name: "View" }).click();
+    const options = await page.getByLabel("Size").locator("option").allTextContents();
+    assert.ok(options.some((title) => title.includes("fits the window")), options.join());
+    await page.getByLabel("Size").selectOption({ label: options.find((title) => title.includes("2 ×")) });
+    await until("twice the width", async () => (await width()) === 2 * own);
+    await finished(page);
+    await page.getByRole("tab", { name: "Why this pixel" }).click();
+    await inspect(page, 50, 90);
+    await page.locator("#equations details").first().waitFor();
+    const wide = await page.locator("#equations .math").evaluateAll((all) => all.filter((math) => math.scrollWidth > math.clientWidth + 1 && math.clientWidth > 0).map((math) => math.textContent));
+    assert.deepEqual(wide, []);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
