@@ -60,7 +60,12 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let parts = match model(path, context, &mut scene) {
         Ok(model) => {
             let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
-            scene.z_is_up = model.z_is_up && !model::stand::stands_on_y(points);
+            let is_odd = model.z_is_up && model::stand::stands_on_y(points);
+            scene.z_is_up = model.z_is_up && !is_odd;
+            if is_odd {
+                let message = "y is up: with z up, as is the custom of this format, it would fall over; --up z shows it so";
+                context.notice(&Location::file(path), message);
+            }
             model.parts
         }
         Err(error) if error.kind == ErrorKind::Unsupported && is_stream(path, context) => {

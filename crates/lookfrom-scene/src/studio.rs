@@ -5,6 +5,7 @@
 
 mod framing;
 mod lamps;
+mod subject;
 mod surroundings;
 mod turntable;
 mod viewpoint;
@@ -17,7 +18,7 @@ use crate::error::Location;
 use crate::light::{Falloff, Light, LightKind, Power, Sky};
 use crate::material::{Color, Whitted};
 use crate::model::surface::push_material;
-use crate::scene::{Bounds, Instance, Scene};
+use crate::scene::{Bounds, Instance, Scene, SourceFormat};
 use crate::settings::{ImageSettings, Integrator, RenderSettings, Tonemap};
 use crate::shape::{Emission, Geometry, Shape};
 
@@ -170,7 +171,11 @@ impl StudioFrame {
     fn add_camera(&self, scene: &mut Scene, viewpoint: &Viewpoint) {
         if scene.camera.is_none() {
             let mut framing = Framing::new(self.bounds.center(), self.basis, aspect(scene), viewpoint);
-            if self.bounds == scene.bounds() {
+            let of_model = scene.source_format != SourceFormat::Scene;
+            let subject = of_model.then(|| subject::on_ground(scene, self.bounds, self.basis[1])).flatten();
+            if let Some(subject) = subject {
+                corners(subject).into_iter().for_each(|corner| framing.include(corner));
+            } else if self.bounds == scene.bounds() {
                 visit(scene, &mut |point| framing.include(point));
             } else {
                 corners(self.bounds).into_iter().for_each(|corner| framing.include(corner));

@@ -5,12 +5,21 @@ use glam::Vec3;
 /// The height above the lowest point, relative to that of the model, up to which points touch the ground.
 const GROUND: f32 = 0.01;
 /// The part of a model's ground plan on which it stands firmly, and the one on which it would fall over.
-const FIRM: f32 = 0.1;
+const FIRM: f32 = 0.25;
 const TIPSY: f32 = 0.02;
 
-/// Whether a model would fall over if z were up, and stands firmly with y up: its file is not of its format's custom.
+/// The height of a model of which nobody says that it lies, in its least other side.
+const HIGH: f32 = 0.5;
+
+/// Whether a model would fall over if z were up, and stands firmly with y up: its file is not of its format's custom. What is flat with
+/// z up lies on the bed of a printer, even if only clips or screws touch the bed.
 pub(crate) fn stands_on_y<'a>(points: impl Iterator<Item = &'a Vec3> + Clone) -> bool {
-    footprint(points.clone(), 1) > FIRM && footprint(points, 2) < TIPSY
+    let bounds = |points: &mut dyn Iterator<Item = &'a Vec3>| {
+        points.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[min, max], p| [min.min(*p), max.max(*p)])
+    };
+    let [min, max] = bounds(&mut points.clone());
+    let size = max - min;
+    size.z > HIGH * size.x.min(size.y) && footprint(points.clone(), 1) > FIRM && footprint(points, 2) < TIPSY
 }
 
 /// The box around the points on the ground below an axis, as a part of the ground plan of all; 0 for flat models.
@@ -39,6 +48,14 @@ mod tests {
         assert!(stands_on_y(stool.iter()));
         let lying: Vec<Vec3> = stool.iter().map(|p| Vec3::new(p.x, -p.z, p.y)).collect();
         assert!(!stands_on_y(lying.iter()));
+        // A plate on four clips, which are near its middle: at one of its edges it would stand, too.
+        let plate = [[0.0, 0.0], [100.0, 0.0], [100.0, 80.0], [0.0, 80.0]];
+        let plate = plate.iter().flat_map(|&[x, y]| [2.0, 6.0].map(|z| Vec3::new(x, y, z)));
+        let clips =
+            [[48.0, 40.0], [52.0, 40.0], [50.0, 42.0], [50.0, 38.0]].map(|[x, y]| Vec3::new(x, y, 0.0));
+        let plate: Vec<Vec3> = plate.chain(clips).collect();
+        assert!(footprint(plate.iter(), 1) > FIRM && footprint(plate.iter(), 2) < TIPSY);
+        assert!(!stands_on_y(plate.iter()));
         // A box stands on anything, a flat shape on nothing.
         let corners: Vec<Vec3> =
             (0..8).map(|k| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32)).collect();
