@@ -19,6 +19,7 @@ mod mesh;
 mod missing;
 mod params;
 mod picture;
+mod realistic;
 mod shape;
 mod spectra;
 mod state;
@@ -80,6 +81,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         media: BTreeMap::new(),
         without_media: None,
         missing: Missing::default(),
+        film_diagonal: 35.0,
     };
     let result = reader.file(path).and_then(|()| reader.finish(path));
     if let Some(error) = reader.missing.and(result) {
@@ -141,6 +143,8 @@ struct Reader<'s, 'f> {
     without_media: Option<(String, Place)>,
     /// Missing files so far.
     missing: Missing,
+    /// The diagonal of the film in millimetres.
+    film_diagonal: f64,
 }
 
 /// A material that has been defined or referred to.

@@ -13,7 +13,7 @@ mod read;
 pub mod space;
 
 pub use camera::{CameraSensor, swatches};
-pub use named::{named, names};
+pub use named::{d50, named, names};
 pub use read::read_spd;
 
 /// Shortest wavelength that is rendered, in nm.

@@ -181,6 +181,7 @@ fn mtl_lets_light_through() {
 fn mtl_shines() {
     let lamp = with_material("Ke 3 2 1\n", &[]).parts[0].emission.unwrap();
     assert_eq!(lamp.radiance, Color::Value([3.0, 2.0, 1.0]));
+    assert!(!lamp.two_sided, "as in glTF, pbrt and our own format");
     assert_eq!(with_material("Ke 0 0 0\n", &[]).parts[0].emission, None);
 }
 

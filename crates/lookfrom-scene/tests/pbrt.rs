@@ -206,7 +206,8 @@ fn attributes_give_defaults_and_keep_their_colour_space() {
 fn objects_are_placed_by_instances() {
     let scene = read(
         "WorldBegin Translate 1 0 0 ObjectInstance \"ball\" AttributeBegin Scale 2 2 2\n\
-         ObjectBegin \"ball\" Scale 3 3 3 Shape \"sphere\" ObjectEnd AttributeEnd ObjectInstance \"ball\"",
+         ObjectBegin \"ball\" Scale 3 3 3 Shape \"sphere\" ObjectEnd AttributeEnd \
+         Translate 0 1 0 ObjectInstance \"ball\"",
     );
     assert_eq!((scene.shapes.len(), scene.objects.len(), scene.instances.len()), (0, 1, 2));
     let move_right = DMat4::from_translation(DVec3::X);
@@ -214,7 +215,8 @@ fn objects_are_placed_by_instances() {
         scene.objects[0].shapes[0].world_from_object,
         move_right * DMat4::from_scale(DVec3::splat(6.0))
     );
-    assert!(scene.instances.iter().all(|instance| instance.world_from_object == move_right));
+    let places = [move_right, move_right * DMat4::from_translation(DVec3::Y)];
+    assert_eq!(scene.instances.iter().map(|instance| instance.world_from_object).collect::<Vec<_>>(), places);
 }
 
 #[test]

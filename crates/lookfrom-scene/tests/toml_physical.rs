@@ -457,3 +457,17 @@ fn photometric_files_are_read_once() {
     // The brightest direction, straight down, is at the corners of the map.
     assert!(scene.images[0].texel(0)[0] > 0.99);
 }
+
+#[test]
+fn d50_is_the_cies() {
+    let xy = |color: &str| {
+        let scene =
+            read(&format!("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = {color}\n"));
+        let [x, y, z] = spectrum::observer::xyz(&scene.curves[0]);
+        [x / (x + y + z), y / (x + y + z)]
+    };
+    let [x, y] = xy("{ illuminant = \"D50\" }");
+    assert!((x - 0.3457).abs() < 2e-4 && (y - 0.3585).abs() < 2e-4, "{x} {y}");
+    let [x, _] = xy("{ illuminant = \"D65\" }");
+    assert!((x - 0.3127).abs() < 2e-4, "{x}");
+}

@@ -118,6 +118,10 @@ fn an_eye_that_sees_nothing_is_told_of() {
     // Small or thin things are something, and so is the light around without a thing.
     none(&seen_from([0.0, 0.0, 9.0], "[[sphere]]\ncenter = [0.3, 0.2, 0]\nradius = 0.1"));
     none(&seen_from([0.0; 3], ""));
+    // Bounds of a medium are there to be looked at; but not if they are elsewhere.
+    let cloud = "[materials.m]\ntype = \"interface\"\n[[sphere]]\nmaterial = \"m\"\ncenter = ";
+    none(&seen_from([0.0, 0.0, 9.0], &format!("{cloud}[0, 0, 0]")));
+    one(&seen_from([0.0; 3], &format!("{cloud}[0, 0, 5]")), &["sees nothing"]);
     // What is behind is seen by an eye that sees all around.
     let around = "projection = \"equirectangular\"\n[image]\nwidth = 64\nheight = 32";
     none(&seen_from([0.0; 3], &format!("{around}\n{ball}")));

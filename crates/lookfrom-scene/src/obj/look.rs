@@ -14,7 +14,7 @@
 //! | `map_Ns` | its mean multiplies `Ns` |
 //! | `map_d` | alpha of the surface, which `d` does not change in the Whitted model: that is light let through |
 //! | `map_Bump`, `norm` | bump or normal map |
-//! | `Ke`, `map_Ke` | emission, from both sides |
+//! | `Ke`, `map_Ke` | emission, from the front side |
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -175,7 +175,7 @@ fn translate(written: &MtlMaterial, surface: Surface, mut maps: Maps<'_, '_>) ->
     let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
     let emission = shines.then(|| {
         let radiance = color(ke, written.emission_map.as_ref(), 1.0, &mut maps);
-        Emission::new(radiance, true)
+        Emission::new(radiance, false)
     });
     let emission = emission.filter(|emission| emission.radiance != Color::BLACK);
     let cut = written.opacity_map.as_ref();

@@ -4,6 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::Reader;
 use super::params::{Kind, Parameters};
+use super::realistic::Optics;
 use super::state::Entity;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Location, Result};
@@ -26,10 +27,10 @@ impl Reader<'_, '_> {
         let projection = match &**kind {
             "perspective" => Projection::Perspective { fov: field_of_view(parameters)? },
             "realistic" => {
-                let message = "realistic cameras (lens systems) are not rendered yet: a \"perspective\" camera is used instead";
-                self.context.warn(&parameters.place.location(), message);
-                parameters.ignore(&["lensfile", "aperturediameter", "focusdistance", "aperture"]);
-                Projection::Perspective { fov: 50.0 }
+                let diagonal = self.film_diagonal;
+                let optics = self.realistic(parameters, diagonal)?;
+                self.scene.image.sensor.imaging_ratio *= optics.map_or(1.0, Optics::exposure);
+                Projection::Perspective { fov: optics.map_or(50.0, |optics| optics.field_of_view(aspect)) }
             }
             "orthographic" => Projection::Orthographic { height: 2.0 },
             "spherical" => parameters.choice(

@@ -40,7 +40,8 @@ impl Reader<'_, '_> {
             }
             _ => return Err(Self::unknown(&parameters.place, "film", kind, ["rgb", "gbuffer", "spectral"])),
         }
-        parameters.ignore(&["filename", "savefp16", "diagonal", "coordinatesystem", "displayfile"]);
+        parameters.ignore(&["filename", "savefp16", "coordinatesystem", "displayfile"]);
+        self.film_diagonal = f64::from(parameters.positive("diagonal", 35.0)?);
         let sensor = Self::sensor(parameters, shutter)?;
         let image = &mut self.scene.image;
         image.width = parameters.integer("xresolution", 1280, 1, LARGEST)? as u32;

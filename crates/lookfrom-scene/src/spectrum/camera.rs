@@ -50,8 +50,10 @@ pub fn swatches() -> impl Iterator<Item = Curve> {
     SWATCHES.lines().filter(|line| !line.starts_with('#')).map(|line| curve(numbers(line)))
 }
 
+/// A table, extended with its first and last value to all visible wavelengths, as in pbrt-v4.
 fn curve(values: Vec<f32>) -> Curve {
-    Curve::Tabulated { wavelengths: (0..values.len()).map(|i| FIRST + STEP * i as f32).collect(), values }
+    let wavelengths = (0..values.len()).map(|i| FIRST + STEP * i as f32).collect();
+    Curve::Tabulated { wavelengths, values }.extended()
 }
 
 fn numbers(text: &str) -> Vec<f32> {

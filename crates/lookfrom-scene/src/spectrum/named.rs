@@ -30,6 +30,12 @@ pub fn named(name: &str) -> Option<Curve> {
     None
 }
 
+/// The CIE's standard illuminant D50, whose chromaticity is (0.3457, 0.3585): the D series at 5003 K. (`stdillum-D50` is pbrt-v4's, which is
+/// bluer.)
+pub fn d50() -> Option<Curve> {
+    curve_of_luminance_one(super::daylight::daylight(5000.0).extended())
+}
+
 /// All names that [`named`] knows, for suggestions.
 pub fn names() -> impl Iterator<Item = &'static str> {
     tables().map(|(name, _)| name).chain(ALIASES.iter().map(|(alias, _)| *alias))

@@ -46,8 +46,10 @@ impl Reader<'_, '_> {
                     |name: &'static str| name.strip_prefix("stdillum-").or(name.strip_prefix("illum-"));
                 let words: Vec<(&str, &'static str)> =
                     spectrum::names().filter_map(|name| Some((short(name)?, name))).collect();
-                let name = one.choice(&words)?;
-                Ok(self.known_curve(name))
+                match (one.choice(&words)?, spectrum::d50()) {
+                    ("stdillum-D50", Some(curve)) => Ok(self.keep_curve("the CIE's D50".to_owned(), curve)),
+                    (name, _) => Ok(self.known_curve(name)),
+                }
             }
         }
     }

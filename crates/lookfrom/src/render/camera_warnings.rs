@@ -56,6 +56,11 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
         if self::seen(renderer, FINE).iter().any(Option::is_some) {
             return;
         }
+        // It looks at a medium, perhaps one that is not rendered, of which its reader warns.
+        let is_interface = |surface: &SurfaceInteraction| world.is_interface(surface);
+        if first_hits(renderer, FINE, |_| false).iter().flatten().any(is_interface) {
+            return;
+        }
         let Bounds { min, max } = bounds;
         format!(
             "the camera sees nothing of the scene, which lies between {min} and {max}: the picture shows only the background; \
