@@ -11,11 +11,11 @@ use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Args, Command};
 use lookfrom::film::Film;
 use lookfrom::session::{Developed, FilmFile, Finished, Provenance};
-use lookfrom_scene::{Budget, Disk, ErrorKind, Inputs, LoadContext, Result as SceneResult};
+use lookfrom_scene::{Budget, Disk, ErrorKind, Files, Inputs, LoadContext, Result as SceneResult};
 
 use crate::args::Overrides;
 use crate::exit::{Failure, say};
-use crate::output::{Target, replace_file_by};
+use crate::output::{self, Target, replace_file_by};
 
 /// The interval between checkpoints unless another one is asked for.
 pub(crate) const INTERVAL: Duration = Duration::from_secs(60);
@@ -153,7 +153,8 @@ pub(crate) fn write(
     inputs: &Inputs,
 ) -> Result<(), Failure> {
     let Finished { rendered, developed, .. } = finished;
-    write_by(target, inputs, |file| provenance.write(&rendered.film, developed, file))
+    let provenance = of_any_folder(provenance, &rendered.film);
+    rescued(target, inputs, |file| provenance.write(&rendered.film, developed, file))
 }
 
 /// Writes a film from a file, with its picture.
@@ -166,7 +167,8 @@ pub(crate) fn write_file(
     developed: &Developed,
     inputs: &Inputs,
 ) -> Result<(), Failure> {
-    write_by(target, inputs, |file| film.write(developed, file))
+    let provenance = of_any_folder(&film.provenance, &film.film);
+    rescued(target, inputs, |file| provenance.write(&film.film, developed, file))
 }
 
 fn write_by(
@@ -180,12 +182,58 @@ fn write_by(
     replace_file_by(path, inputs, "-o", |file| write(file).map_err(|error| error.message))
 }
 
+/// The provenance in a film's file. One that has all its samples has the same bytes in any folder: it names its scene and
+/// environment map without the folders, where [`found`] looks for them.
+fn of_any_folder(provenance: &Provenance, film: &Film) -> Provenance {
+    let mut provenance = provenance.clone();
+    if provenance.is_complete(film) {
+        provenance.scene = provenance.scene.as_deref().map(file_name);
+        for argument in &mut provenance.arguments {
+            if let Some(path) = argument.strip_prefix(ENVIRONMENT) {
+                *argument = format!("{ENVIRONMENT}{}", file_name(path));
+            }
+        }
+    }
+    provenance
+}
+
+/// The file that a film names: at its place, or of the same name in one of the `folders`.
+pub(crate) fn found<'a>(named: &str, folders: impl IntoIterator<Item = &'a Path>) -> Option<PathBuf> {
+    let name = file_name(named);
+    let elsewhere = folders.into_iter().map(|folder| folder.join(&name));
+    std::iter::once(PathBuf::from(named)).chain(elsewhere).find(|path| path.is_file())
+}
+
+/// The name of a file without its folder.
+fn file_name(path: &str) -> String {
+    Path::new(path).file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// As [`write_by`], of what must not be lost.
+fn rescued(
+    target: &Target,
+    inputs: &Inputs,
+    write: impl Fn(&mut BufWriter<File>) -> SceneResult<()>,
+) -> Result<(), Failure> {
+    let written = write_by(target, inputs, &write);
+    written
+        .or_else(|failure| output::rescue(target, failure, |file| write(file).map_err(|error| error.message)))
+}
+
 /// Reads a film.
 ///
 /// # Errors
 /// `Scene` where it cannot be read, is damaged, or is no film.
 pub(crate) fn read(path: &Path, budget: &Budget) -> Result<FilmFile, Failure> {
-    let bytes = LoadContext::within(budget, &Disk).read(path)?;
+    read_from(&Disk, path, budget)
+}
+
+/// The same, read through `files`.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_from(files: &dyn Files, path: &Path, budget: &Budget) -> Result<FilmFile, Failure> {
+    let bytes = LoadContext::within(budget, files).read(path)?;
     Ok(FilmFile::read(&bytes, path, budget)?)
 }
 

@@ -50,6 +50,11 @@ fn main() -> ExitCode {
         Ok(parsed) => parsed,
         Err(error) => return ExitCode::from(exit::not_parsed(&error)),
     };
+    if let Some(word) = lookfrom::unmet_level() {
+        exit::say(&format!(
+            "warning: LOOKFROM_SIMD={word} names no level of this machine (sse2, avx2, avx512): its best is used"
+        ));
+    }
     let code = match arguments.command {
         Command::Render(arguments) => {
             let typed = matches.subcommand_matches("render").map(film::arguments).unwrap_or_default();

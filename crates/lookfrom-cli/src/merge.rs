@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use lookfrom::session::{FilmFile, Format};
-use lookfrom_scene::Inputs;
+use lookfrom_scene::plural::counted;
+use lookfrom_scene::{Disk, Inputs};
 
 use crate::args::MergeArguments;
 use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
@@ -28,10 +29,12 @@ fn merge(arguments: &MergeArguments) -> Result<u8, Failure> {
         }
     };
     let budget = &arguments.memory.budget();
+    let inputs = Inputs::default();
+    let files = inputs.record(&Disk, "the merge");
     let mut whole: Option<FilmFile> = None;
     let mut bad = Vec::new();
     for path in &arguments.films {
-        let added = film::read(path, budget).and_then(|mut part| {
+        let added = film::read_from(&files, path, budget).and_then(|mut part| {
             let to = target.as_ref().map_or(Path::new("."), Target::folder);
             film::rebase(&mut part.provenance, folder_or_here(path.parent()), to);
             match &mut whole {
@@ -54,11 +57,13 @@ fn merge(arguments: &MergeArguments) -> Result<u8, Failure> {
         return Ok(BAD_SCENE);
     }
     if let (Some(target), Some(whole)) = (&target, whole) {
+        target.keep_inputs(&inputs)?;
         let developed = whole.develop(&whole.provenance.development);
-        film::write_file(target, &whole, &developed, &Inputs::default())?;
+        film::write_file(target, &whole, &developed, &inputs)?;
         if !arguments.quiet {
             let (films, samples) = (arguments.films.len(), whole.film.ledger().most());
-            say(&format!("{films} films → {}: {samples} samples per pixel", target.name()));
+            let (films, samples) = (counted(films, "film"), counted(samples, "sample"));
+            say(&format!("{films} → {}: {samples} per pixel", target.name()));
         }
     }
     Ok(DONE)

@@ -1,8 +1,8 @@
 //! Output files and their formats. Targets are checked before anything is rendered; files are replaced atomically, and input
 //! files are never overwritten.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufWriter, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -112,12 +112,27 @@ impl Target {
     /// `Output` where that fails or would overwrite an input; an existing file then stays as it was.
     pub(crate) fn write(&self, bytes: &[u8], inputs: &Inputs) -> Result<(), Failure> {
         match self {
-            Self::Stdout(_) => std::io::stdout()
-                .write_all(bytes)
-                .and_then(|()| std::io::stdout().flush())
-                .map_err(|error| Failure::Output(format!("cannot write -: {error}"))),
+            Self::Stdout(_) => write_stdout(bytes).map_err(|error| unwritten(&error)),
             Self::File(path, _) => replace_file(path, bytes, inputs, "-o"),
         }
+    }
+
+    /// As [`write`](Self::write), of a finished picture: where it cannot be written, it is kept elsewhere, as the error says.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub(crate) fn write_finished(&self, bytes: &[u8], inputs: &Inputs) -> Result<(), Failure> {
+        let written = match self {
+            // Who reads no further does not want it.
+            Self::Stdout(_) => match write_stdout(bytes) {
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => return Err(unwritten(&error)),
+                written => written.map_err(|error| unwritten(&error)),
+            },
+            Self::File(..) => self.write(bytes, inputs),
+        };
+        written.or_else(|failure| {
+            rescue(self, failure, |file| file.write_all(bytes).map_err(|error| error.to_string()))
+        })
     }
 
     /// Checks, as far as possible, that the picture can be written. Missing folders are created only when there is a picture.
@@ -137,8 +152,18 @@ impl Target {
         if let Err(error) = File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
             return wrong(format!("cannot write into the folder {}: {error}", folder.display()));
         }
+        remove_left_partials(folder);
         Ok(())
     }
+}
+
+fn write_stdout(bytes: &[u8]) -> std::io::Result<()> {
+    std::io::stdout().write_all(bytes).and_then(|()| std::io::stdout().flush())
+}
+
+/// The failure of stdout.
+fn unwritten(error: &std::io::Error) -> Failure {
+    Failure::Output(format!("cannot write -: {error}"))
 }
 
 /// The name of a file and where the number of a picture goes in it: the first `#` and those that follow.
@@ -197,6 +222,8 @@ pub(crate) fn replace_file_by(
     let written = || {
         fs::create_dir_all(folder).map_err(text)?;
         let file = OpenOptions::new().write(true).create(true).truncate(true).open(&partial).map_err(text)?;
+        // Some file systems have no locks.
+        let _ = file.try_lock();
         let mut file = BufWriter::with_capacity(1 << 20, file);
         write(&mut file)?;
         let file = file.into_inner().map_err(|error| error.to_string())?;
@@ -204,7 +231,7 @@ pub(crate) fn replace_file_by(
         fs::rename(&partial, path).map_err(text)?;
         // The new name is on disk only when the folder is; systems that cannot sync folders need not.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
-        remove_left_partials(path, folder);
+        remove_left_partials(folder);
         Ok(())
     };
     let written: Result<(), String> = written();
@@ -215,6 +242,41 @@ pub(crate) fn replace_file_by(
     }
     inputs.note_output(path, &Disk);
     Ok(())
+}
+
+/// Keeps what could not be written to its target: in the current folder, or in that for temporary files.
+///
+/// # Errors
+/// The `failure`, which also says where the picture is.
+pub(crate) fn rescue(
+    target: &Target,
+    failure: Failure,
+    write: impl Fn(&mut BufWriter<File>) -> Result<(), String>,
+) -> Result<(), Failure> {
+    let Failure::Output(message) = failure else { return Err(failure) };
+    let name = match target {
+        Target::Stdout(format) => format!("stdout.{}", format.extension()),
+        Target::File(path, format) => {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            format!("{}.{}", stem.chars().take(50).collect::<String>(), format.extension())
+        }
+    };
+    let attempt = |folder: PathBuf| {
+        let path = folder.join(format!("lookfrom-{}-{name}", std::process::id()));
+        let file = OpenOptions::new().write(true).create_new(true).open(&path).ok()?;
+        let mut file = BufWriter::with_capacity(1 << 20, file);
+        let is_written =
+            write(&mut file).is_ok() && file.into_inner().is_ok_and(|file| file.sync_all().is_ok());
+        if !is_written {
+            let _ = fs::remove_file(&path);
+        }
+        is_written.then_some(path)
+    };
+    let kept = [PathBuf::from("."), std::env::temp_dir()].into_iter().find_map(attempt);
+    Err(Failure::Output(match kept {
+        Some(path) => format!("{message}\n  help: the finished picture is kept in {}", path.display()),
+        None => message,
+    }))
 }
 
 /// Name of the temporary file of a file, unique to this process and moment, also where machines share a folder.
@@ -231,20 +293,37 @@ fn partial_prefix(path: &Path) -> String {
     format!(".{}-", name.chars().take(50).collect::<String>())
 }
 
-/// Removes what processes that were killed while they wrote this file have left: its temporary files that nobody has
-/// written to for ten minutes.
-fn remove_left_partials(path: &Path, folder: &Path) {
+/// Removes what processes that were killed while they wrote into this folder have left: temporary files that nobody holds
+/// a lock on, which ends with its process, and that were not made at this moment; or, where the file system has no locks,
+/// that nobody has written to for ten minutes.
+fn remove_left_partials(folder: &Path) {
+    const MADE: Duration = Duration::from_secs(2);
     const LEFT: Duration = Duration::from_secs(600);
-    let prefix = partial_prefix(path);
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let age =
-            entry.metadata().and_then(|metadata| metadata.modified()).ok().and_then(|at| at.elapsed().ok());
-        if name.starts_with(&prefix) && name.ends_with(PARTIAL) && age.is_some_and(|age| age > LEFT) {
+        if !is_partial(&entry.file_name().to_string_lossy()) {
+            continue;
+        }
+        let modified = entry.metadata().and_then(|metadata| metadata.modified());
+        let Some(age) = modified.ok().and_then(|at| at.elapsed().ok()) else { continue };
+        let Ok(file) = OpenOptions::new().write(true).open(entry.path()) else { continue };
+        let is_left = match file.try_lock() {
+            Ok(()) => age > MADE,
+            Err(TryLockError::WouldBlock) => false,
+            Err(TryLockError::Error(_)) => age > LEFT,
+        };
+        if is_left {
             // Whoever else removes it at the same time has done so.
             let _ = fs::remove_file(entry.path());
         }
     }
+}
+
+/// Whether a name is one that [`partial`] gives: `.NAME-PROCESS-TIME.partial`.
+fn is_partial(name: &str) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let mut parts = name.strip_suffix(PARTIAL).unwrap_or_default().rsplitn(3, '-');
+    let numbers = [parts.next(), parts.next()];
+    name.starts_with('.') && numbers.iter().all(|part| part.is_some_and(is_number)) && parts.next().is_some()
 }
 
 /// The folder of a file, from the parent of its path: `.` where that is empty.
@@ -260,16 +339,23 @@ mod tests {
     fn what_the_killed_have_left_is_removed_and_nothing_else() {
         let folder = std::env::temp_dir().join(format!("lookfrom-partials-{}", std::process::id()));
         fs::create_dir_all(&folder).expect("a temporary folder");
-        let path = folder.join("a.exr");
-        let files = [".a.exr-1-2.partial", ".a.exr-3-4.partial", ".b.exr-1-2.partial", "a.exr"];
+        let files = [".a.exr-1-2.partial", ".b.exr-3-4.partial", ".c.exr-5-6.partial", ".a.partial", "a.exr"];
+        let mut held = None;
         for (index, name) in files.iter().enumerate() {
             let file = File::create(folder.join(name)).expect("a temporary file");
-            let age = Duration::from_secs(if index == 1 { 60 } else { 3600 });
+            let age = Duration::from_secs(if index == 1 { 0 } else { 60 });
             file.set_modified(SystemTime::now() - age).expect("a time");
+            if index == 2 {
+                file.try_lock().expect("nobody else has it");
+                held = Some(file);
+            }
         }
-        remove_left_partials(&path, &folder);
+        remove_left_partials(&folder);
         let left: Vec<bool> = files.iter().map(|name| folder.join(name).exists()).collect();
-        assert_eq!(left, [false, true, true, true]);
+        assert_eq!(left, [false, true, true, true, true]);
+        drop(held);
+        remove_left_partials(&folder);
+        assert!(!folder.join(files[2]).exists());
         fs::remove_dir_all(&folder).expect("it is ours");
     }
 }

@@ -93,7 +93,7 @@ pub(crate) fn render(
             (None, Outlet::Gathered(gather)) => gather(&finished)?,
             (None, Outlet::Target) => {
                 let bytes = finished.encode(target.format());
-                target.write(&bytes.map_err(|error| target.cannot_encode(&error))?, inputs)?;
+                target.write_finished(&bytes.map_err(|error| target.cannot_encode(&error))?, inputs)?;
             }
         }
     }

@@ -7,6 +7,7 @@ use lookfrom::session::{Exposure, Format, Options, Series, Session, Sheet};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::{Animation, Image};
 use lookfrom_scene::load::PIPE;
+use lookfrom_scene::plural::counted;
 use lookfrom_scene::stamps::Stamps;
 
 use crate::args::RenderArguments;
@@ -100,8 +101,9 @@ impl<'a> Call<'a> {
             let (cells, pictures) = (columns as usize * rows as usize, call.count());
             if pictures > cells {
                 return usage(format!(
-                    "{pictures} pictures do not fit into the {cells} cells of --sheet {columns}x{rows}; --sheet {columns} \
-                     has as many rows as it takes"
+                    "{pictures} pictures do not fit into the {} of --sheet {columns}x{rows}; --sheet {columns} \
+                     has as many rows as it takes",
+                    counted(cells, "cell")
                 ));
             }
         }
@@ -253,7 +255,7 @@ impl<'a> Call<'a> {
         let code = self.render_series(index, environment, inputs, &mut Outlet::Gathered(&mut outlet));
         if let Some(animation) = animation {
             let bytes = animation.finish().map_err(|error| target.cannot_encode(&error))?;
-            target.write(&bytes, inputs)?;
+            target.write_finished(&bytes, inputs)?;
         }
         code
     }
@@ -352,7 +354,7 @@ impl<'a> Call<'a> {
 fn write_sheet(sheet: &Sheet, target: &Target, way: Option<Way>, inputs: &Inputs) -> Result<(), Failure> {
     let cannot_encode = |error| target.cannot_encode(&error);
     let shown = sheet.shown().map_err(cannot_encode)?;
-    target.write(&shown.encode(target.format()).map_err(cannot_encode)?, inputs)?;
+    target.write_finished(&shown.encode(target.format()).map_err(cannot_encode)?, inputs)?;
     way.map_or(Ok(()), |way| terminal::draw(&shown, way))
 }
 

@@ -1,9 +1,9 @@
 //! `lookfrom resume`: the rest of a render that was stopped, or more samples.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use lookfrom::session::{FilmFile, Format};
+use lookfrom::session::{FilmFile, Format, Provenance};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::settings::PixelBounds;
 
@@ -31,7 +31,9 @@ fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
     let target = Target::File(output.clone(), Format::Exr);
     target.check()?;
     let mut film = film::read(&arguments.film, &arguments.common.memory.budget())?;
-    film::rebase(&mut film.provenance, folder_or_here(arguments.film.parent()), Path::new(""));
+    let folder = folder_or_here(arguments.film.parent());
+    film::rebase(&mut film.provenance, folder, Path::new(""));
+    find_files(&mut film.provenance, arguments, folder)?;
     let typed = film.provenance.arguments.clone();
     let of_render = render_arguments(arguments, &film)?;
     let scene = &of_render.scenes[0];
@@ -49,6 +51,39 @@ fn resume(arguments: &ResumeArguments) -> Result<u8, Failure> {
         let summary = picture::render(scene, &target, &session, Some(film), &job, &mut Outlet::Target)?;
         picture::told(&summary, &of_render)
     })
+}
+
+/// Finds the scene and the environment map of a film, which may be named without folders.
+///
+/// # Errors
+/// `Usage` where the scene is not found.
+fn find_files(
+    provenance: &mut Provenance,
+    arguments: &ResumeArguments,
+    folder: &Path,
+) -> Result<(), Failure> {
+    let here = Path::new(".");
+    if let (Some(scene), None) = (&provenance.scene, &arguments.scene_file) {
+        let missing = || {
+            Failure::Usage(format!(
+                "{} is of {scene}, which is neither there nor in this folder\n  help: name it: --scene-file SCENE",
+                arguments.film.display()
+            ))
+        };
+        let found = film::found(scene, [folder, here]).ok_or_else(missing)?;
+        provenance.scene = Some(found.display().to_string());
+    }
+    let scene = arguments.scene_file.clone().or_else(|| provenance.scene.clone().map(PathBuf::from));
+    let of_scene = scene.as_deref().map_or(here, |scene| folder_or_here(scene.parent()));
+    for argument in &mut provenance.arguments {
+        let found = argument
+            .strip_prefix(film::ENVIRONMENT)
+            .and_then(|path| film::found(path, [folder, of_scene, here]));
+        if let Some(path) = found {
+            *argument = format!("{}{}", film::ENVIRONMENT, path.display());
+        }
+    }
+    Ok(())
 }
 
 /// The arguments of the render that the film is of, with those that were typed now.

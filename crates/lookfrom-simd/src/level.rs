@@ -14,6 +14,30 @@ pub fn level() -> Level {
     *LEVEL.get_or_init(|| named(&std::env::var("LOOKFROM_SIMD").unwrap_or_default(), Level::new()))
 }
 
+/// The word of `LOOKFROM_SIMD`, where it names no level of this machine and changes nothing.
+pub fn unmet_level() -> Option<String> {
+    let word = std::env::var("LOOKFROM_SIMD").unwrap_or_default();
+    let is_met = word.is_empty() || is_level(&word, Level::new());
+    (!is_met).then_some(word)
+}
+
+/// Whether a machine whose best level is `best` has the level of a name.
+#[cfg(target_arch = "x86_64")]
+fn is_level(name: &str, best: Level) -> bool {
+    match name {
+        "sse2" => best.as_sse2().is_some(),
+        "avx2" => best.as_avx2().is_some(),
+        "avx512" => best.as_avx512().is_some(),
+        _ => false,
+    }
+}
+
+/// Other architectures have only one level.
+#[cfg(not(target_arch = "x86_64"))]
+fn is_level(_: &str, _: Level) -> bool {
+    false
+}
+
 /// The level of a name if it is at most `best`, otherwise `best`.
 #[cfg(target_arch = "x86_64")]
 fn named(name: &str, best: Level) -> Level {
@@ -40,6 +64,7 @@ mod tests {
         let best = Level::new();
         for word in ["", "avx512", "altivec"] {
             assert_eq!(format!("{:?}", named(word, best)), format!("{best:?}"));
+            assert!(word == "avx512" || !is_level(word, best));
         }
     }
 

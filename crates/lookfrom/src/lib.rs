@@ -15,3 +15,6 @@ pub mod world;
 
 /// The vector and matrix types of this crate's interface.
 pub use glam;
+
+/// The word of `LOOKFROM_SIMD` where it selects nothing, for front ends to tell.
+pub use lookfrom_simd::unmet_level;

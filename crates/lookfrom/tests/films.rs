@@ -285,7 +285,10 @@ fn what_does_not_belong_together_is_told() {
         &Options { width: Some(70), height: Some(45), ..later.clone() },
         &["size is 70 45 there, 71 45 here"],
     );
-    refused(&Options { layers: Some(Layers::Geometry), ..later.clone() }, &["variance.from_rgb"]);
+    refused(
+        &Options { layers: Some(Layers::Geometry), ..later.clone() },
+        &["--layers is geometry there, none here"],
+    );
     refused(
         &Options { background: Some(Background::Transparent), ..later.clone() },
         &["light and alpha", "light"],

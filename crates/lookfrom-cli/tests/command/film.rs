@@ -148,6 +148,100 @@ fn what_cannot_be_a_film_is_told_before_rendering() {
 }
 
 #[test]
+fn a_part_is_not_replaced_by_its_sum() {
+    let stage = Stage::new("film-own-part");
+    stage.done("render scene.toml -o p1.exr --film --part 1/2");
+    stage.done("render scene.toml -o p2.exr --film --part 2/2");
+    let before = stage.bytes("p1.exr");
+    for output in ["p1.exr", "./p1.exr"] {
+        stage.run(&format!("merge p1.exr p2.exr -o {output}")).fails(3, &["p1.exr: it is", "another name"]);
+    }
+    assert!(stage.bytes("p1.exr") == before);
+}
+
+#[test]
+fn films_that_differ_in_layers_say_so() {
+    let stage = Stage::new("film-layers");
+    stage.done("render scene.toml -o a.exr --film --samples 0..1");
+    stage.done("render scene.toml -o b.exr --film --samples 1..2 --layers geometry");
+    stage.run("merge a.exr b.exr -o x.exr").fails(1, &["b.exr", "--layers is geometry there, none here"]);
+    stage.run("merge b.exr a.exr -o x.exr").fails(1, &["a.exr", "--layers is none there, geometry here"]);
+    let mut command = stage.command("render scene.toml -o c.exr --film --samples 1..2 --light-path");
+    assert!(command.arg("direct=C<RD>L").output().unwrap().status.success());
+    stage.run("merge a.exr c.exr -o x.exr").fails(1, &["--light-path direct is C<RD>L there, not set here"]);
+}
+
+#[test]
+fn a_film_is_the_same_in_every_folder_and_finds_its_scene() {
+    let stage = Stage::new("film-folders");
+    let sky: Vec<[f32; 3]> = vec![[1.0, 0.5, 0.25]; 8];
+    let sky = lookfrom_scene::image::encode_hdr(4, 2, &sky).unwrap();
+    std::fs::create_dir_all(stage.path("maps")).unwrap();
+    std::fs::write(stage.path("maps/sky.hdr"), sky).unwrap();
+    let call = "render scene.toml --film --samples 2 --environment maps/sky.hdr -o";
+    stage.done(&format!("{call} a.exr"));
+    stage.done(&format!("{call} deep/er/a.exr"));
+    assert!(stage.bytes("a.exr") == stage.bytes("deep/er/a.exr"));
+    std::fs::write(stage.path("sky.hdr"), stage.bytes("maps/sky.hdr")).unwrap();
+    stage.done("resume deep/er/a.exr --samples 4 -o b.exr");
+    stage.done("render scene.toml --film --samples 4 --environment maps/sky.hdr -o c.exr");
+    assert!(stage.bytes("b.exr") == stage.bytes("c.exr"));
+    // Another name for the same scene, and a film that does not find its own.
+    std::fs::rename(stage.path("scene.toml"), stage.path("renamed.toml")).unwrap();
+    stage.run("resume a.exr --samples 4 -o d.exr").fails(2, &["scene.toml", "--scene-file"]);
+    stage.done("resume a.exr --samples 4 -o d.exr --scene-file renamed.toml");
+    stage.write("other.toml", &SCENE.replace("radius = 0.5", "radius = 0.6"));
+    stage.run("resume a.exr --samples 4 -o e.exr --scene-file other.toml").fails(1, &["another content"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_finished_picture_outlives_a_failed_write() {
+    let stage = Stage::new("film-rescued");
+    let kept = |stderr: &str| {
+        let (_, path) =
+            stderr.split_once("the finished picture is kept in ").unwrap_or_else(|| panic!("{stderr}"));
+        path.lines().next().unwrap().to_owned()
+    };
+    // Too long a name for any file system, which the temporary name is not.
+    let name = "n".repeat(300);
+    stage.done("render scene.toml -q -o good.png");
+    let run = stage.run(&format!("render scene.toml -q -o {name}.png"));
+    assert_eq!(run.code, Some(3), "{}", run.stderr);
+    assert!(stage.bytes(&kept(&run.stderr)) == stage.bytes("good.png"));
+    stage.done("render scene.toml -q --film -o good.exr");
+    let run = stage.run(&format!("render scene.toml -q --film -o {name}.exr"));
+    assert!(stage.bytes(&kept(&run.stderr)) == stage.bytes("good.exr"));
+    // Who reads no further does not want it.
+    let before = stage.names();
+    let script = format!(
+        "'{}' render scene.toml -q -o - --format ppm --size 400 | head -c 1",
+        env!("CARGO_BIN_EXE_lookfrom")
+    );
+    let piped = Command::new("sh").current_dir(stage.path("")).args(["-c", &script]).output().unwrap();
+    assert!(!String::from_utf8_lossy(&piped.stderr).contains("is kept"), "{piped:?}");
+    assert_eq!(stage.names(), before);
+    #[cfg(target_os = "linux")]
+    {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let run = stage.command("render scene.toml -q -o -").stdout(full).output().unwrap();
+        let stderr = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert!(stage.bytes(&kept(&stderr)) == stage.bytes("good.png"));
+    }
+}
+
+#[test]
+fn a_level_that_is_none_is_told() {
+    let stage = Stage::new("film-level");
+    let run = |word: &str| {
+        let run = stage.command("info scene.toml").env("LOOKFROM_SIMD", word).output().unwrap();
+        String::from_utf8(run.stderr).unwrap()
+    };
+    assert!(run("bogus").contains("LOOKFROM_SIMD=bogus"));
+    assert_eq!(run(""), "");
+}
+
+#[test]
 fn the_files_of_a_scene_are_listed() {
     let stage = Stage::new("film-files");
     stage.write("scene.toml", &format!("{SCENE}\n[[mesh]]\nfile = \"model.obj\"\n"));

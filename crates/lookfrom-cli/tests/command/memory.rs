@@ -6,7 +6,19 @@ use super::stage::Stage;
 fn a_film_that_does_not_fit_is_refused_before_it_is_allocated() {
     let stage = Stage::new("memory-film");
     let run = stage.run("render scene.toml -q -o a.png --size 4000 --samples 1 --memory 200MB");
-    run.fails(1, &["the film of 4000 × 4000 pixels takes", "of the limit of 190.7 MiB", "--memory SIZE"]);
+    run.fails(
+        1,
+        &[
+            "the film of 4000 × 4000 pixels takes",
+            "of the limit of 190.7 MiB",
+            "--memory SIZE",
+            "--crop",
+            "merge",
+        ],
+    );
+    assert!(!run.stderr.contains("damaged"), "{}", run.stderr);
+    let run = stage.run("render scene.toml -q -o a.png --size 20000 --samples 1");
+    run.fails(2, &["at most 268435456 pixels", "window"]);
     stage.done("render scene.toml -q -o a.png --size 400 --samples 1 --memory 200MB");
 }
 

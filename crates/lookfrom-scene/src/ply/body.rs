@@ -251,7 +251,7 @@ fn read_faces(
             if !is_restart && (value.fract() != 0.0 || *value < 0.0 || *value >= vertices as f64) {
                 let message = format!(
                     "vertex index {value} is out of range: {}",
-                    crate::plural::there_are(vertices as u64, "vertex")
+                    crate::plural::there_are(vertices, "vertex")
                 );
                 return Err(reader.error_at(line, place, ErrorKind::Invalid, message));
             }

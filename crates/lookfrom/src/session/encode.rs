@@ -66,6 +66,13 @@ impl Format {
         Self::EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|&(_, format)| format)
     }
 
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        let of_extension = |format: Self| std::mem::discriminant(&format) == std::mem::discriminant(&self);
+        let found = Self::EXTENSIONS.iter().find(|&&(_, format)| of_extension(format));
+        found.map_or("png", |&(extension, _)| extension)
+    }
+
     /// The animation of this format.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
     let camera = &session.camera;
     let mut texts = vec![
         ("software", format!("lookfrom {}", env!("CARGO_PKG_VERSION"))),
-        ("scene", file_name(&session.name)),
+        (SCENE, file_name(&session.name)),
         ("size", format!("{} {}", image.width, image.height)),
         ("integrator", session.renderer.integrator().to_owned()),
         ("depth", render.depth.to_string()),
@@ -82,9 +82,16 @@ const LIGHT_PATH: &str = "light_path.";
 
 /// The names of the layers of light-path expressions, in their order, among sorted texts.
 pub(super) fn light_paths(texts: &[(String, String)]) -> impl Iterator<Item = &str> {
-    let names = texts.iter().filter_map(|(name, _)| name.strip_prefix(LIGHT_PATH));
-    names.filter_map(|numbered| numbered.split_once('.')).map(|(_, name)| name)
+    texts.iter().filter_map(|(name, _)| light_path_of(name))
 }
+
+/// The layer of light-path expressions that a text is about, by the name of the text.
+pub(super) fn light_path_of(name: &str) -> Option<&str> {
+    Some(name.strip_prefix(LIGHT_PATH)?.split_once('.')?.1)
+}
+
+/// The name of the text with the name of the scene's file.
+pub(super) const SCENE: &str = "scene";
 
 /// The name of the text with the relative error at which a tile gets no more samples.
 pub(super) const NOISE: &str = "noise";

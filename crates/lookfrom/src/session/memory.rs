@@ -43,6 +43,11 @@ impl Session {
         let image = self.image();
         let what = format!("the film of {} × {} pixels", image.width, image.height);
         let at = Location { file: self.name.as_str().into(), ..Location::default() };
-        self.budget.reserve(Film::memory(image), &what, &at)
+        self.budget.reserve(Film::memory(image), &what, &at).map_err(|error| {
+            error.hint(
+                "a smaller --size takes less; --crop X0,Y0,X1,Y1 --film renders a part, and `lookfrom merge` adds parts up \
+                 where there is memory for all; `--memory SIZE` sets another limit, such as 16GiB",
+            )
+        })
     }
 }

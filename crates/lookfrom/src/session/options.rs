@@ -246,9 +246,11 @@ impl Options {
         };
         let (width, height) = (width.max(1), height.max(1));
         if width.saturating_mul(height) > MOST_PIXELS {
-            return Err(unsuitable(format!(
-                "a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible"
-            )));
+            let message =
+                format!("a picture of {width} × {height} pixels; at most {MOST_PIXELS} pixels are possible");
+            return Err(unsuitable(message).hint(
+                "parts of a larger one are pictures of their own, by `window` in [camera]: the range of x and y that is seen",
+            ));
         }
         image.resize(width as u32, height as u32);
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use lookfrom_scene::image::compare::CHANNELS_ATTRIBUTE;
 use lookfrom_scene::settings::{Background, PixelBounds, Tonemap};
 use lookfrom_scene::{Error, Location, Result};
 
@@ -28,7 +29,7 @@ pub struct Provenance {
     pub(super) sampling: u32,
     /// How the picture is developed.
     pub development: Development,
-    /// The path of the scene, relative to the folder of the film, if its maker tells.
+    /// The path of the scene, as its maker tells: of an unfinished film relative to its folder.
     pub scene: Option<String>,
     /// Arguments by which its maker can open the same session again, for its own use.
     pub arguments: Vec<String>,
@@ -124,8 +125,9 @@ impl Provenance {
             ));
         }
         let settings = |of: &Self| {
+            // The name of the scene's file does not matter either, only its content.
             let named = |(name, _): &&(String, String)| {
-                !matches!(name.as_str(), "software" | header::NOISE | header::ALLOCATION)
+                !matches!(name.as_str(), "software" | header::SCENE | header::NOISE | header::ALLOCATION)
             };
             of.header.iter().filter(named).cloned().collect::<Vec<_>>()
         };
@@ -134,10 +136,23 @@ impl Provenance {
             let found = of.iter().find(|(known, _)| known == name);
             found.map_or_else(|| "not set".to_owned(), |(_, text)| text.clone())
         };
+        let is_set = |of: &[(String, String)], name: &str| of.iter().any(|(known, _)| known == name);
         if let Some((name, _)) =
             theirs.iter().chain(&mine).find(|(name, _)| value(&mine, name) != value(&theirs, name))
         {
-            return differ(format!("{name} is {} there, {} here", value(&theirs, name), value(&mine, name)));
+            if name == CHANNELS_ATTRIBUTE && [&mine, &theirs].iter().any(|of| !is_set(of, name)) {
+                let layers = |of: &[(String, String)]| if is_set(of, name) { "geometry" } else { "none" };
+                return differ(format!("--layers is {} there, {} here", layers(&theirs), layers(&mine)));
+            }
+            let called = match header::light_path_of(name) {
+                Some(layer) => format!("--light-path {layer}"),
+                None => name.clone(),
+            };
+            return differ(format!(
+                "{called} is {} there, {} here",
+                value(&theirs, name),
+                value(&mine, name)
+            ));
         }
         // Files are compared by content: their names may differ between machines.
         let digests = |of: &Self| {
@@ -173,6 +188,11 @@ impl Provenance {
         )
     }
 
+    /// Whether a film has all the samples that it was to have.
+    pub fn is_complete(&self, film: &Film) -> bool {
+        self.goal.as_ref().is_none_or(|goal| film.ledger().is_complete(film.area(), goal))
+    }
+
     /// The attributes of a film's file that tell what it is of.
     pub(super) fn attributes(&self, film: &Film) -> Vec<(String, String)> {
         let PixelBounds { x0, y0, x1, y1 } = film.area();
@@ -197,7 +217,7 @@ impl Provenance {
             attributes.push(("film.arguments", self.arguments.join("\n")));
         }
         if let Some(goal) = &self.goal
-            && !film.ledger().is_complete(film.area(), goal)
+            && !self.is_complete(film)
         {
             attributes.push(("film.goal", format!("{}..{}", goal.start, goal.end)));
         }
