@@ -90,6 +90,10 @@ impl Document {
             let mut state = locked(&self.state);
             match read {
                 Ok(loaded) => *state = State { scene: Some(Arc::new(loaded)), error: None },
+                Err(error) if !self.settings.scene.exists() => {
+                    let error = error.hint("the page shows it as soon as it is saved");
+                    state.error = Some(Answer::of_error(None, &error));
+                }
                 Err(error) => state.error = Some(Answer::of_error(None, &error)),
             }
         }

@@ -15,6 +15,7 @@ mod document;
 mod lobe;
 mod mailbox;
 mod message;
+mod patience;
 mod render;
 mod server;
 mod shot;

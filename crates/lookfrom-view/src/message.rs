@@ -303,7 +303,13 @@ impl Answer {
     /// An error of the library, with the line that it points at.
     pub(crate) fn of_error(id: Option<u64>, error: &Error) -> Self {
         let excerpt = Excerpts::new(&Disk).of(&error.at).map(|excerpt| excerpt.to_string());
-        Self::Error { id, message: error.to_string(), excerpt }
+        // What the page itself asked for has no place in a file.
+        let message = match (error.at.file.is_empty(), &error.hint) {
+            (false, _) => error.to_string(),
+            (true, None) => error.message.clone(),
+            (true, Some(hint)) => format!("{}\n  help: {hint}", error.message),
+        };
+        Self::Error { id, message, excerpt }
     }
 }
 

@@ -149,7 +149,13 @@ impl Window<'_> {
         // What cannot be shown leaves the view as it is.
         let session = wish.applied(self.base(&wish, &loaded)?)?;
         let pace = self.shot.as_ref().and_then(|shot| shot.pace);
-        (self.shot, self.wish) = (Some(Shot::new(session, pace)), Some(wish));
+        let shot = match Shot::new(session.clone(), pace) {
+            Ok(shot) => shot,
+            // Perhaps there is memory for it in place of the last one.
+            Err(_) if self.shot.take().is_some() => Shot::new(session, pace)?,
+            Err(error) => return Err(error),
+        };
+        (self.shot, self.wish) = (Some(shot), Some(wish));
         Ok(())
     }
 

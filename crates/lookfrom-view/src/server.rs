@@ -22,7 +22,8 @@ use crate::Settings;
 use crate::assets::asset;
 use crate::document::Document;
 use crate::message::LONGEST;
-use crate::window;
+use crate::patience::{self, PatientListener};
+use crate::window::{self, Counted};
 
 /// The most windows at once.
 const MOST_WINDOWS: usize = 16;
@@ -43,6 +44,7 @@ pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
     house: Arc<House>,
+    patience: Duration,
 }
 
 /// What all requests share.
@@ -68,7 +70,14 @@ impl Server {
         let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
         let (host, windows) = (settings.host, Arc::default());
         let house = Arc::new(House { token, host, document: Document::new(settings), windows });
-        Ok(Self { listener, address, house })
+        Ok(Self { listener, address, house, patience: patience::PATIENCE })
+    }
+
+    /// The same with another longest silence of a client: one that sends nothing, not even answers to pings, or reads nothing
+    /// for so long is dropped.
+    #[must_use]
+    pub fn with_patience(self, patience: Duration) -> Self {
+        Self { patience, ..self }
     }
 
     /// The address of the page, with the token.
@@ -92,7 +101,7 @@ impl Server {
     /// # Errors
     /// Where the system refuses to listen or to start threads.
     pub fn run(self, stopped: impl Fn() -> bool + Sync) -> io::Result<()> {
-        let Self { listener, house, .. } = self;
+        let Self { listener, house, patience, .. } = self;
         listener.set_nonblocking(true)?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::scope(|scope| {
@@ -101,8 +110,9 @@ impl Server {
             let windows = house.windows.clone();
             let served = runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener)?;
+                let listener = PatientListener { listener, patience };
                 tokio::select! {
-                    served = axum::serve(listener, router(house.clone())) => served,
+                    served = axum::serve(listener, router(house.clone(), patience)) => served,
                     () = ended(&stopped) => Ok(()),
                 }
             });
@@ -123,10 +133,10 @@ async fn ended(stopped: &impl Fn() -> bool) {
     }
 }
 
-fn router(house: Arc<House>) -> Router {
+fn router(house: Arc<House>, patience: Duration) -> Router {
     Router::new()
         .route("/", get(page))
-        .route("/socket", get(socket))
+        .route("/socket", get(move |state, query, upgrade| socket(state, query, upgrade, patience)))
         .route("/{*name}", get(file))
         .layer(middleware::from_fn_with_state(house.clone(), guarded))
         .with_state(house)
@@ -201,17 +211,18 @@ async fn socket(
     State(house): State<Arc<House>>,
     Query(query): Query<Token>,
     upgrade: WebSocketUpgrade,
+    patience: Duration,
 ) -> Response {
     if !house.knows(&query.token) {
         return no_token();
     }
-    if house.windows.load(Ordering::Acquire) >= MOST_WINDOWS {
+    let Some(counted) = Counted::new(&house.windows, MOST_WINDOWS) else {
         let message = format!("{MOST_WINDOWS} windows are open: close one\n");
         return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
-    }
+    };
     // Longer messages than the longest are read, so that they can be answered, up to a limit.
     let upgrade = upgrade.max_message_size(16 * LONGEST).max_frame_size(16 * LONGEST);
-    upgrade.on_upgrade(move |socket| window::run(socket, house))
+    upgrade.on_upgrade(move |socket| window::run(socket, house, counted, patience / 3))
 }
 
 fn no_token() -> Response {

@@ -6,6 +6,7 @@ use lookfrom::film::Film;
 use lookfrom::render::{Progress, SampleId, StopCriteria, StopReason};
 use lookfrom::session::{MOST_SAMPLES, Session};
 use lookfrom_scene::Result;
+use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 
 use crate::cost::CostMap;
@@ -44,9 +45,12 @@ pub(crate) struct Shot {
     /// When a denoised picture may be made again: it takes time that the render then has not.
     pub(crate) denoised_until: Option<Instant>,
     pub(crate) stage: Stage,
+    /// The memory of the film and its pictures.
+    _memory: Reservation,
 }
 
 pub(crate) struct Coarse {
+    _memory: Reservation,
     pub(crate) scale: u32,
     pub(crate) session: Session,
     pub(crate) film: Film,
@@ -61,9 +65,12 @@ pub(crate) enum Stage {
 }
 
 impl Shot {
-    pub(crate) fn new(session: Session, pace: Option<f64>) -> Self {
+    /// # Errors
+    /// `Limit` where there is no memory left for it.
+    pub(crate) fn new(session: Session, pace: Option<f64>) -> Result<Self> {
+        let memory = session.room_for_picture()?;
         let scale = pace.map_or(FIRST_SCALE, |pace| scale_of(session.image(), pace));
-        Self {
+        Ok(Self {
             session,
             coarse: None,
             film: None,
@@ -75,7 +82,8 @@ impl Shot {
             pace,
             denoised_until: None,
             stage: Stage::Coarse(scale),
-        }
+            _memory: memory,
+        })
     }
 
     /// Takes over the number of samples of a wish for the same light.
@@ -101,6 +109,9 @@ impl Shot {
         image.resize(image.width.div_ceil(scale), image.height.div_ceil(scale));
         session.set_image(ImageSettings { denoise: false, ..image })?;
         session.set_settings(RenderSettings { samples: 1, ..session.settings().clone() })?;
+        // The last one is needed no more.
+        self.coarse = None;
+        let memory = session.room_for_picture()?;
         let film = Film::for_image(session.image())?;
         let pixels = film.width() as f64 * film.height() as f64;
         let started = Instant::now();
@@ -112,7 +123,7 @@ impl Shot {
             &Watch { mailbox, is_interruptible: false },
         )?;
         self.pace = Some(started.elapsed().as_secs_f64() / pixels);
-        self.coarse = Some(Coarse { scale, session, film: rendered.film });
+        self.coarse = Some(Coarse { _memory: memory, scale, session, film: rendered.film });
         self.stage = if moving { Stage::Done } else { self.after_coarse() };
         Ok(rendered.reason != StopReason::Cancelled)
     }

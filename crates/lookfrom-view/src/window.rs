@@ -2,21 +2,23 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
+use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::{SinkExt, StreamExt};
+use tokio::time::timeout;
 
 use crate::mailbox::{Letter, Mailbox, Task};
 use crate::message::{Answer, Request};
 use crate::render;
 use crate::server::House;
 
-/// Runs a window until its socket closes. However it ends, its thread is told.
-pub(crate) async fn run(socket: WebSocket, house: Arc<House>) {
+/// Runs a window until its socket closes, and pings it at an interval. However it ends, its thread is told.
+pub(crate) async fn run(socket: WebSocket, house: Arc<House>, counted: Counted, ping: Duration) {
     let mailbox = Arc::new(Mailbox::default());
     let _closing = Closing(mailbox.clone());
     house.document.add(&mailbox);
-    let counted = Counted::new(&house.windows);
     let thread = {
         let (mailbox, house) = (mailbox.clone(), house.clone());
         std::thread::Builder::new().name("window".to_owned()).spawn(move || {
@@ -30,10 +32,12 @@ pub(crate) async fn run(socket: WebSocket, house: Arc<House>) {
     }
     let (mut sink, mut stream) = socket.split();
     let sending = async {
-        while let Some(letter) = mailbox.next().await {
-            let message = match letter {
-                Letter::Text(text) => Message::Text(text.into()),
-                Letter::Binary(bytes) => Message::Binary(bytes.into()),
+        loop {
+            let message = match timeout(ping, mailbox.next()).await {
+                Ok(Some(Letter::Text(text))) => Message::Text(text.into()),
+                Ok(Some(Letter::Binary(bytes))) => Message::Binary(bytes.into()),
+                Ok(None) => return,
+                Err(_) => Message::Ping(Bytes::new()),
             };
             if sink.send(message).await.is_err() {
                 return;
@@ -73,12 +77,14 @@ impl Drop for Closing {
 }
 
 /// Counts as a window until it is dropped.
-struct Counted(Arc<AtomicUsize>);
+pub(crate) struct Counted(Arc<AtomicUsize>);
 
 impl Counted {
-    fn new(count: &Arc<AtomicUsize>) -> Self {
-        count.fetch_add(1, Ordering::AcqRel);
-        Self(count.clone())
+    /// One more window, unless there are so many.
+    pub(crate) fn new(count: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let more = |windows| (windows < most).then_some(windows + 1);
+        count.fetch_update(Ordering::AcqRel, Ordering::Acquire, more).ok()?;
+        Some(Self(count.clone()))
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use glam::DVec3;
 use lookfrom::session::Session;
-use lookfrom_scene::camera::{Camera, Projection};
+use lookfrom_scene::camera::{Camera, Look, Projection, View};
 
 use crate::message::Wish;
 
@@ -11,7 +12,15 @@ use crate::message::Wish;
 pub(crate) fn toml(session: &Session, wish: &Wish) -> String {
     let (image, settings) = (session.image(), session.settings());
     let mut text = String::from("[camera]\n");
-    if let Some(look) = session.camera().look(session.info().bounds.center()) {
+    let middle = session.info().bounds.center();
+    let look = session.camera().look(middle);
+    if look.is_none() {
+        // A matrix that mirrors or shears, as that of many scenes of pbrt.
+        text.push_str(
+            "# The scene's own picture is mirrored or sheared, which the keys of a camera cannot say.\n",
+        );
+    }
+    if let Some(look) = look.or_else(|| nearest_look(session.camera(), middle)) {
         for (name, vector) in [("lookfrom", look.lookfrom), ("lookat", look.lookat), ("up", look.up)] {
             let _ = writeln!(text, "{name} = [{}]", joined(vector.to_array(), ", "));
         }
@@ -87,6 +96,20 @@ fn tonemap(session: &Session, wish: &Wish) -> &'static str {
     wish.tonemap(own).unwrap_or(own).word()
 }
 
+/// Position and direction of a camera that is given by a matrix, without what else the matrix does.
+fn nearest_look(camera: &Camera, middle: DVec3) -> Option<Look> {
+    let View::Matrix(matrix) = camera.view else { return None };
+    let lookfrom = matrix.w_axis.truncate();
+    let forward = matrix.z_axis.truncate().try_normalize()?;
+    let distance = (middle - lookfrom).dot(forward);
+    let distance = if distance > 0.0 { distance } else { 1.0 };
+    Some(Look {
+        lookfrom,
+        lookat: lookfrom + forward * distance,
+        up: matrix.y_axis.truncate().try_normalize()?,
+    })
+}
+
 /// The number of a projection, with its key.
 fn projection(camera: &Camera) -> Option<(&'static str, f64)> {
     match camera.projection {
@@ -97,7 +120,8 @@ fn projection(camera: &Camera) -> Option<(&'static str, f64)> {
 }
 
 fn joined(numbers: [f64; 3], between: &str) -> String {
-    numbers.map(|number| number.to_string()).join(between)
+    // A negative zero is told as 0.
+    numbers.map(|number| (number + 0.0).to_string()).join(between)
 }
 
 /// A word for a POSIX shell.

@@ -2,11 +2,15 @@
 
 mod support;
 
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
 use lookfrom::inspect;
 use lookfrom::render::SampleId;
 use lookfrom::session::{Format, Options, Session};
 use lookfrom_scene::image::read_exr;
-use lookfrom_scene::{Disk, LoadContext, json};
+use lookfrom_scene::{Budget, Disk, LoadContext, json};
 use serde_json::{Value, json};
 use support::{SCENE, Served, view, view_from};
 
@@ -422,4 +426,102 @@ fn a_picture_is_compared_with_its_reference() {
     page.say(&wish);
     let error = page.text("error");
     assert!(error["message"].as_str().is_some_and(|text| text.contains("64 × 48")), "{error}");
+}
+
+#[test]
+fn a_scene_that_is_not_there_yet_is_shown_when_it_is_saved() {
+    let served = Served::with("unsaved", None, Options::default(), |_| None, Duration::from_secs(60));
+    let mut page = served.open();
+    let error = page.text("error");
+    assert!(error["message"].as_str().unwrap().contains("as soon as it is saved"), "{error}");
+    served.write(SCENE);
+    assert_eq!(page.text("scene")["type"], "scene");
+}
+
+#[test]
+fn windows_take_their_memory_from_the_budget() {
+    let options = || Options { budget: Budget::new(4 << 20), ..Options::default() };
+    let served = Served::with("memory", Some(SCENE), options(), |_| None, Duration::from_secs(60));
+    let mut page = served.open();
+    page.text("scene");
+    // A film of 64 × 48 pixels has room, one of 640 × 480 has not.
+    page.say(&json!({"type": "view", "id": 1, "size": [640, 480]}));
+    let error = page.text("error");
+    assert!(error["message"].as_str().unwrap().contains("memory"), "{error}");
+    page.say(&view(2));
+    page.finished(2);
+}
+
+#[test]
+fn no_more_windows_than_the_limit_are_opened_at_once() {
+    let served = Served::new("limit", SCENE);
+    let key = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: \
+               dGhlIHNhbXBsZSBub25jZQ==\r\n";
+    let request =
+        format!("GET /socket?token={} HTTP/1.1\r\nHost: {}\r\n{key}\r\n", served.token(), served.host());
+    let mut streams: Vec<TcpStream> =
+        (0..40).map(|_| TcpStream::connect(served.host()).expect("it listens")).collect();
+    for stream in &mut streams {
+        stream.write_all(request.as_bytes()).expect("it reads");
+    }
+    let mut opened = 0;
+    for stream in &streams {
+        let mut line = String::new();
+        BufReader::new(stream).read_line(&mut line).expect("it answers");
+        assert!(line.contains("101") || line.contains("503"), "{line}");
+        opened += usize::from(line.contains("101"));
+    }
+    assert_eq!(opened, 16);
+}
+
+#[test]
+fn silent_clients_are_dropped_and_resting_pages_are_not() {
+    let patience = Duration::from_millis(600);
+    let served = Served::with("silent", Some(SCENE), Options::default(), |_| None, patience);
+    let mut page = served.open();
+    page.text("scene");
+    let resting = std::thread::spawn(move || {
+        page.rest(4 * patience);
+        page
+    });
+    // One that sends nothing, one that stops in the middle of a request.
+    for sent in ["", "GET / HTTP/1.1\r\nHost: "] {
+        let mut stream = TcpStream::connect(served.host()).expect("it listens");
+        stream.write_all(sent.as_bytes()).expect("it reads");
+        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a timeout");
+        // Its end, not our own timeout.
+        assert_eq!(stream.read(&mut [0; 512]).expect("it is closed"), 0, "{sent:?}");
+    }
+    // One whose program does not even answer pings: the socket is there, and nobody reads it.
+    let silent = served.open();
+    served.wait_for_windows(1);
+    drop(silent);
+    let mut page = resting.join().expect("it does not panic");
+    page.say(&view(1));
+    page.finished(1);
+}
+
+/// pbrt's cameras may be mirrored or sheared, which no key of ours says; the rest of the view is told all the same.
+#[test]
+fn a_sheared_camera_is_told_as_toml() {
+    let pbrt = "Scale 1 2 1\nLookAt 0 1 -5  0 1 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\nLightSource \
+                \"distant\"\nTranslate 0 1 0\nShape \"sphere\"\n";
+    let served = Served::new("sheared", SCENE);
+    let scene = served.scene.with_extension("pbrt");
+    std::fs::write(&scene, pbrt).expect("a temporary file");
+    let session = Session::open(&scene, &Options::default()).expect("a scene");
+    assert!(session.camera().look(session.info().bounds.center()).is_none(), "its matrix is one of ours");
+    let served = Served::of(&scene);
+    let mut page = served.open();
+    page.say(&view(1));
+    page.frame("picture");
+    page.say(&json!({"type": "words", "id": 2}));
+    let words = page.text("words");
+    let toml = words["toml"].as_str().unwrap();
+    for key in ["lookfrom = [", "lookat = [", "up = [", "fov = ", "sheared"] {
+        assert!(toml.contains(key), "{key}: {toml}");
+    }
+    // It is read as a scene.
+    let text = format!("{toml}\n[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\n");
+    Session::from_bytes("words.toml", text.into_bytes(), &Options::default()).expect("a scene");
 }

@@ -64,20 +64,46 @@ impl Served {
         text: &str,
         reference: impl FnOnce(&Path) -> Option<PathBuf>,
     ) -> Self {
+        let options = Options::default();
+        Self::with(name, Some(text), options, reference, Duration::from_secs(60))
+    }
+
+    /// The same with options and a longest silence; without a text there is no file yet.
+    pub(crate) fn with(
+        name: &str,
+        text: Option<&str>,
+        options: Options,
+        reference: impl FnOnce(&Path) -> Option<PathBuf>,
+        patience: Duration,
+    ) -> Self {
         let folder = std::env::temp_dir().join(format!("lookfrom-view-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         let scene = folder.join("scene.toml");
-        std::fs::write(&scene, text).expect("a temporary file");
+        match text {
+            Some(text) => std::fs::write(&scene, text).expect("a temporary file"),
+            // One that an earlier run has left.
+            None => drop(std::fs::remove_file(&scene)),
+        }
+        let reference = reference(&scene);
+        Self::start(scene, options, reference, patience)
+    }
+
+    /// Serves a scene file that is there; its folder ends with the server.
+    pub(crate) fn of(scene: &Path) -> Self {
+        Self::start(scene.to_owned(), Options::default(), None, Duration::from_secs(60))
+    }
+
+    fn start(scene: PathBuf, options: Options, reference: Option<PathBuf>, patience: Duration) -> Self {
         let settings = Settings {
             scene: scene.clone(),
-            options: Options::default(),
+            options,
             environment: None,
-            reference: reference(&scene),
+            reference,
             typed: Vec::new(),
             host: Ipv4Addr::LOCALHOST.into(),
             port: 0,
         };
-        let server = Server::bind(settings).expect("a free port");
+        let server = Server::bind(settings).expect("a free port").with_patience(patience);
         let (url, windows) = (server.url(), server.windows());
         let stopped = Arc::new(AtomicBool::new(false));
         let thread = {
@@ -172,7 +198,14 @@ impl Page {
 
     /// The next message; `None` once the socket is closed.
     pub(crate) fn hear(&mut self) -> Option<Heard> {
-        let next = self.runtime.block_on(async { tokio::time::timeout(PATIENCE, self.socket.next()).await });
+        let socket = &mut self.socket;
+        let mut heard = async || loop {
+            match socket.next().await {
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => {}
+                other => return other,
+            }
+        };
+        let next = self.runtime.block_on(async { tokio::time::timeout(PATIENCE, heard()).await });
         match next.expect("an answer in time") {
             Some(Ok(Message::Text(text))) => {
                 Some(Heard::Text(serde_json::from_str(&text).expect("it is JSON")))
@@ -184,6 +217,14 @@ impl Page {
             }
             _ => None,
         }
+    }
+
+    /// Does nothing for a time but what every browser does by itself: it answers pings.
+    pub(crate) fn rest(&mut self, time: Duration) {
+        let socket = &mut self.socket;
+        let mut pings = async || while let Some(Ok(Message::Ping(_))) = socket.next().await {};
+        let rested = self.runtime.block_on(async { tokio::time::timeout(time, pings()).await });
+        assert!(rested.is_err(), "the server has hung up");
     }
 
     /// The next text of a type; others are passed over.
