@@ -41,6 +41,8 @@ pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirection
 pub use svg::{SvgView, svg};
 pub use text::{Excerpt, Part, Selection};
 
+pub use crate::light::derivation::Derivation;
+
 /// Traces one sample and reports all steps of its computation.
 pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     trace(renderer, id, true)
@@ -97,10 +99,13 @@ fn sensor(renderer: &Renderer, light: Spectrum, lanes: &SpectralMode) -> SensorR
     // The one factor of all channels, by the brightest.
     let brightest = |rgb: [f32; 3]| rgb.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
     let [measured, limited] = [renderer.measured(light, lanes), renderer.rgb(light, lanes)].map(brightest);
+    let changes =
+        settings.camera.is_some() || settings.imaging_ratio != 1.0 || settings.white_balance.is_some();
     SensorReport {
         camera: settings.camera.map(CameraSensor::name),
         imaging_ratio: settings.imaging_ratio,
         white_balance: settings.white_balance,
+        matrix: (changes && matches!(lanes, SpectralMode::Rgb)).then(|| *renderer.sensor().balanced_matrix()),
         max_component: settings.max_component,
         scaled_by: if measured == limited { 1.0 } else { limited / measured },
     }

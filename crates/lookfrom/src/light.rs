@@ -6,6 +6,7 @@
 mod area;
 mod choice;
 mod cone;
+pub(crate) mod derivation;
 mod environment;
 mod picture;
 mod portal;

@@ -17,7 +17,7 @@ mod triangle;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
-use lookfrom_bvh::{Hit, Point};
+use lookfrom_bvh::{Affine, Hit, Point};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
@@ -160,4 +160,10 @@ impl Primitives {
             Self::Curves(curves) => curves.point(index, [hit.u, hit.v], near, direction),
         }
     }
+}
+
+/// The rows of the linear part of a transform.
+fn rows(transform: &Affine) -> [[f64; 3]; 3] {
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| transform.vector(axis));
+    std::array::from_fn(|k| [x[k], y[k], z[k]])
 }

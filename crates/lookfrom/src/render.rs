@@ -178,7 +178,7 @@ impl Renderer {
     /// As [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
     pub fn of_scene(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
-        let subject = Subject::of_scene(&scene);
+        let subject = Subject::of_scene(&scene, scene.bounds());
         let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;
         renderer.check_view(&subject, warnings);
         Ok(renderer)

@@ -231,7 +231,7 @@ impl Session {
         scene.render.samples = range.end;
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
-        let subject = Subject::of_scene(&scene);
+        let subject = Subject::of_scene(&scene, bounds);
         let (world, memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
         let mut world = Arc::new(world);
         let mut renderer = Renderer::new(world.clone(), view, settings).map_err(in_file(path))?;
@@ -273,6 +273,12 @@ impl Session {
             session.set_turn(degrees)?;
         }
         session.renderer.check_view(&subject, &mut session.warnings);
+        for warning in &mut session.warnings {
+            // What was added to the scene has no place in its file.
+            if warning.at.file.is_empty() {
+                warning.at = Location::file(path);
+            }
+        }
         session.info.build = started.elapsed();
         Ok(session)
     }
@@ -407,8 +413,9 @@ impl Session {
         provenance.check_same(&file.provenance)?;
         let FilmFile { mut film, provenance: before } = file;
         if !film.is_for(self.image()) {
-            let message = "a film of another size, crop or other layers than this picture".to_owned();
-            return Err(Error::invalid(&Location::default(), message));
+            let message = "this film has other pixels than the picture, or other sums";
+            return Err(Error::invalid(&Location::default(), message)
+                .hint("give --size, --crop, --layers, --light-path, --background and --denoise as when it was begun"));
         }
         let settings = self.settings();
         let times = if settings.allocation == Allocation::Adaptive { MOST_TIMES_MEAN } else { 1 };

@@ -436,3 +436,56 @@ fn rays_that_pass_holes_are_shown() {
         assert_eq!(longest, 3, "{integrator:?}: past both sheets to the floor");
     }
 }
+
+/// Attributes of the elements of a drawing that contain a text, in order.
+fn attributes(drawing: &str, mark: &str, names: &[&str]) -> Vec<Vec<f64>> {
+    let value = |line: &str, name: &str| -> f64 {
+        let rest = line.split(&format!(" {name}=\"")).nth(1).unwrap_or_else(|| panic!("no {name}: {line}"));
+        rest.split('"').next().expect("its end").parse().expect("a number")
+    };
+    let lines = drawing.lines().filter(|line| line.contains(mark));
+    lines.map(|line| names.iter().map(|name| value(line, name)).collect()).collect()
+}
+
+#[test]
+fn the_ring_is_around_the_pixel_whatever_the_lens() {
+    for (name, lens) in [("a pinhole", ""), ("a lens", "aperture = 0.4\nfocus_distance = 5\n")] {
+        let text = ROOM.replace("fov = 40\n", &format!("fov = 40\n{lens}"));
+        let compiled = Compiled::new(scene(&text));
+        let renderer = compiled.renderer();
+        for pixel in [[3, 4], [40, 25], [24, 16]] {
+            let inspection = inspect(&renderer, SampleId { pixel, sample: 2 });
+            let drawing = svg(&renderer, &inspection, SvgView::Camera).expect("a drawing");
+            let rings = attributes(&drawing, "<circle ", &["cx", "cy", "r"]);
+            let ring = rings.iter().find(|ring| ring[2] == 9.0).expect("a ring");
+            // The panel is the image plane, 976 units wide.
+            let scale = 976.0 / 48.0;
+            let [x, y] = [inspection.camera.p_k[0] * scale, (32.0 - inspection.camera.p_k[1]) * scale];
+            assert!((ring[0] - x).abs() < 0.2 && (ring[1] - y).abs() < 0.2, "{name}: {ring:?}, {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn parallel_cameras_are_drawn_as_boxes() {
+    let edges = |projection: &str| {
+        let compiled = Compiled::new(scene(&ROOM.replace("fov = 40\n", projection)));
+        let renderer = compiled.renderer();
+        let inspection = inspect(&renderer, SampleId { pixel: [24, 16], sample: 0 });
+        let drawing = svg(&renderer, &inspection, SvgView::Side).expect("a drawing");
+        let lines = drawing.lines().filter(|line| line.contains("stroke-opacity=\"0.6\""));
+        let points = |line: &str| -> Vec<f64> {
+            let numbers = line.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+            numbers.filter(|word| word.contains('.')).filter_map(|word| word.parse().ok()).take(4).collect()
+        };
+        lines.map(points).collect::<Vec<_>>()
+    };
+    let slope = |line: &Vec<f64>| (line[3] - line[1]).atan2(line[2] - line[0]);
+    let spread = |lines: Vec<Vec<f64>>| {
+        assert_eq!(lines.len(), 4, "{lines:?}");
+        let slopes: Vec<f64> = lines.iter().map(slope).collect();
+        slopes.iter().fold(f64::MIN, |a, b| a.max(*b)) - slopes.iter().fold(f64::MAX, |a, b| a.min(*b))
+    };
+    assert!(spread(edges("fov = 40\n")) > 0.3);
+    assert!(spread(edges("projection = \"orthographic\"\nheight = 3\n")) < 0.02);
+}

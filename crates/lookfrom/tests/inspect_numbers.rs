@@ -6,7 +6,9 @@ mod support;
 use std::collections::BTreeSet;
 
 use glam::{DMat3, DVec3, Vec3};
-use lookfrom::inspect::{Candidate, Inspection, LightReport, RayReport, Test, TestNumbers, inspect};
+use lookfrom::inspect::{
+    Candidate, Derivation, Inspection, LightReport, RayReport, Test, TestNumbers, inspect,
+};
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::Integrator;
 use support::{Compiled, own_scene};
@@ -122,6 +124,74 @@ fn quadratic(test: &TestNumbers, f: DVec3, d: DVec3, radius: f64, what: &str) {
     equals(test, "t₂ = C/q", c / q, 0.0, what);
 }
 
+/// A ray in the space of a primitive, which follows from the ray and the rows of the way there.
+fn in_space(test: &TestNumbers, [a, d]: [DVec3; 2], space: &str, what: &str) -> (DVec3, DVec3) {
+    let rows = [1, 2, 3].map(|row| vector(test, &format!("to the {space}, row {row}")));
+    let there = |v: DVec3| DVec3::from_array(rows.map(|row| row.dot(v)));
+    let at = vector(test, &format!("{space} at"));
+    let [a_there, d_there] = ["a", "d"].map(|name| vector(test, &format!("{name} in the {space}")));
+    let scale = rows.map(DVec3::length).iter().sum::<f64>() * (a.length() + at.length() + d.length());
+    for k in 0..3 {
+        near(a_there[k], there(a - at)[k], scale, what);
+        near(d_there[k], there(d)[k], scale, what);
+    }
+    (a_there, d_there)
+}
+
+/// The light that arrives, or its density, by its derivation.
+fn derivation(of: &Derivation, arrives: &[f32], pdf: f32, what: &str) {
+    let operand = |name: &str| {
+        let found = of.numbers.iter().find(|(known, _)| *known == name);
+        found.unwrap_or_else(|| panic!("{what}: no {name} in {of:?}")).1.clone()
+    };
+    let one = |name: &str| operand(name)[0];
+    let pi = std::f64::consts::PI;
+    if of.formula.starts_with("L = I") {
+        let mut share = one("fall-off");
+        if of.formula.contains("· S") {
+            let bounds = operand("cos outer, inner");
+            let x = ((one("cos to the axis") - bounds[0]) / (bounds[1] - bounds[0])).clamp(0.0, 1.0);
+            assert!((one("S") - x * x * (3.0 - 2.0 * x)).abs() < 1e-4, "{what}: {of:?}");
+            share *= one("S");
+        }
+        for (arrives, intensity) in arrives.iter().zip(operand("I")) {
+            single(*arrives, intensity * share, what);
+        }
+    } else {
+        let expected = match of.formula {
+            formula if formula.starts_with("pdf = P d²") => {
+                one("P") * one("d").powi(2) / (one("A") * one("cos at the light"))
+            }
+            formula if formula.starts_with("pdf = P / Ω") => one("P") / one("Ω"),
+            _ => {
+                let sin2 = (one("R") / one("D")).powi(2);
+                1.0 / (2.0 * pi * (sin2 / (1.0 + (1.0 - sin2).sqrt())))
+            }
+        };
+        let off = (f64::from(pdf) - expected).abs();
+        assert!(off <= 2e-5 * expected, "{what}: {pdf}, by its operands {expected}: {of:?}");
+    }
+}
+
+/// The probability of a light, by its derivation.
+fn choice(of: &Derivation, probability: f32, what: &str) {
+    let all = |name: &'static str| of.numbers.iter().filter(move |(known, _)| *known == name);
+    let one = |name: &'static str| all(name).next().map(|(_, values)| values[0]);
+    let expected = match (one("share"), one("listed"), one("trees")) {
+        (Some(share), ..) => share,
+        (_, Some(listed), Some(trees)) if of.formula.starts_with("P = 1") => 1.0 / (listed + trees),
+        (_, Some(listed), Some(trees)) => {
+            all("importances")
+                .map(|(_, pair)| (pair[0] / (pair[0] + pair[1])).clamp(1.0 / 65536.0, 1.0 - 1.0 / 65536.0))
+                .product::<f64>()
+                * trees
+                / (listed + trees)
+        }
+        _ => panic!("{what}: {of:?}"),
+    };
+    assert!((f64::from(probability) - expected).abs() <= 1e-4 * expected, "{what}: {probability}: {of:?}");
+}
+
 /// The numbers of a candidate, from its inputs. Returns t where there is one hit with the plane.
 fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
     let what = &format!("{what}: {}", candidate.name);
@@ -145,7 +215,7 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
         Test::Triangle(_) => triangle(test, a, d, what),
         Test::Sphere(_) => quadratic(test, a - vector(test, "c"), d, find(test, "R")[0], what),
         Test::Quadric(_) => {
-            let (a, d) = (vector(test, "a in the quadric"), vector(test, "d in the quadric"));
+            let (a, d) = in_space(test, [a, d], "quadric", what);
             let [is_flat, is_round] = [has(test, "R of the hole"), number(test, "z at t₁").is_some()];
             if is_flat {
                 equals(test, "t = (z − a_z)/d_z", (find(test, "z")[0] - a.z) / d.z, 0.0, what);
@@ -180,6 +250,17 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
         }
         Test::Patch(_) => {
             let [p00, p10, p01, p11] = ["P00", "P10", "P01", "P11"].map(|name| vector(test, name));
+            let c0 = (p00 - a).cross(d).dot(p01 - p00);
+            let c2 = -(p10 - p00).cross(p11 - p01 - p10 + p00).dot(d);
+            let c1 = (p10 - a).cross(d).dot(p11 - p10) - c0 - c2;
+            let scale = 1e2 * (a.length() + p11.length()).powi(2) * d.length();
+            equals(test, "a = (P00−a)×d·(P01−P00)", c0, scale, what);
+            equals(test, "b = (P10−a)×d·(P11−P10)−a−c", c1, scale, what);
+            equals(test, "c = −(P10−P00)×(P11−P01−P10+P00)·d", c2, scale, what);
+            let discriminant = number(test, "b² − 4ac").expect("shown");
+            let is_missed = candidate.verdict.starts_with("rejected");
+            assert!(discriminant >= 0.0 || candidate.verdict.contains("no real root"), "{what}");
+            assert!(!is_missed || candidate.verdict.contains("u₁") || discriminant < 0.0, "{what}");
             for [u, v, t] in [["u₁ = q/c", "v₁", "t₁"], ["u₂ = a/q", "v₂", "t₂"]] {
                 let (Some(u), Some(v), Some(t)) = (number(test, u), number(test, v), number(test, t)) else {
                     continue;
@@ -197,7 +278,7 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
             if let (Some(distance), Some(half)) =
                 (number(test, "|B − a − t d|"), number(test, "half the width"))
             {
-                let (a, d) = (vector(test, "a in the curve"), vector(test, "d in the curve"));
+                let (a, d) = in_space(test, [a, d], "curve", what);
                 let p = ["P0", "P1", "P2", "P3"].map(|name| vector(test, name));
                 let u = find(test, "u")[0];
                 let v = 1.0 - u;
@@ -205,7 +286,25 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
                 let t = (b - a).dot(d) / d.dot(d);
                 equals(test, "t", t, a.length() / d.length(), what);
                 near(distance, (b - a).reject_from(d).length(), a.length() + b.length(), what);
-                assert!(distance <= 1.001 * half, "{what}: {distance} is beyond {half}");
+                let width = find(test, "width from, to");
+                let mut visible = v * width[0] + u * width[1];
+                if has(test, "N at u = 0") {
+                    // Spherical interpolation of unit vectors.
+                    let [first, last] =
+                        ["N at u = 0", "N at u = 1"].map(|name| vector(test, name).normalize());
+                    let angle = first.dot(last).clamp(-1.0, 1.0).acos();
+                    let n = match angle.sin() == 0.0 {
+                        true => first,
+                        false => ((v * angle).sin() * first + (u * angle).sin() * last) / angle.sin(),
+                    };
+                    visible *= n.dot(d.normalize()).abs();
+                }
+                assert!(
+                    (half - 0.5 * visible).abs() <= 1e-7 * half.abs() + 1e-9,
+                    "{what}: {half}, {visible}"
+                );
+                let is_hit = candidate.verdict.starts_with("hit");
+                assert!(!is_hit || distance <= 1.001 * half, "{what}: {distance} is beyond {half}");
             }
         }
         test => panic!("{what}: {test:?}"),
@@ -252,6 +351,9 @@ fn light(light: &LightReport, ray: &RayReport, what: &str) {
     let n_dot_l = light.n_dot_l.expect("shown");
     single(n_dot_l, n.dot(wi), what);
     single(light.n_dot_h.expect("shown"), n.dot(h), what);
+    if let Some(of) = &light.derivation {
+        derivation(of, &light.arrives.lanes, light.pdf.expect("shown"), what);
+    }
     let share = ray.throughput_there.as_ref().unwrap_or(&ray.throughput);
     let n_dot_h = f64::from(light.n_dot_h.expect("shown"));
     for lane in 0..share.len() {
@@ -323,6 +425,17 @@ fn every_number_follows_from_what_is_printed() {
     for (at, inspection) in inspections() {
         for ray in &inspection.rays {
             let what = format!("{at}, ray {}", ray.address);
+            if let Some(sampled) = &ray.light_sample {
+                let of = sampled.choice.as_ref().unwrap_or_else(|| panic!("{what}: {sampled:?}"));
+                choice(of, sampled.probability, &what);
+                told.insert("choice".to_owned());
+                if let Some(sample) = &sampled.sample
+                    && let Some(of) = &sample.derivation
+                {
+                    derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);
+                    told.insert(of.formula[..9].to_owned());
+                }
+            }
             for of_ray in &ray.candidates {
                 candidate(of_ray, ray, &what);
                 let kind = format!("{:?}", of_ray.test);
@@ -360,6 +473,73 @@ fn every_number_follows_from_what_is_printed() {
         "refracted",
         "transmitted",
         "through",
+        "choice",
+        "pdf = P d",
+    ] {
+        assert!(told.contains(expected), "{expected:?} is not in {told:?}");
+    }
+}
+
+/// A ribbon, a bilinear patch, a sphere and lights of all kinds that no scene of the repository has together.
+const ODD: &str = r#"
+LookAt 0 1 -6  0 1 0  0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb" "integer xresolution" 36 "integer yresolution" 24 "string filename" "odd.exr"
+Integrator "path" "string lightsampler" "bvh"
+WorldBegin
+LightSource "spot" "point3 from" [ 0 5 -2 ] "point3 to" [ 0 0 0 ] "float coneangle" 60 "float conedeltaangle" 30
+LightSource "point" "point3 from" [ 3 4 -4 ] "rgb I" [ 9 8 7 ]
+LightSource "distant" "rgb L" [ 1 1 1 ]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 5 5 5 ]
+    Translate -3 3 0
+    Shape "sphere" "float radius" 0.5
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 5 5 5 ]
+    Shape "trianglemesh" "point3 P" [ 3 0 0  3 3 0  4 1 -2 ] "integer indices" [ 0 1 2 ]
+AttributeEnd
+AttributeBegin
+    Rotate 20 1 2 3
+    Shape "curve" "string type" "ribbon" "point3 P" [ -1 0 0  -0.5 1 0  0 1 0.5  1 2 0 ] "normal N" [ 0 0 -1  1 0 -1 ] "float width" 0.6
+    Shape "cylinder" "float radius" 0.4 "float zmin" -1 "float zmax" 1 "float phimax" 200
+AttributeEnd
+Shape "bilinearmesh" "point3 P" [ -4 -1 -4  4 -1 -4  -4 -1 4  4 -0.5 4 ]
+"#;
+
+#[test]
+fn so_do_those_of_ribbons_spots_and_solid_angles() {
+    let mut told: BTreeSet<String> = BTreeSet::new();
+    let options = lookfrom::session::Options { samples: Some(4), ..Default::default() };
+    let session = lookfrom::session::Session::from_bytes("odd.pbrt", ODD.into(), &options).expect("a scene");
+    for (x, y) in (0..24).flat_map(|y| (0..36).map(move |x| (x, y))) {
+        let inspection = inspect(session.renderer(), SampleId { pixel: [x, y], sample: (x + y) % 4 });
+        for ray in &inspection.rays {
+            let what = format!("at {x} {y}, ray {}", ray.address);
+            for of_ray in &ray.candidates {
+                candidate(of_ray, ray, &what);
+                let test = of_ray.test.numbers();
+                told.extend(has(test, "N at u = 0").then(|| format!("ribbon {}", of_ray.is_nearest)));
+                let reasons = of_ray.verdict.strip_prefix("rejected: ").into_iter();
+                reasons.for_each(|reason| {
+                    assert!(!reason.contains("outside of the primitive"), "{what}: {reason}");
+                });
+            }
+            let Some(sampled) = &ray.light_sample else { continue };
+            choice(sampled.choice.as_ref().expect("a derivation"), sampled.probability, &what);
+            let Some(sample) = &sampled.sample else { continue };
+            let Some(of) = &sample.derivation else { continue };
+            derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);
+            told.insert(of.formula.chars().take(22).collect());
+        }
+    }
+    for expected in [
+        "ribbon true",
+        "ribbon false",
+        "L = I · fall-off(d)",
+        "L = I · fall-off(d) · ",
+        "pdf = P / Ω: a directi",
+        "pdf = 1 / (2π (1 − cos",
     ] {
         assert!(told.contains(expected), "{expected:?} is not in {told:?}");
     }

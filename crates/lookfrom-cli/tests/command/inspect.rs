@@ -107,7 +107,7 @@ fn parts_of_an_inspection() {
     // What belongs to each part, and to no other.
     let words = [
         ("camera", "P_world = "),
-        ("tests", "nodes of the BVH"),
+        ("tests", " of the BVH, culls "),
         ("lights", "samples one light"),
         ("sums", "bit for bit"),
     ];

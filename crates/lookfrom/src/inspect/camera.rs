@@ -1,5 +1,7 @@
 //! Report on the camera: each matrix from the pixel to the world, each product, each point.
 
+use std::f64::consts::{PI, TAU};
+
 use glam::{DMat4, DVec4};
 use lookfrom_scene::camera::Projection;
 
@@ -68,14 +70,41 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
 
 /// The way from the pixel to a direction where the camera sees all around: no matrix of an image plane.
 fn mapping(camera: &Camera, ray: &CameraRay) -> Option<SphereMapping> {
-    let does = match camera.projection {
-        Projection::Perspective { .. } | Projection::Orthographic { .. } => return None,
-        Projection::Equirectangular | Projection::EquirectangularPbrt => {
-            "u is the angle around, v the angle up: longitude and latitude"
-        }
-        Projection::Octahedral => "the square is an octahedron unfolded, and that is blown up to a sphere",
-    };
     let [u, v] = [0, 1].map(|k| ray.p_k[k] / f64::from(camera.size[k]));
+    let (does, formula, numbers) = match camera.projection {
+        Projection::Perspective { .. } | Projection::Orthographic { .. } => return None,
+        Projection::Equirectangular => (
+            LONGITUDE_LATITUDE,
+            "θ = π (1 − v), φ = 2π (u − ½); (−sin θ sin φ, cos θ, sin θ cos φ)",
+            vec![("θ", PI * (1.0 - v)), ("φ", TAU * (u - 0.5))],
+        ),
+        Projection::EquirectangularPbrt => (
+            LONGITUDE_LATITUDE,
+            "θ = π (1 − v), φ = 2π u; (−sin θ cos φ, cos θ, sin θ sin φ)",
+            vec![("θ", PI * (1.0 - v)), ("φ", TAU * u)],
+        ),
+        Projection::Octahedral => {
+            let [x, y] = [2.0 * u - 1.0, 1.0 - 2.0 * v];
+            let s = 1.0 - x.abs() - y.abs();
+            let r = 1.0 - s.abs();
+            let phi = if r == 0.0 { 1.0 } else { (y.abs() - x.abs()) / r + 1.0 } * 0.25 * PI;
+            (
+                "the square is an octahedron unfolded, and that is blown up to a sphere",
+                "x = 2u − 1, y = 1 − 2v, s = 1 − |x| − |y|, r = 1 − |s|, φ = π/4 ((|y| − |x|) / r + 1), q = r √(2 − r²); (−sgn(x) \
+                 cos φ q, sgn(s) (1 − r²), sgn(y) sin φ q)",
+                vec![
+                    ("x", x),
+                    ("y", y),
+                    ("s", s),
+                    ("r", r),
+                    ("φ", phi),
+                    ("q", r * (2.0 - r * r).max(0.0).sqrt()),
+                ],
+            )
+        }
+    };
     let in_view = camera.r3.inverse().transform_vector3(ray.direction);
-    Some(SphereMapping { does, uv: [u, v], direction_in_view: in_view.to_array() })
+    Some(SphereMapping { does, uv: [u, v], formula, numbers, direction_in_view: in_view.to_array() })
 }
+
+const LONGITUDE_LATITUDE: &str = "u is the angle around, v the angle up: longitude and latitude";

@@ -85,6 +85,13 @@ impl TestNumbers {
         self.inputs.push((name, value.as_ref().to_vec()));
     }
 
+    /// Adds the way to another space: `v' = M v` of directions, `p' = M (p − at)` of points.
+    fn space(&mut self, names: [&'static str; 4], rows: [[f64; 3]; 3], at: DVec3) {
+        let [of_place, of_rows @ ..] = names;
+        self.input(of_place, at.to_array());
+        of_rows.into_iter().zip(rows).for_each(|(name, row)| self.input(name, row));
+    }
+
     /// Adds a number, unless there is none.
     fn number(&mut self, name: &'static str, f32: f32, f64: f64) {
         if !(f32.is_nan() && f64.is_nan()) {
@@ -209,18 +216,17 @@ fn candidate(
         }
         Primitives::Quadrics(quadrics) => {
             let reason = quadric::test(&quadrics.quadrics[index], &ray, &mut numbers);
-            let outcome = procedural(&**quadrics, primitive, &ray, reason);
+            let outcome = procedural(&**quadrics, primitive, &ray, reason.as_deref());
             ("quadric", quadrics.bindings[index].shape, Test::Quadric(numbers), outcome)
         }
         Primitives::Patches(patches) => {
-            patch::test(patches.corners(index), &ray, &mut numbers);
-            let outcome = procedural(&**patches, primitive, &ray, None);
+            let reason = patch::test(patches.corners(index), &ray, &mut numbers);
+            let outcome = procedural(&**patches, primitive, &ray, reason.as_deref());
             ("patch", patches.binding.shape, Test::Patch(numbers), outcome)
         }
         Primitives::Curves(curves) => {
-            curve::test(curves, primitive, &ray, &mut numbers);
-            let reason = Some("the ray passes at more than half the width");
-            let outcome = procedural(&**curves, primitive, &ray, reason);
+            let reason = curve::test(curves, primitive, &ray, &mut numbers);
+            let outcome = procedural(&**curves, primitive, &ray, reason.as_deref());
             ("curve segment", curves.binding.shape, Test::Curve(numbers), outcome)
         }
     };
@@ -242,12 +248,7 @@ fn candidate(
 }
 
 /// The result of the kernel's own test of a primitive, which is in f64; `reason` is that of a miss, where it is known.
-fn procedural(
-    primitives: &impl Procedural,
-    primitive: u32,
-    ray: &TestRay,
-    reason: Option<&'static str>,
-) -> String {
+fn procedural(primitives: &impl Procedural, primitive: u32, ray: &TestRay, reason: Option<&str>) -> String {
     match primitives.intersect(primitive, &ray.single) {
         Some(_) => "hit".into(),
         None => format!("rejected: {}", reason.unwrap_or("outside of the primitive or of the range of t")),

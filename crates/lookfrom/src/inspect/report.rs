@@ -84,6 +84,9 @@ pub struct SensorReport {
     pub imaging_ratio: f32,
     /// The colour temperature, in kelvin, of light that appears white.
     pub white_balance: Option<f32>,
+    /// The matrix, by rows, that a colour of RGB mode is multiplied by: the responses, the imaging ratio and the white balance
+    /// together; `None` where it changes nothing, and in spectral mode.
+    pub matrix: Option<[[f32; 3]; 3]>,
     /// The maximum of a sample's channels; infinite for no limit.
     pub max_component: f32,
     /// The factor by which this sample was scaled down to it; 1 for no change.

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::microfacets::MicrofacetReport;
 use super::report::{Amount, Factor, ShadowReport};
 use crate::core::spectrum::Spectrum;
+use crate::light::derivation::Derivation;
 use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::lobes::Lobes;
@@ -29,6 +30,9 @@ pub struct ScatteringReport {
     pub letters: &'static str,
     /// The outward shading normal, with normal and bump maps.
     pub n: [f32; 3],
+    /// The tangents along which the roughness has its two values, unit length; of a BSDF that is the same in all directions
+    /// around n, any two.
+    pub tangents: [[f32; 3]; 2],
 }
 
 /// A light that a path hit: `β L w` is added.
@@ -58,6 +62,8 @@ pub struct LightSampleReport {
     pub light: String,
     /// The probability of choosing it among all lights.
     pub probability: f32,
+    /// How it comes about.
+    pub choice: Option<Derivation>,
     /// The sampled direction; `None` when the light does not illuminate this point.
     pub sample: Option<SampledDirectionReport>,
     /// The shadow ray; `None` where its contribution would be 0.
@@ -77,6 +83,8 @@ pub struct SampledDirectionReport {
     pub pdf: f32,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
+    /// How `arrives` of a point light, or `light_pdf` of an area light, comes about.
+    pub derivation: Option<Derivation>,
     /// Whether the light has only one direction here (a point, a distant light): then p is a probability, not a density.
     pub is_delta: bool,
     /// L: the unoccluded incident radiance.
@@ -226,7 +234,8 @@ pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor)
         [false, true] => "G",
         [false, false] => "",
     };
-    ScatteringReport { kind, does, numbers, lobes: words(lobes), letters, n: shading.n().to_array() }
+    let [s, t, n] = shading.axes();
+    ScatteringReport { kind, does, numbers, lobes: words(lobes), letters, n, tangents: [s, t] }
 }
 
 /// The one lobe of a sample in letters.

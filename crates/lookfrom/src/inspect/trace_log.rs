@@ -125,16 +125,16 @@ impl<'a> TraceLogBuilder<'a> {
                 });
             }
             Event::LightSampleFailed { address, light, probability, sample } => {
-                let sample = sample
-                    .as_ref()
-                    .map(|sample| self.direction(*light, *probability, sample, Spectrum::BLACK, None, 1.0));
+                let sample = sample.as_ref().map(|sample| {
+                    self.direction(*address, (*light, *probability), sample, Spectrum::BLACK, None, 1.0)
+                });
                 self.light_sample(*address, *light, *probability, sample);
             }
             Event::LightSampled { address, light, probability, sample, f, bsdf_pdf, weight } => {
                 let is_weighted = self.renderer.settings().integrator == Integrator::Path
                     && !self.world.lights[*light as usize].is_delta();
                 let bsdf_pdf = is_weighted.then_some(*bsdf_pdf);
-                let sample = self.direction(*light, *probability, sample, *f, bsdf_pdf, *weight);
+                let sample = self.direction(*address, (*light, *probability), sample, *f, bsdf_pdf, *weight);
                 self.light_sample(*address, *light, *probability, Some(sample));
             }
             Event::Shadow { shadow, hit, passed } => self.shadow(shadow, hit, *passed),

@@ -78,6 +78,17 @@ pub struct LightPoint {
     pub pdf: f32,
 }
 
+/// The operands of a density: `probability` is that of the part of the light that the point is on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum AreaDensity {
+    /// Uniform over an area.
+    Area { area: f64, probability: f64 },
+    /// Uniform over a solid angle.
+    SolidAngle { solid_angle: f64, probability: f64 },
+    /// Uniform over the directions to a sphere, by its radius and the distance of its centre.
+    Cone { radius: f64, distance: f64 },
+}
+
 /// Points of area lights as seen from other points, at any width: as [`LightPoint`].
 #[derive(Clone, Copy)]
 pub(crate) struct AreaSamples<R: Real> {
@@ -275,6 +286,19 @@ impl AreaLight {
             LightShape::Patches(light) => by_area(light.pdf_by_area(place)),
         };
         if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
+    }
+
+    /// How the density of a sampled point of the light comes about, as seen from `from`.
+    pub(crate) fn density(&self, from: DVec3, point: DVec3) -> AreaDensity {
+        match &self.shape {
+            LightShape::Quadric(light) => match light.cone(from) {
+                Some((radius, distance)) => AreaDensity::Cone { radius, distance },
+                None => AreaDensity::Area { area: 1.0 / light.pdf_by_area(point), probability: 1.0 },
+            },
+            LightShape::Disk(light) => AreaDensity::Area { area: light.area(), probability: 1.0 },
+            LightShape::Mesh(light) => light.density(from, point),
+            LightShape::Patches(light) => AreaDensity::Area { area: light.area(), probability: 1.0 },
+        }
     }
 
     /// Area of (one side of) the light, in render space.

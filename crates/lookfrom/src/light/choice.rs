@@ -7,6 +7,7 @@
 use lookfrom_scene::settings::LightSampler as Kind;
 use lookfrom_simd::{Float, LaneMask, Simd, f32x8, f64x8, prelude::*};
 
+use super::derivation::Derivation;
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
@@ -155,6 +156,26 @@ impl LightChoice {
                 (1.0 - self.share_of_list()) * self.tree.probability(at.point.as_vec3(), at.n, light)
             }
         }
+    }
+
+    /// How the probability of a light at a point comes about.
+    pub(crate) fn derivation(&self, at: &LightSampleContext, light: u32) -> Derivation {
+        let place = self.places.get(light as usize).copied().flatten();
+        let of_power = |place: u32| self.weights.as_ref().map(|weights| weights.pdf(place as usize));
+        if let Some(power) = place.and_then(of_power) {
+            return Derivation::new("P = power / sum of all powers", vec![("share", vec![f64::from(power)])]);
+        }
+        let (list, has_tree) = (self.listed.len() as f64, !self.tree.is_empty());
+        let others = vec![("listed", vec![list]), ("trees", vec![f64::from(u8::from(has_tree))])];
+        if place.is_some() {
+            return Derivation::new("P = 1 / (listed + trees)", others);
+        }
+        let way = self.tree.way(at.point.as_vec3(), at.n, light);
+        let way = way.into_iter().map(|pair| ("importances", pair.map(f64::from).to_vec()));
+        Derivation::new(
+            "P = trees / (listed + trees) · the product of chosen / (chosen + other) of all importances",
+            others.into_iter().chain(way).collect(),
+        )
     }
 
     /// The probability of choosing from the list; the tree counts as one more light.

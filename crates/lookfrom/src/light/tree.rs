@@ -145,6 +145,21 @@ impl Tree {
         }
     }
 
+    /// The importances of the children on the way to a light, the chosen one first.
+    pub(super) fn way(&self, p: Vec3, n: Vec3, light: u32) -> Vec<[f32; 2]> {
+        let Some(mut way) = self.ways.get(light as usize).copied().flatten() else { return Vec::new() };
+        let (mut importances, mut node) = (Vec::new(), 0);
+        while let Link::Second(second) = self.nodes[node].link {
+            let children = [node + 1, second as usize];
+            let [first, other] = children.map(|child| self.nodes[child].sight.importance(p.into(), n.into()));
+            let is_first = way & 1 == 0;
+            importances.push(if is_first { [first, other] } else { [other, first] });
+            node = children[usize::from(!is_first)];
+            way >>= 1;
+        }
+        importances
+    }
+
     /// The probability of the first of two children, and whether either can be chosen.
     fn first_share(&self, node: usize, second: usize, p: Vec3, n: Vec3) -> (f32, bool) {
         let children = [&self.nodes[node + 1].sight, &self.nodes[second].sight];

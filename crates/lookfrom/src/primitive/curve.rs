@@ -77,6 +77,19 @@ impl Curves {
         (self.vector_in_object(origin - translation), self.vector_in_object(direction))
     }
 
+    /// The way to object space: the rows of the matrix, and the place of the object's origin in render space.
+    pub(crate) fn object_space(&self) -> ([[f64; 3]; 3], DVec3) {
+        (super::rows(&self.object_from_render), DVec3::from_array(self.render_from_object.translation))
+    }
+
+    /// The normals at the ends of a primitive's strand, and at u along it, if it is a ribbon; those at the ends as written.
+    pub(crate) fn ribbon(&self, primitive: u32, u: f64) -> Option<([DVec3; 2], DVec3)> {
+        match self.segment(primitive).0.profile {
+            Profile::Ribbon(normals) => Some((normals.map(Vec3::as_dvec3), ribbon_normal(normals, u))),
+            Profile::Flat | Profile::Cylinder => None,
+        }
+    }
+
     /// The apparent width of a primitive's strand at u along it, seen along a unit direction of its space.
     pub(crate) fn visible_width(&self, primitive: u32, u: f64, direction: DVec3) -> f64 {
         visible_width(self.segment(primitive).0, u, direction)

@@ -120,6 +120,11 @@ impl Quadric {
         &self.frame
     }
 
+    /// The way to object space: the rows of the matrix, and the place of the object's origin in render space.
+    pub fn object_space(&self) -> ([[f64; 3]; 3], DVec3) {
+        (super::rows(&self.object_from_render), DVec3::from_array(self.render_from_object.translation))
+    }
+
     /// A point of render space, in object space.
     pub fn point_in_object(&self, p: DVec3) -> DVec3 {
         self.vector_in_object(p - DVec3::from_array(self.render_from_object.translation))

@@ -50,7 +50,8 @@ pub(super) fn prepare(
         ));
         scene.render.allocation = Allocation::Uniform;
     }
-    if scene.bounds().is_empty() {
+    let is_empty = scene.bounds().is_empty();
+    if is_empty {
         warn("this scene has no geometry: the picture shows only the background");
     }
     let mut of_gltf = options.import.clone();
@@ -114,11 +115,29 @@ pub(super) fn prepare(
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);
     }
+    // A view that is asked for is no addition.
+    let is_framed = options.chooses_view() || options.import.camera == CameraChoice::None;
+    let lacks_camera = added.contains(&"camera") && !is_framed;
+    if let Some(message) = told(lacks_camera, has_studio).filter(|_| !is_model && !is_empty) {
+        warnings.push(Warning::notice(&Location::file(file), message));
+    }
     if options.floor {
         studio::add_floor(scene, up, options.framed);
         added.push("floor");
     }
     Ok(Prepared { added, turntable, has_own_lights })
+}
+
+/// What a scene lacked and was given.
+fn told(lacks_camera: bool, lacks_lights: bool) -> Option<&'static str> {
+    match (lacks_camera, lacks_lights) {
+        (true, true) => {
+            Some("there is no camera and no light: one that sees everything is added, and a light")
+        }
+        (true, false) => Some("there is no camera: one that sees everything is added"),
+        (false, true) => Some("there is no light: one is added"),
+        (false, false) => None,
+    }
 }
 
 /// Chooses defaults for samples and denoising.

@@ -17,7 +17,7 @@
 //! (see `world`). The first step in the computation of a pixel.
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
-use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window};
+use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window, up_across};
 use lookfrom_scene::{Error, Location, Result};
 use lookfrom_simd::Float;
 
@@ -288,12 +288,12 @@ fn view_axes(at: &Location, lookfrom: DVec3, lookat: DVec3, up: DVec3) -> Result
         Error::invalid(at, format!("lookfrom and lookat are the same point {lookfrom}"))
             .hint("move one of them: the camera needs a direction")
     })?;
-    let up = up.try_normalize().ok_or_else(|| Error::invalid(at, "up is zero").hint("try up = [0, 1, 0]"))?;
+    let other = || format!("try up = {}", up_across(w));
+    let up = up.try_normalize().ok_or_else(|| Error::invalid(at, "up is zero").hint(other()))?;
     let u = up.cross(w);
     // Below this the direction of up × w is rounding noise.
     if u.length() < 1e-10 {
-        return Err(Error::invalid(at, "up is parallel to the direction of view")
-            .hint("choose another up, or another direction of view"));
+        return Err(Error::invalid(at, "up is parallel to the direction of view").hint(other()));
     }
     let u = u.normalize();
     Ok(DMat3::from_cols(u, w.cross(u), w))

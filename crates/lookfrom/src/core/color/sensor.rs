@@ -88,6 +88,11 @@ impl Sensor {
         self.balanced_from_rgb.map(|[x, y, z]| x * r + y * g + z * b)
     }
 
+    /// The matrix of [`Sensor::balanced`], by rows.
+    pub(crate) fn balanced_matrix(&self) -> &[[f32; 3]; 3] {
+        &self.balanced_from_rgb
+    }
+
     /// The matrix from linear Rec. 709 to the channels in which the film estimates variance: those of
     /// [`Sensor::channels`], with X, Y and Z by [`space::XYZ_FROM_RGB`].
     pub fn variance_from_rgb(&self) -> &Matrix {

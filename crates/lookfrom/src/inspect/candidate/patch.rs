@@ -9,9 +9,9 @@ use super::{TestNumbers, TestRay};
 
 /// The numbers of the test.
 struct PatchTest<T> {
-    /// `(P00 − o)×d · (P01 − P00)`.
+    /// `(P00 − a)×d · (P01 − P00)`.
     a: T,
-    /// The rest of `(P10 − o)×d · (P11 − P10)`.
+    /// The rest of `(P10 − a)×d · (P11 − P10)`.
     b: T,
     /// `(P10 − P00)×E · (−d)` with `E = P11 − P01 − (P10 − P00)`.
     c: T,
@@ -43,8 +43,8 @@ fn patch_test<T: Real>([o, d, p00, p10, p01, p11]: [[T; 3]; 6]) -> PatchTest<T> 
     PatchTest { a, b, c, discriminant, roots }
 }
 
-/// Adds the inputs and numbers of the test of a patch.
-pub(super) fn test(corners: [DVec3; 4], ray: &TestRay, numbers: &mut TestNumbers) {
+/// Adds the inputs and numbers of the test of a patch; returns the reason why it is missed, if it is.
+pub(super) fn test(corners: [DVec3; 4], ray: &TestRay, numbers: &mut TestNumbers) -> Option<String> {
     let [p00, p10, p01, p11] = corners.map(|corner| corner.to_array());
     let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
     let f64 = patch_test([o, d, p00, p10, p01, p11]);
@@ -53,9 +53,9 @@ pub(super) fn test(corners: [DVec3; 4], ray: &TestRay, numbers: &mut TestNumbers
     numbers.input("P10", p10);
     numbers.input("P01", p01);
     numbers.input("P11", p11);
-    numbers.number("a", f32.a, f64.a);
-    numbers.number("b", f32.b, f64.b);
-    numbers.number("c", f32.c, f64.c);
+    numbers.number("a = (P00−a)×d·(P01−P00)", f32.a, f64.a);
+    numbers.number("b = (P10−a)×d·(P11−P10)−a−c", f32.b, f64.b);
+    numbers.number("c = −(P10−P00)×(P11−P01−P10+P00)·d", f32.c, f64.c);
     numbers.number("b² − 4ac", f32.discriminant, f64.discriminant);
     let names = [["u₁ = q/c", "v₁", "t₁"], ["u₂ = a/q", "v₂", "t₂"]];
     for (names, (single, double)) in names.into_iter().zip(f32.roots.into_iter().zip(f64.roots)) {
@@ -63,4 +63,20 @@ pub(super) fn test(corners: [DVec3; 4], ray: &TestRay, numbers: &mut TestNumbers
             numbers.number(name, single, double);
         }
     }
+    if f64.discriminant < 0.0 {
+        return Some("b² − 4ac < 0: no real root".to_owned());
+    }
+    let why = |(name, [u, v, t]): (&str, [f64; 3])| {
+        let part = 0.0..=1.0;
+        let outside = if !part.contains(&u) {
+            "u is not between 0 and 1"
+        } else if !part.contains(&v) {
+            "v is not between 0 and 1"
+        } else {
+            ray.range(t).unwrap_or("it is not hit")
+        };
+        format!("{name}: {outside}")
+    };
+    let both: Vec<String> = ["u₁", "u₂"].into_iter().zip(f64.roots).map(why).collect();
+    Some(both.join("; "))
 }

@@ -10,8 +10,14 @@ use crate::primitive::{Quadric, QuadricKind};
 /// Names of a ray in the space of a quadric.
 const IN_QUADRIC: [&str; 2] = ["a in the quadric", "d in the quadric"];
 
+/// Names of the way to the space of a quadric.
+const TO_QUADRIC: [&str; 4] =
+    ["quadric at", "to the quadric, row 1", "to the quadric, row 2", "to the quadric, row 3"];
+
 /// Adds the inputs and numbers of the test of a quadric; returns the reason why it is missed, if it is.
-pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) -> Option<&'static str> {
+pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) -> Option<String> {
+    let (rows, at) = quadric.object_space();
+    numbers.space(TO_QUADRIC, rows, at);
     let ray = TestRay {
         origin: quadric.point_in_object(ray.origin),
         direction: quadric.vector_in_object(ray.direction),
@@ -23,18 +29,18 @@ pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) 
         QuadricKind::Sphere { radius, z } => {
             numbers.input("R", [radius]);
             numbers.input("z from, to", z);
-            curved(&ray, DVec3::ONE, radius, numbers)
+            curved(&ray, DVec3::ONE, (radius, z, quadric.phi_max), numbers)
         }
         QuadricKind::Cylinder { radius, z } => {
             numbers.input("R", [radius]);
             numbers.input("z from, to", z);
-            curved(&ray, in_plane, radius, numbers)
+            curved(&ray, in_plane, (radius, z, quadric.phi_max), numbers)
         }
         QuadricKind::Disk { height, radius, inner_radius } => {
             numbers.input("z", [height]);
             numbers.input("R", [radius]);
             numbers.input("R of the hole", [inner_radius]);
-            flat(&ray, height, numbers)
+            flat(&ray, (height, radius, inner_radius, quadric.phi_max), numbers)
         }
     };
     numbers.input("φ up to", [quadric.phi_max]);
@@ -42,25 +48,46 @@ pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) 
 }
 
 /// The quadratic equation of a sphere around the origin, or, across the axis, of a cylinder; and z and φ of its roots.
-fn curved(ray: &TestRay, axes: DVec3, radius: f64, numbers: &mut TestNumbers) -> Option<&'static str> {
+fn curved(
+    ray: &TestRay,
+    axes: DVec3,
+    (radius, [low, high], phi_max): (f64, [f64; 2], f64),
+    numbers: &mut TestNumbers,
+) -> Option<String> {
     let [a, d] = [ray.origin, ray.direction].map(|v| (v * axes).to_array());
     let double: Quadratic<f64> = quadratic(a, d, [0.0; 3], radius);
     let [a32, d32] = [a, d].map(|v| v.map(|x| x as f32));
     let single: Quadratic<f32> = quadratic(a32, d32, [0.0; 3], radius as f32);
     roots(&single, &double, numbers);
     if !(double.discriminant >= 0.0) {
-        return Some("no real root");
+        return Some("no real root".to_owned());
     }
     let names = [["z at t₁", "φ at t₁"], ["z at t₂", "φ at t₂"]];
     let root_pairs = [(single.t1, double.t1), (single.t2, double.t2)];
     for ([z, phi], (t32, t64)) in names.into_iter().zip(root_pairs) {
         place(ray, t32, t64, [z, phi], numbers);
     }
-    Some("both roots are outside of its part, or of the range of t")
+    let why = |(name, t): (&str, f64)| {
+        let [z, phi] = place_of(ray.origin + t * ray.direction);
+        let outside = if phi > phi_max {
+            "φ is not of its part"
+        } else if !(low..=high).contains(&z) {
+            "z is not of its part"
+        } else {
+            "it is not hit"
+        };
+        format!("{name}: {}", ray.range(t).unwrap_or(outside))
+    };
+    let both = [("t₁", double.t1), ("t₂", double.t2)].map(why);
+    Some(both.join("; "))
 }
 
 /// The plane of a disk.
-fn flat(ray: &TestRay, height: f64, numbers: &mut TestNumbers) -> Option<&'static str> {
+fn flat(
+    ray: &TestRay,
+    (height, outer, inner, phi_max): (f64, f64, f64, f64),
+    numbers: &mut TestNumbers,
+) -> Option<String> {
     let (a, d) = (ray.origin, ray.direction);
     let t = (height - a.z) / d.z;
     let single = (height as f32 - a.z as f32) / d.z as f32;
@@ -70,7 +97,25 @@ fn flat(ray: &TestRay, height: f64, numbers: &mut TestNumbers) -> Option<&'stati
     let at32 = a.as_vec3() + single * d.as_vec3();
     numbers.number("√(x² + y²)", (at32.x * at32.x + at32.y * at32.y).sqrt(), radius(at.x, at.y));
     place(ray, single, t, ["z at t", "φ at t"], numbers);
-    ray.range(t).or(Some("outside of the disk, or in its hole"))
+    let from_axis = radius(at.x, at.y);
+    let outside = if d.z == 0.0 {
+        "d_z = 0: the ray runs along the plane"
+    } else if from_axis > outer {
+        "√(x² + y²) > R"
+    } else if from_axis < inner {
+        "√(x² + y²) < R of the hole"
+    } else if place_of(at)[1] > phi_max {
+        "φ is not of its part"
+    } else {
+        "it is not hit"
+    };
+    Some(ray.range(t).unwrap_or(outside).to_owned())
+}
+
+/// z and φ of a point, φ from 0 to 2π.
+fn place_of(at: DVec3) -> [f64; 2] {
+    let phi = libm::atan2(at.y, at.x);
+    [at.z, if phi < 0.0 { phi + std::f64::consts::TAU } else { phi }]
 }
 
 /// z and φ of the point at t.
@@ -80,5 +125,5 @@ fn place(ray: &TestRay, t32: f32, t64: f64, [z, phi]: [&'static str; 2], numbers
     let turn = |phi: f64| if phi < 0.0 { phi + std::f64::consts::TAU } else { phi };
     numbers.number(z, at32.z, at.z);
     let single = libm::atan2f(at32.y, at32.x);
-    numbers.number(phi, turn(f64::from(single)) as f32, turn(libm::atan2(at.y, at.x)));
+    numbers.number(phi, turn(f64::from(single)) as f32, place_of(at)[1]);
 }

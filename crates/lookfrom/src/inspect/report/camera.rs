@@ -42,6 +42,10 @@ pub struct SphereMapping {
     pub does: &'static str,
     /// `P_k` over the size of the picture, v up.
     pub uv: [f64; 2],
+    /// The formula of the direction in view space.
+    pub formula: &'static str,
+    /// Its numbers by name.
+    pub numbers: Vec<(&'static str, f64)>,
     /// The direction in view space: along u, v, w.
     pub direction_in_view: [f64; 3],
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{Amount, Factor};
 use crate::inspect::candidate::TraversalReport;
+use crate::light::derivation::Derivation;
 
 /// One light in Whitted's model.
 #[derive(Clone, Debug, Serialize)]
@@ -26,6 +27,8 @@ pub struct LightReport {
     pub pdf: Option<f32>,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
+    /// How `arrives` of a point light, or `pdf` of an area light, comes about.
+    pub derivation: Option<Derivation>,
     /// `I_j` of Whitted's formula: the unoccluded light.
     pub intensity: Amount,
     /// `k_d (N·L)`.

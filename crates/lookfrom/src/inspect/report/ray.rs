@@ -110,6 +110,8 @@ pub struct MetReport {
     pub cos_viewer: f32,
     /// Whether the outside was hit.
     pub front: bool,
+    /// Alpha here, where the surface is not opaque everywhere: the ray passes with the probability of the rest.
+    pub alpha: Option<f32>,
     /// The material's name.
     pub material: String,
     /// Its coefficients here, where the integrator evaluates them.

@@ -160,8 +160,8 @@ impl<'a> Panel<'a> {
         let color = Kind::Camera.color();
         let eye = DVec3::from_array(camera.lookfrom);
         if self.view == SvgView::Camera {
-            let through = DVec3::from_array(camera.a) + DVec3::from_array(camera.direction);
-            if let Some(at) = self.point(through) {
+            // Of the pinhole's ray: one from a lens crosses the image plane elsewhere, and meets it in the plane of focus.
+            if let Some(at) = self.point(DVec3::from_array(camera.p_world)) {
                 let _ = writeln!(
                     out,
                     "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"9\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>",
@@ -180,13 +180,9 @@ impl<'a> Panel<'a> {
                 "<g stroke=\"{color}\"><polygon points=\"{}\" fill=\"{color}\" fill-opacity=\"0.12\" stroke-width=\"1.2\"/>",
                 words.join(" ")
             );
-            for corner in &flat {
-                lines.push([start, *corner]);
-                let _ = writeln!(
-                    out,
-                    "{}",
-                    line(&[start, *corner], "stroke-width=\"0.6\" stroke-opacity=\"0.6\"")
-                );
+            for edge in self.edges(&corners) {
+                lines.push(edge);
+                let _ = writeln!(out, "{}", line(&edge, "stroke-width=\"0.6\" stroke-opacity=\"0.6\""));
             }
             out.push_str("</g>\n");
             let highest = flat.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y));
@@ -206,6 +202,17 @@ impl<'a> Panel<'a> {
             writeln!(out, "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.5\" fill=\"{color}\"/>", start.x, start.y);
         labels.push(label(start, "lookfrom", color));
         lines
+    }
+
+    /// The edges of what the camera sees, up to the corners of the image plane: from the eye, or parallel to each other.
+    fn edges(&self, corners: &[DVec3; 4]) -> Vec<[DVec2; 2]> {
+        let camera = &self.inspection.camera;
+        let forward = DVec3::from_array(camera.w).normalize() * self.renderer.view().camera().distance;
+        let from = |corner: DVec3| match camera.projection {
+            "orthographic" => corner - forward,
+            _ => DVec3::from_array(camera.lookfrom),
+        };
+        corners.iter().filter_map(|&corner| Some([self.point(from(corner))?, self.point(corner)?])).collect()
     }
 
     /// Draws the rays and the normals at their hits, and returns their lines.

@@ -13,8 +13,11 @@ impl Inspection {
             Some(_) => writeln!(f, "From the pixel to the world: a direction, {}", camera.projection)?,
         }
         writeln!(f, "  P_k      = {}", vector(&camera.p_k))?;
-        if let Some(SphereMapping { does, uv, direction_in_view }) = &camera.mapping {
+        if let Some(SphereMapping { does, uv, formula, numbers, direction_in_view }) = &camera.mapping {
             writeln!(f, "  (u, v)   = P_k / size = {}: {does}", vector(uv))?;
+            let numbers = numbers.iter().map(|(name, number)| format!("{name} = {}", short(*number)));
+            writeln!(f, "  {}", numbers.collect::<Vec<_>>().join("   "))?;
+            writeln!(f, "  {formula}")?;
             writeln!(f, "  in view space, along u, v, w: {}", vector(direction_in_view))?;
         }
         for step in &camera.steps {

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use lookfrom_scene::plural::counted;
+
 use super::{exact, full, full64};
 use crate::inspect::{Candidate, Number, RayReport, Test, TestNumbers, TraversalReport};
 
@@ -10,11 +12,7 @@ pub(super) fn write_traced(f: &mut String, ray: &RayReport, pad: &str) -> fmt::R
     if ray.candidates.is_empty() {
         return Ok(());
     }
-    let TraversalReport { nodes, culled, tests } = ray.traversal;
-    writeln!(
-        f,
-        "{pad}  visits {nodes} nodes of the BVH, culls {culled} boxes, is tested against {tests} primitives"
-    )?;
+    writeln!(f, "{pad}  {}", work(&ray.traversal, " of the BVH"))?;
     let d = ray.direction.map(f64::from);
     writeln!(f, "{pad}  for the tests, relative to the render origin, in f32:")?;
     writeln!(f, "{pad}    a = {}", exact(&ray.origin.map(f64::from)))?;
@@ -28,9 +26,17 @@ pub(super) fn write_candidates(f: &mut String, ray: &RayReport, others: usize, p
         write_test(f, &candidate.test, pad)?;
     }
     if hidden > 0 {
-        writeln!(f, "{pad}  … and {hidden} more candidates, all rejected or farther (--json shows them)")?;
+        let hidden = counted(hidden, "more candidate");
+        writeln!(f, "{pad}  … and {hidden}, all rejected or farther (--json shows them)")?;
     }
     Ok(())
+}
+
+/// What a traversal did, with `of` behind its nodes.
+pub(super) fn work(&TraversalReport { nodes, culled, tests }: &TraversalReport, of: &str) -> String {
+    let [nodes, culled, tests] = [(nodes, "node"), (culled, "box"), (tests, "primitive")]
+        .map(|(count, noun)| counted(count, noun).to_string());
+    format!("visits {nodes}{of}, culls {culled}, is tested against {tests}")
 }
 
 /// The nearest hit and the first few others, and the number of those left out.
@@ -50,10 +56,11 @@ fn write_test(f: &mut String, test: &Test, pad: &str) -> fmt::Result {
     if numbers.is_empty() {
         return Ok(());
     }
-    writeln!(f, "{pad}    {:<14} {:>16} {:>24} {:>14}", "", "f32", "f64", "matching bits")?;
+    let width = numbers.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0).max(14);
+    writeln!(f, "{pad}    {:<width$} {:>16} {:>24} {:>14}", "", "f32", "f64", "matching bits")?;
     for (name, Number { f32, f64, bits }) in numbers {
         let (f32, f64) = (full(*f32), full64(*f64));
-        writeln!(f, "{pad}    {name:<14} {f32:>16} {f64:>24} {bits:>14}")?;
+        writeln!(f, "{pad}    {name:<width$} {f32:>16} {f64:>24} {bits:>14}")?;
     }
     Ok(())
 }

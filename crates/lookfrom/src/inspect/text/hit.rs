@@ -2,8 +2,10 @@
 
 use std::fmt::{self, Write};
 
-use super::{full, lanes, vector, vector32};
-use crate::inspect::{AbsorptionReport, MetReport, RayReport, ShadowReport, TraversalReport};
+use super::candidates::work;
+use super::{exact, full, full64, lanes, vector, vector32};
+use crate::inspect::{AbsorptionReport, MetReport, RayReport, ShadowReport};
+use crate::light::derivation::Derivation;
 
 pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Result {
     let side = if met.front { "outside" } else { "inside" };
@@ -13,6 +15,9 @@ pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Resu
     writeln!(f, "{pad}      off the surface by at most {}, per component", vector(&met.error))?;
     writeln!(f, "{pad}    ng = {}   n = {}", vector(&met.ng), vector32(&met.n))?;
     writeln!(f, "{pad}    uv = {}   cos θ to the viewer = {}", vector32(&met.uv), full(met.cos_viewer))?;
+    if let Some(alpha) = met.alpha {
+        writeln!(f, "{pad}    alpha = {}: the surface is there with this probability", full(alpha))?;
+    }
     write!(f, "{pad}    material {}", met.material)?;
     if let Some(k) = &met.coefficients {
         write!(
@@ -39,6 +44,18 @@ pub(super) fn write_absorption(f: &mut String, ray: &RayReport, pad: &str) -> fm
     writeln!(f, "{pad}    throughput there = {}", lanes(throughput))
 }
 
+/// Writes a formula with its operands.
+pub(super) fn write_derivation(f: &mut String, derivation: Option<&Derivation>, pad: &str) -> fmt::Result {
+    let Some(Derivation { formula, numbers }) = derivation else { return Ok(()) };
+    let numbers = numbers.iter().map(|(name, values)| match values.as_slice() {
+        [value] => format!("{name} = {}", full64(*value)),
+        values => format!("{name} = {}", exact(values)),
+    });
+    let numbers: Vec<String> = numbers.collect();
+    writeln!(f, "{pad}{formula}")?;
+    writeln!(f, "{pad}  {}", numbers.join("   "))
+}
+
 /// Writes the result of a shadow ray; `end` describes one that is unoccluded.
 pub(super) fn write_shadow(
     f: &mut String,
@@ -49,11 +66,7 @@ pub(super) fn write_shadow(
     let Some(shadow) = shadow else {
         return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
     };
-    let TraversalReport { nodes, culled, tests } = shadow.traversal;
-    writeln!(
-        f,
-        "{pad}    shadow ray: visits {nodes} nodes, culls {culled} boxes, is tested against {tests} primitives"
-    )?;
+    writeln!(f, "{pad}    shadow ray: {}", work(&shadow.traversal, ""))?;
     for blocker in &shadow.blockers {
         let (name, t, passed) = (&blocker.shape, full(blocker.t), &blocker.passed);
         match passed.iter().all(|lane| *lane == 0.0) {

@@ -31,6 +31,14 @@ fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
                 "        ω_m = {}   D = {d}   G = {g}   F = {fresnel}",
                 vector32(&report.half_vector)
             )?;
+            if let [x, y] = report.alpha
+                && x != y
+            {
+                writeln!(
+                    f,
+                    "        D = 1 / (π α_s α_t e²), e = (ω_m·s / α_s)² + (ω_m·t / α_t)² + (ω_m·n)²"
+                )?;
+            }
             writeln!(
                 f,
                 "        ω_o·n = {cos_o}   ω_i·n = {cos_i}   ω_o·ω_m = {cos_om}   ω_i·ω_m = {cos_im}"

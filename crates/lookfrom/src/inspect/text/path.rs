@@ -2,8 +2,10 @@
 
 use std::fmt::{self, Write};
 
+use lookfrom_scene::plural::counted;
+
 use super::candidates::{write_candidates, write_traced};
-use super::hit::{write_absorption, write_met, write_shadow};
+use super::hit::{write_absorption, write_derivation, write_met, write_shadow};
 use super::microfacets::write_microfacets;
 use super::{Excerpt, Part, RayReport};
 use super::{amount, full, lanes, vector, vector32};
@@ -172,6 +174,7 @@ impl Excerpt<'_> {
             report.light,
             full(report.probability)
         )?;
+        write_derivation(f, report.choice.as_ref(), "      ")?;
         let Some(sample) = &report.sample else {
             return writeln!(
                 f,
@@ -192,6 +195,7 @@ impl Excerpt<'_> {
         if let Some(point) = sample.point {
             writeln!(f, "      from the point {}", vector(&point))?;
         }
+        write_derivation(f, sample.derivation.as_ref(), "      ")?;
         let (p, pdf, probability) = (full(sample.pdf), full(sample.light_pdf), full(report.probability));
         match sample.is_delta {
             true => writeln!(f, "      p = {p}: the probability of choosing it; it has only this direction")?,
@@ -284,13 +288,20 @@ fn write_scattering(f: &mut String, scattering: &ScatteringReport) -> fmt::Resul
         _ => format!("{name} {}", lanes(values)),
     });
     writeln!(f, "      {}", numbers.collect::<Vec<_>>().join("   "))?;
-    writeln!(f, "      lobes: {}   n = {}", scattering.lobes, vector32(&scattering.n))
+    writeln!(f, "      lobes: {}   n = {}", scattering.lobes, vector32(&scattering.n))?;
+    let is_uneven = |(name, values): &(&str, Vec<f32>)| {
+        name.ends_with("alpha") && values[0] != *values.last().unwrap_or(&0.0)
+    };
+    if scattering.numbers.iter().any(is_uneven) {
+        let [s, t] = scattering.tangents.map(|tangent| vector32(&tangent));
+        writeln!(f, "      alpha is along s = {s} and t = {t}")?;
+    }
+    Ok(())
 }
 
 fn after(bounces: u32) -> String {
     match bounces {
         0 => String::new(),
-        1 => ", after 1 bounce".into(),
-        _ => format!(", after {bounces} bounces"),
+        _ => format!(", after {}", counted(bounces, "bounce")),
     }
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display, Formatter, Write};
 
+use lookfrom_scene::plural::are;
+
 use super::{digits, short, write_wrapped};
 use crate::inspect::{Contribution, Inspection, PixelInspection};
 
@@ -32,7 +34,9 @@ impl PixelInspection {
             )?;
         }
         if self.dropped > 0 {
-            writeln!(f, "  {} samples are not finite: the film leaves them out", self.dropped)?;
+            let them = if self.dropped == 1 { "it" } else { "them" };
+            let dropped = are(self.dropped.into(), "sample");
+            writeln!(f, "  {dropped} not finite: the film leaves {them} out")?;
         }
         let of_all = f64::from(self.samples - self.dropped);
         let sum = self.mean.iter().map(|c| f64::from(*c)).sum::<f64>() * of_all;

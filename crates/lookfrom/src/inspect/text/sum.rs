@@ -22,7 +22,8 @@ impl Inspection {
         if self.wavelengths.is_some() {
             writeln!(f, "  measured by the camera's sensor")?;
         }
-        let SensorReport { camera, imaging_ratio, white_balance, max_component, scaled_by } = &self.sensor;
+        let SensorReport { camera, imaging_ratio, white_balance, matrix, max_component, scaled_by } =
+            &self.sensor;
         if let Some(camera) = camera {
             writeln!(f, "  by the responses of {camera}")?;
         }
@@ -31,6 +32,9 @@ impl Inspection {
         }
         if let Some(kelvin) = white_balance {
             writeln!(f, "  white-balanced for light of {} K", full(*kelvin))?;
+        }
+        if let Some(rows) = matrix {
+            writeln!(f, "  together the matrix, by rows, {}", rows.map(|row| lanes(&row)).join(" "))?;
         }
         if *scaled_by != 1.0 {
             let (limit, scale) = (full(*max_component), full(*scaled_by));

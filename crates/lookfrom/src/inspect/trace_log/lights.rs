@@ -9,7 +9,8 @@ use crate::inspect::candidate::{self, TraversalReport};
 use crate::inspect::report::{Blocker, LightReport, ShadowReport};
 use crate::inspect::scatter::{LightSampleReport, SampledDirectionReport};
 use crate::integrator::{Shadow, Term};
-use crate::light::{LightSample, Target};
+use crate::light::derivation::Derivation;
+use crate::light::{LightSample, LightSampleContext, Target};
 use crate::world::World;
 
 impl TraceLogBuilder<'_> {
@@ -35,6 +36,7 @@ impl TraceLogBuilder<'_> {
             arrives: self.amount(sample.map(|sample| sample.li).unwrap_or_default()),
             pdf: sample.map(|sample| sample.pdf),
             point: sample.and_then(|sample| target(self.world, sample)),
+            derivation: sample.and_then(|sample| self.derivation(address, index, sample)),
             intensity: self.amount(intensity.unwrap_or_default()),
             diffuse: self.factor(terms[0]),
             specular: self.factor(terms[1]),
@@ -43,10 +45,25 @@ impl TraceLogBuilder<'_> {
         }
     }
 
+    /// How a light's sample comes about at the hit of a ray.
+    fn derivation(&self, address: u64, light: u32, sample: &LightSample) -> Option<Derivation> {
+        let met = self.rays.get(&address)?.met.as_ref()?;
+        let from = DVec3::from_array(met.point) - self.world.origin;
+        self.world.lights[light as usize].derivation(&self.world.textures, from, sample, &self.lanes)
+    }
+
+    /// How the probability of a light comes about at the hit of a ray.
+    fn choice(&self, address: u64, light: u32) -> Option<Derivation> {
+        let met = self.rays.get(&address)?.met.as_ref()?;
+        let (shading, _) = self.shadings.get(&address)?;
+        let point = DVec3::from_array(met.point) - self.world.origin;
+        Some(self.world.light_choice().derivation(&LightSampleContext { point, n: shading.n() }, light))
+    }
+
     pub(super) fn direction(
         &self,
-        light: u32,
-        probability: f32,
+        address: u64,
+        (light, probability): (u32, f32),
         sample: &LightSample,
         f_cos: Spectrum,
         bsdf_pdf: Option<f32>,
@@ -57,6 +74,7 @@ impl TraceLogBuilder<'_> {
             light_pdf: sample.pdf,
             pdf: probability * sample.pdf,
             point: target(self.world, sample),
+            derivation: self.derivation(address, light, sample),
             is_delta: self.world.lights[light as usize].is_delta(),
             arrives: self.amount(sample.li),
             f_cos: self.factor(f_cos),
@@ -78,7 +96,8 @@ impl TraceLogBuilder<'_> {
         }
         let light = self.world.names.lights[index as usize].clone();
         let added = self.amount(Spectrum::BLACK);
-        let report = LightSampleReport { index, light, probability, sample, shadow: None, added };
+        let choice = self.choice(address, index);
+        let report = LightSampleReport { index, light, probability, choice, sample, shadow: None, added };
         self.at(address, |ray| ray.light_sample = Some(report));
     }
 

@@ -127,6 +127,7 @@ fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetRepo
         wo: surface.wo.to_array(),
         cos_viewer: surface.ns_facing().dot(surface.wo),
         front: surface.front,
+        alpha: surface.alpha.map(|alpha| world.textures.float(alpha, &world.texture_point(surface))),
         material: world.names.materials[surface.material as usize].clone(),
         coefficients: None,
     }

@@ -13,7 +13,7 @@ use lookfrom_bvh::Point;
 use lookfrom_simd::{Simd, f32x8};
 use spherical_triangle::SphericalTriangles;
 
-use super::{Cone, LightPoint, seen};
+use super::{AreaDensity, Cone, LightPoint, seen};
 use crate::core::distribution::Discrete;
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::parallel;
@@ -227,6 +227,27 @@ impl MeshLight {
         let rank = self.rank(index)?;
         let (_, solid_angle) = self.triangles[rank].worth_direction(from)?;
         Some((f64::from(self.choice.pdf(rank)) / solid_angle) as f32)
+    }
+
+    /// The operands of the density at a point of the mesh: those of the triangle that it is nearest to the plane of, and within.
+    pub(super) fn density(&self, from: DVec3, point: DVec3) -> AreaDensity {
+        let off = |triangle: &Triangle| {
+            let (to, n) = (point - triangle.p0, triangle.e1.cross(triangle.e2));
+            let size = n.length_squared();
+            let (beta, gamma) = (to.cross(triangle.e2).dot(n) / size, triangle.e1.cross(to).dot(n) / size);
+            let outside =
+                [beta, gamma, 1.0 - beta - gamma].map(|weight| (-weight).max(0.0)).iter().sum::<f64>();
+            to.dot(n).abs() / size.sqrt() + outside * size.sqrt().sqrt()
+        };
+        let by_distance = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1);
+        let nearest = self.triangles.iter().map(off).enumerate().min_by(by_distance);
+        let (rank, _) = nearest.unwrap_or_default();
+        let triangle = &self.triangles[rank];
+        let probability = f64::from(self.choice.pdf(rank));
+        match triangle.worth_direction(from) {
+            Some((_, solid_angle)) => AreaDensity::SolidAngle { solid_angle, probability },
+            None => AreaDensity::Area { area: triangle.area, probability },
+        }
     }
 
     /// The area density where a triangle is sampled by area; 0 where it is not sampled.

@@ -117,6 +117,16 @@ impl QuadricLight {
         }
     }
 
+    /// The radius and the distance of the centre of a whole sphere that is round in render space and seen from outside.
+    pub(super) fn cone(&self, from: DVec3) -> Option<(f64, f64)> {
+        let sphere = self.sphere()?;
+        let radii = DVec3::AXES.map(|axis| self.quadric.vector_in_render(sphere.radius * axis).length());
+        let center = self.quadric.point_in_render(DVec3::ZERO);
+        let (radius, distance) = (radii[0], center.distance(from));
+        let is_round = radii.iter().all(|other| (other - radius).abs() <= 1e-9 * radius);
+        (is_round && distance > radius).then_some((radius, distance))
+    }
+
     /// The area density, in render space, where the quadric is sampled by area.
     pub(super) fn pdf_by_area(&self, p: DVec3) -> f64 {
         1.0 / (self.quadric.object_area() * self.quadric.area_scale(self.quadric.point_in_object(p)))
