@@ -7,6 +7,7 @@ use lookfrom::film::Film;
 use lookfrom::render::{Rendered, StopCriteria};
 use lookfrom::session::{MOST_SAMPLES, Options};
 use lookfrom_scene::image::compare::{Sampled, compare};
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{Disk, Inputs, LoadContext};
 use serde::Serialize;
 
@@ -24,7 +25,7 @@ const SAMPLES: u32 = 16;
 #[derive(Debug, Serialize)]
 pub(crate) struct Measured {
     scene: String,
-    samples: u32,
+    samples: u64,
     read_seconds: f64,
     build_seconds: f64,
     render_seconds: f64,
@@ -84,8 +85,10 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let renderer = session.renderer();
     let started = Instant::now();
     let rendered = renderer.render_until(&options.stop, options.threads, &());
-    let Rendered { film, rays, samples, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
+    let Rendered { film, rays, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
     let seconds = report::seconds(started.elapsed()).max(1e-6);
+    let PixelBounds { x0, y0, x1, y1 } = film.area();
+    let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
 
     // The reference.
     let reference = match &arguments.reference {
@@ -103,7 +106,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let comparison = compare(&sampled(&film), &reference).map_err(exit::in_scene(path))?;
     Ok(Measured {
         scene: path.display().to_string(),
-        samples,
+        samples: (samples_taken as f64 / pixels as f64).round() as u64,
         read_seconds: report::seconds(session.info().read),
         build_seconds: report::seconds(session.info().build),
         render_seconds: seconds,

@@ -17,6 +17,7 @@ use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
 use crate::html::{self, Shown};
 use crate::output;
 use lookfrom_scene::json;
+use lookfrom_scene::plural::{are, counted};
 
 /// A difference of means up to this many standard errors is explained by noise.
 const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;
@@ -33,7 +34,10 @@ pub(crate) struct Verdict {
     pub(crate) flip: f64,
     pub(crate) noise: Option<Noise>,
     pub(crate) not_finite: usize,
-    pub(crate) passed: bool,
+    /// Whether it passed the criteria; `None` without any.
+    pub(crate) passed: Option<bool>,
+    /// Why it failed.
+    pub(crate) reasons: Vec<String>,
 }
 
 /// Result of the z-tests against the measured variances.
@@ -68,8 +72,8 @@ pub(crate) fn run(arguments: &CompareArguments) -> u8 {
 fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
     if !arguments.pictures.len().is_multiple_of(2) {
         return Err(Failure::Usage(format!(
-            "{} pictures are not pairs; give PICTURE REFERENCE for each comparison",
-            arguments.pictures.len()
+            "{} are not pairs; give PICTURE REFERENCE for each comparison",
+            counted(arguments.pictures.len(), "picture")
         )));
     }
     let inputs = Inputs::default();
@@ -77,7 +81,7 @@ fn compare_all(arguments: &CompareArguments) -> Result<u8, Failure> {
     let mut code = DONE;
     for pair in arguments.pictures.chunks_exact(2) {
         let (verdict, pictures) = compare_pair(&pair[0], &pair[1], arguments, &inputs)?;
-        if !verdict.passed {
+        if verdict.passed == Some(false) {
             code = BAD_SCENE;
         }
         if arguments.json {
@@ -146,24 +150,11 @@ fn compare_pair(
             relative_error_of_mean: noise.relative_error_of_mean,
         }),
         not_finite: a.not_finite,
-        passed: true,
+        passed: None,
+        reasons: Vec::new(),
     };
-    verdict.passed = passes(&verdict, arguments);
+    verdict.judge(arguments);
     Ok((verdict, Pictures { picture: a, reference: b, flip: map }))
-}
-
-fn passes(verdict: &Verdict, arguments: &CompareArguments) -> bool {
-    let explained = verdict
-        .noise
-        .as_ref()
-        .is_some_and(|noise| noise.mean.iter().all(|z| z.abs() <= MOST_STANDARD_ERRORS_OF_MEAN));
-    let means = arguments.tolerance.is_none_or(|tolerance| {
-        explained || verdict.relative.iter().all(|difference| difference.abs() <= tolerance)
-    });
-    let pixels = arguments
-        .within
-        .is_none_or(|least| verdict.noise.as_ref().is_some_and(|noise| noise.pixels_within >= least));
-    means && pixels && verdict.not_finite == 0
 }
 
 /// Bytes of a pixel while its colours become those of [`Sampled`].
@@ -233,6 +224,65 @@ fn mean_light(verdict: &Verdict) -> f32 {
 }
 
 impl Verdict {
+    /// Judges the pair by the tolerances that are asked for; values that are not finite are wrong in any case.
+    fn judge(&mut self, arguments: &CompareArguments) {
+        let mut reasons = Vec::new();
+        let deviations = self.noise.as_ref().map(|noise| noise.mean);
+        let explained =
+            deviations.is_some_and(|mean| mean.iter().all(|z| z.abs() <= MOST_STANDARD_ERRORS_OF_MEAN));
+        if let Some(tolerance) = arguments.tolerance.filter(|_| !explained) {
+            let beyond = |(channel, share): (&str, &f64)| {
+                // A difference that is no number is beyond every tolerance.
+                let is_within = share.abs() <= tolerance;
+                (!is_within).then(|| format!("{channel} by {:+.3} %", share * 100.0))
+            };
+            let far: Vec<String> =
+                ["red", "green", "blue"].into_iter().zip(&self.relative).filter_map(beyond).collect();
+            if !far.is_empty() {
+                let noise = match deviations {
+                    Some(mean) => {
+                        format!("{:.1} standard errors", mean.iter().map(|z| z.abs()).fold(0.0, f64::max))
+                    }
+                    None => "noise unknown".to_owned(),
+                };
+                let allowed = tolerance * 100.0;
+                reasons.push(format!(
+                    "the means differ in {} ({noise}); allowed are {allowed} %",
+                    far.join(", ")
+                ));
+            }
+        }
+        if let Some(least) = arguments.within {
+            let least_percent = least * 100.0;
+            match &self.noise {
+                Some(noise) if noise.pixels_within >= least => {}
+                Some(noise) => reasons.push(format!(
+                    "{:.2} % of the pixels are within 3.5 standard errors; expected {least_percent} %",
+                    noise.pixels_within * 100.0
+                )),
+                None => reasons.push(
+                    "the noise is unknown, which --within needs: both pictures as .exr with --layers geometry".to_owned(),
+                ),
+            }
+        }
+        if self.not_finite > 0 {
+            reasons.push(format!("{} not finite", are(self.not_finite as u64, "value")));
+        }
+        let has_criterion =
+            arguments.tolerance.is_some() || arguments.within.is_some() || self.not_finite > 0;
+        self.passed = has_criterion.then_some(reasons.is_empty());
+        self.reasons = reasons;
+    }
+
+    /// The judgement in words, with its reasons.
+    fn conclusion(&self) -> String {
+        match self.passed {
+            None => "not judged, without --tolerance or --within".to_owned(),
+            Some(true) => "passed".to_owned(),
+            Some(false) => format!("failed: {}", self.reasons.join("; ")),
+        }
+    }
+
     /// The result as text.
     pub(crate) fn for_people(&self) -> String {
         let percent = |share: f64| format!("{:+.3} %", share * 100.0);
@@ -256,13 +306,13 @@ impl Verdict {
         };
         let not_finite = match self.not_finite {
             0 => String::new(),
-            count => format!("\n  not finite  {count} values"),
+            count => format!("\n  not finite  {}", counted(count, "value")),
         };
         format!(
             "{} against {}: {}\n  means       {} against {}\n  difference  {}\n  errors      RMSE {:.6}, relative MSE {:.6}, FLIP {:.4}{noise}{not_finite}",
             self.picture,
             self.reference,
-            if self.passed { "passed" } else { "failed" },
+            self.conclusion(),
             mean(self.means[0]),
             mean(self.means[1]),
             self.relative.map(percent).join(" "),

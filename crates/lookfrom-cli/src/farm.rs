@@ -14,6 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use lookfrom_scene::plural::counted;
 
 use crate::args::FarmArguments;
 use crate::exit::{DONE, Failure, say};
@@ -94,11 +95,11 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
     }
     let next = next.replace("FOLDER", &folder.display().to_string());
     say(&format!(
-        "{}: {} frames × {} parts = {} tasks\n  next: {next}",
+        "{}: {} × {} = {}\n  next: {next}",
         folder.display(),
-        job.frames.len(),
-        job.parts,
-        job.tasks()
+        counted(job.frames.len(), "frame"),
+        counted(job.parts, "part"),
+        counted(job.tasks(), "task")
     ));
     Ok(())
 }
@@ -123,8 +124,8 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
     if let Some(samples) = &arguments.overrides.samples {
         if samples.end - samples.start < arguments.parts {
             return Err(Failure::Usage(format!(
-                "{} samples in {} parts: each part needs at least one",
-                samples.end - samples.start,
+                "{} in {} parts: each part needs at least one",
+                counted(samples.end - samples.start, "sample"),
                 arguments.parts
             )));
         }

@@ -63,7 +63,11 @@ fn overview(pairs: &[Shown]) -> String {
         let [red, green, blue] = verdict.relative.map(|share| format!("{:+.3} %", share * 100.0));
         let share = |of: Option<f64>| of.map_or("–".to_owned(), |share| format!("{:.2} %", share * 100.0));
         let noise = verdict.noise.as_ref();
-        let (class, word) = if verdict.passed { ("good", "passed") } else { ("bad", "failed") };
+        let (class, word) = match verdict.passed {
+            None => ("", "not judged"),
+            Some(true) => ("good", "passed"),
+            Some(false) => ("bad", "failed"),
+        };
         let _ = writeln!(
             table,
             "<tr><td>{}</td><td>{red}</td><td>{green}</td><td>{blue}</td><td>{}</td><td>{}</td><td>{:.4}</td><td>{:.6}</td>\

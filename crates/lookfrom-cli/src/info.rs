@@ -23,6 +23,7 @@ use crate::prepare::{self, prepare};
 use crate::report::{self, bytes, thousands};
 use crate::scenes;
 use lookfrom_scene::json;
+use lookfrom_scene::plural::counted;
 
 /// Describes every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
@@ -134,9 +135,9 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     line(
         "render",
         format!(
-            "{}, {} samples, depth {}, min contribution {}, sampler {}, seed {}",
+            "{}, {}, depth {}, min contribution {}, sampler {}, seed {}",
             render.integrator.word(),
-            render.samples,
+            counted(render.samples, "sample"),
             render.depth,
             render.min_contribution,
             render.sampler.word(),
@@ -147,9 +148,10 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
         line("added", format!("{} (the file has none)", info.added.join(", ")));
     }
     let Tree { nodes, leaves, depth, memory_bytes, left_out } = tree(session);
-    let mut tree = format!("{nodes} nodes, {leaves} leaves, depth {depth}, {}", bytes(memory_bytes as u64));
+    let (nodes, leaves) = (counted(nodes, "node"), counted(leaves, "leaf"));
+    let mut tree = format!("{nodes}, {leaves}, depth {depth}, {}", bytes(memory_bytes as u64));
     if left_out > 0 {
-        let _ = write!(tree, "; {left_out} degenerate or non-finite primitives left out");
+        let _ = write!(tree, "; {} left out", counted(left_out, "degenerate or non-finite primitive"));
     }
     line("bvh", tree);
     line(

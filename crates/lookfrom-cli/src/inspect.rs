@@ -15,6 +15,7 @@ use crate::files::InputFile;
 use crate::output;
 use crate::prepare;
 use lookfrom_scene::json;
+use lookfrom_scene::plural::counted;
 
 /// A report as JSON, with all that is needed to have it again.
 #[derive(Serialize)]
@@ -93,7 +94,8 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
     if chosen.end > samples {
         let last = chosen.end - 1;
         return Err(Failure::Usage(format!(
-            "there is no sample {last}: the picture has {samples} samples per pixel, counted from 0"
+            "there is no sample {last}: the picture has {} per pixel, counted from 0",
+            counted(samples, "sample")
         )));
     }
     let renderer = session.renderer();

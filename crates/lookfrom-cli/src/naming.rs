@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use lookfrom::session::Format;
 use lookfrom_scene::load::PIPE;
+use lookfrom_scene::plural::counted;
 use lookfrom_scene::suggest::nearest;
 use lookfrom_scene::{Disk, Files};
 
@@ -167,8 +168,8 @@ fn target(of: Numbered<'_>, output: Option<&Path>, extension: Option<&str>) -> R
         || Format::EXTENSIONS.iter().any(|(extension, _)| Some(OsStr::new(extension)) == output.extension())
     {
         return Err(Failure::Usage(format!(
-            "{} pictures do not fit into the one file {}; give -o a folder or a pattern with {{name}}",
-            of.count,
+            "{} do not fit into the one file {}; give -o a folder or a pattern with {{name}}",
+            counted(of.count, "picture"),
             output.display()
         )));
     }

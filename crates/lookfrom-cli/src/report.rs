@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::exit::{self, Failure};
 use lookfrom_scene::json;
+use lookfrom_scene::plural::{are, counted};
 
 /// Number of fireflies that are listed.
 const MOST_FIREFLIES: usize = 3;
@@ -173,7 +174,7 @@ impl Summary {
         lines.join("\n")
     }
 
-    /// The summary for a person.
+    /// The summary for a person; of one of several pictures only a line, and what is remarkable.
     pub(crate) fn for_people(&self) -> String {
         let Self { scene, width, height, samples, integrator, .. } = self;
         let RayCounts { camera, secondary, shadow, total } = self.rays;
@@ -181,6 +182,7 @@ impl Summary {
         let output = self.output.as_deref().unwrap_or("nothing");
         let memory = self.peak_memory_bytes.map_or("unknown".to_owned(), bytes);
         let [camera, secondary, shadow, total] = [camera, secondary, shadow, total].map(thousands);
+        let is_one_of_several = self.place.is_some();
         let mut text = String::new();
         // Writing to a string cannot fail.
         if let Some([number, count]) = self.place {
@@ -188,39 +190,46 @@ impl Summary {
         }
         let is_allocated = self.ended_by == "samples" && self.samples_taken != u64::from(*samples);
         let each = match is_allocated && !self.cancelled {
-            true => format!("{} samples per pixel in the mean, at most {samples}", self.samples_taken),
-            false => format!("{samples} samples per pixel"),
+            true => {
+                format!("{} per pixel in the mean, at most {samples}", counted(self.samples_taken, "sample"))
+            }
+            false => format!("{} per pixel", counted(*samples, "sample")),
         };
-        let _ = writeln!(
+        let _ = write!(
             text,
             "{scene} → {output}: {width} × {height} pixels, {each}, {integrator}{}",
             if self.denoised { ", denoised" } else { "" }
         );
-        let _ = writeln!(
-            text,
-            "  rays    {total} ({camera} camera, {secondary} secondary, {shadow} shadow), {:.2} Mrays/s",
-            self.mrays_per_s
-        );
-        let _ = write!(
-            text,
-            "  time    read {read:.2} s, build {build:.2} s, render {render:.2} s, write {write:.2} s\n  memory  {memory} at the peak"
-        );
+        if is_one_of_several {
+            let _ = write!(text, ", {:.2} s", read + build + render + write);
+        } else {
+            let _ = write!(
+                text,
+                "\n  rays    {total} ({camera} camera, {secondary} secondary, {shadow} shadow), {:.2} Mrays/s\n  time    \
+                 read {read:.2} s, build {build:.2} s, render {render:.2} s, write {write:.2} s\n  memory  {memory} at \
+                 the peak",
+                self.mrays_per_s
+            );
+        }
         let _ = match &self.output {
             None => {
                 write!(text, "\nstopped after {render:.1} s, before the first samples; nothing is written")
             }
             Some(output) if self.cancelled => write!(
                 text,
-                "\nstopped after {render:.1} s; {output} holds the picture so far: {} of {samples} samples",
-                self.samples_taken
+                "\nstopped after {render:.1} s; {output} holds the picture so far: {} of {}",
+                self.samples_taken,
+                counted(*samples, "sample"),
             ),
             Some(_) if self.ended_by == "samples" => Ok(()),
             Some(_) => {
                 let error = self.relative_error.map_or("unknown".to_owned(), |error| format!("{error:.4}"));
                 write!(
                     text,
-                    "\n  stopped by {}: at most {samples} samples per pixel, {} on average; relative error {error}",
-                    self.ended_by, self.samples_taken
+                    "\n  stopped by {}: at most {} per pixel, {} on average; relative error {error}",
+                    self.ended_by,
+                    counted(*samples, "sample"),
+                    self.samples_taken
                 )
             }
         };
@@ -232,8 +241,10 @@ impl Summary {
         if let Dropped { count, first: Some(DroppedAddress { x, y, sample }) } = self.dropped_samples {
             let _ = write!(
                 text,
-                "\nwarning: {count} samples were not finite and were left out; to replay the first, with the same options:\n  \
-                 lookfrom inspect {scene} {x} {y} --sample {sample}{of}"
+                "\nwarning: {} not finite and left out; to replay {}, with the same options:\n  \
+                 lookfrom inspect {scene} {x} {y} --sample {sample}{of}",
+                are(count, "sample"),
+                if count == 1 { "it" } else { "the first" }
             );
         }
         // The denoiser removes them.
@@ -364,6 +375,10 @@ mod tests {
             Summary { ended_by: "noise", relative_error: Some(0.0199), samples_taken: 40, ..summary() };
         let words = "stopped by noise: at most 64 samples per pixel, 40 on average; relative error 0.0199";
         assert!(clean.for_people().contains(words), "{}", clean.for_people());
+        let one = Summary { samples: 1, samples_taken: 1, ..summary() }.for_people();
+        assert!(one.contains(" 1 sample per pixel,"), "{one}");
+        let third = Summary { place: Some([3, 12]), ..summary() }.for_people();
+        assert_eq!(third, "3 of 12: a.toml → a.png: 4 × 3 pixels, 64 samples per pixel, whitted, 2.50 s");
         let nothing = Summary { cancelled: true, output: None, ..summary() }.for_people();
         assert!(nothing.contains("a.toml → nothing") && nothing.ends_with("nothing is written"), "{nothing}");
     }

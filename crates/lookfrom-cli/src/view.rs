@@ -4,10 +4,13 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr};
 use std::process::{Command, Stdio};
 
+use lookfrom_scene::load::has_known_name;
+use lookfrom_scene::{Error, ErrorKind, Location};
 use lookfrom_view::{Server, Settings};
 
 use crate::args::ViewArguments;
 use crate::exit::{Failure, INTERRUPTED, answer, say};
+use crate::output::folder_or_here;
 use crate::{interrupt, prepare};
 
 /// Serves until Ctrl-C, and returns the exit code. `typed` are the arguments by which `render` opens the same session.
@@ -18,11 +21,16 @@ pub(crate) fn run(arguments: &ViewArguments, typed: &[String]) -> u8 {
 fn serve(arguments: &ViewArguments, typed: &[String]) -> Result<(), Failure> {
     let ViewArguments { scene, host, port, open, reference, common, overrides } = arguments;
     prepare::use_threads(common)?;
-    // A misspelt name would never be there to read. Everything else that is wrong may be mended while the page is open.
+    // What is wrong in a file may be mended while the page is open, and a new file may be saved; but not without a folder.
     if !scene.is_file() {
-        let at = lookfrom_scene::Location::file(scene);
-        let error = lookfrom_scene::Error::new(lookfrom_scene::ErrorKind::Io, &at, "no such file");
-        return Err(Failure::Scene(error.hint("check the name")));
+        let is_new = !scene.exists() && has_known_name(scene) && folder_or_here(scene.parent()).is_dir();
+        if !is_new {
+            let at = Location::file(scene);
+            return Err(Failure::Scene(
+                Error::new(ErrorKind::Io, &at, "no such file").hint("check the name"),
+            ));
+        }
+        say(&format!("{} is not there yet: the page shows it as soon as it is saved", scene.display()));
     }
     let host = host.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST));
     let settings = Settings {

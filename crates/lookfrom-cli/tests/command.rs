@@ -23,6 +23,7 @@ mod command {
     mod pinned;
     mod pipes;
     mod render;
+    mod reports;
     mod schema;
     mod series;
     mod stage;

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::exit::{Failure, answer};
 use lookfrom_scene::json;
+use lookfrom_scene::plural::{are, counted};
 
 /// The JSON object of a picture, which docs/guide/command.md explains.
 #[derive(Serialize)]
@@ -97,9 +98,9 @@ fn for_people(picture: &Picture) -> String {
         let [x0, y0, x1, y1] = film.area;
         let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
         lines.push(format!(
-            "  {:<10} {} samples per pixel at most, {:.1} on average, in the area {x0},{y0},{x1},{y1}",
+            "  {:<10} {} per pixel at most, {:.1} on average, in the area {x0},{y0},{x1},{y1}",
             "film",
-            film.samples,
+            counted(film.samples, "sample"),
             film.samples_taken as f64 / pixels.max(1) as f64
         ));
         if let Some([start, end]) = film.goal {
@@ -112,7 +113,7 @@ fn for_people(picture: &Picture) -> String {
         let shown: Vec<&str> = film.ledger.lines().take(4).collect();
         lines.push(format!("  {:<10} {}", "ledger", shown.join("\n             ")));
         if film.dropped > 0 {
-            lines.push(format!("  {:<10} {} samples were not finite", "dropped", film.dropped));
+            lines.push(format!("  {:<10} {} not finite", "dropped", are(film.dropped, "sample")));
         }
         lines.extend(film.inputs.iter().map(|Input { path, sha256 }| {
             format!("  {:<10} {} {path}", "input", sha256.chars().take(12).collect::<String>())

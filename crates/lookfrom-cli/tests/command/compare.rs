@@ -22,8 +22,19 @@ fn a_picture_and_its_reference() {
     let report = String::from_utf8(stage.bytes("report.html")).unwrap();
     assert_eq!(report.matches("data:image/png;base64,").count(), 8);
     assert!(report.contains("failed") && !report.contains("http"), "the report leads elsewhere");
+    assert!(
+        text.contains("failed: the means differ in red by ") && text.contains("allowed are 0.1 %"),
+        "{text}"
+    );
     // Without a tolerance it only tells.
-    stage.done("compare dark.exr b.exr");
+    let told = String::from_utf8(stage.done("compare dark.exr b.exr").stdout).unwrap();
+    assert!(!told.contains("passed") && told.contains("not judged"), "{told}");
+    let judged = |call: &str| serde_json::from_slice::<serde_json::Value>(&stage.run(call).stdout).unwrap();
+    let answer = judged("compare dark.exr b.exr --json");
+    assert_eq!((&answer["passed"], &answer["reasons"]), (&serde_json::Value::Null, &serde_json::json!([])));
+    let answer = judged("compare dark.exr b.exr --within 0.999 --json");
+    assert_eq!(answer["passed"], false);
+    assert!(answer["reasons"][0].as_str().unwrap().contains("expected 99.9 %"), "{answer}");
 }
 
 #[test]
@@ -64,6 +75,7 @@ fn pictures_without_noise() {
     // What was not measured is not within.
     let run = stage.run("compare a.png b.pfm --within 0.5");
     assert_eq!(run.code, Some(1));
+    assert!(String::from_utf8(run.stdout).unwrap().contains("failed: the noise is unknown"));
 }
 
 #[test]
@@ -99,5 +111,7 @@ fn speed_and_error() {
         String::from_utf8(stage.done("bench scene.toml --time 50ms --reference-samples 4").stdout).unwrap();
     assert!(table.starts_with("scene ") && table.contains("\nscene.toml "), "{table}");
     stage.run("bench scene.toml model.obj --reference reference.exr").fails(2, &["one scene"]);
+    let allocated = "bench scene.toml --json --samples 8 --allocation adaptive --reference-samples 4";
+    assert_eq!(stage.json(allocated)[0]["samples"], 8);
     stage.run("bench nowhere.toml").fails(1, &["no such file"]);
 }

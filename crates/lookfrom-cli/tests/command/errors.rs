@@ -166,7 +166,7 @@ fn harmless_warnings_are_notes_of_one_line_that_strict_allows() {
     let names = ["a", "b", "c", "d", "e"].map(|name| format!("{name}.obj"));
     names.iter().for_each(|name| stage.write(name, &flat));
     let models: String = names.iter().map(|name| format!("[[mesh]]\nfile = \"{name}\"\n\n")).collect();
-    let head = "[camera]\nlookfrom = [0, 0, 5]\nlookat = [0, 0, 0]\n\n";
+    let head = "[camera]\nlookfrom = [0, 0, 5]\nlookat = [0, 0, 0]\n\n[[light]]\ntype = \"ambient\"\ncolor = 0.1\n\n";
     stage.write("all.toml", &format!("{head}{models}"));
     let run = stage.done("render all.toml --width 8 --samples 1 --strict --json");
     let note = "10 triangles left out: without area (also at b.obj:5, c.obj:5 and 2 more places)";

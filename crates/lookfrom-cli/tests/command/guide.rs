@@ -78,18 +78,10 @@ fn every_key_of_the_answers_is_in_the_guide() {
 }
 
 #[test]
-fn the_lesson_shows_what_is_printed_and_what_is_written() {
+fn the_lesson_shows_what_is_written() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
     let lesson = read("docs/guide/lesson.md");
-    let stage = Stage::new("guide-lesson");
-    let scene = root.join("scenes/notes-exercise.toml");
-    let printed: String = ["120 240", "330 240"]
-        .map(|pixel| {
-            let run = stage.done(&format!("inspect {} {pixel}", scene.display()));
-            String::from_utf8(run.stdout).unwrap()
-        })
-        .concat();
     let written: String = [
         "crates/lookfrom/src/view/camera.rs",
         "crates/lookfrom-bvh/src/reference.rs",
@@ -97,19 +89,41 @@ fn the_lesson_shows_what_is_printed_and_what_is_written() {
     ]
     .map(read)
     .concat();
-    let mut shown = [0, 0];
-    let mut place: Option<usize> = None;
+    let (mut shown, mut is_code) = (0, false);
     for line in lesson.lines() {
-        match (line, place) {
-            ("```text", None) => place = Some(0),
-            ("```rust", None) => place = Some(1),
-            ("```", _) => place = None,
-            (line, Some(place)) => {
-                shown[place] += 1;
-                assert!([&printed, &written][place].contains(line), "not there any more: {line}");
+        match line {
+            "```rust" => is_code = true,
+            "```" => is_code = false,
+            line if is_code => {
+                shown += 1;
+                assert!(written.contains(line), "not there any more: {line}");
             }
             _ => {}
         }
     }
-    assert!(shown.iter().all(|lines| *lines > 15), "{shown:?}");
+    assert!(shown > 15, "{shown}");
+}
+
+/// The tutorial's blocks, each after all before it, as it is told to be typed.
+#[test]
+fn the_tutorial_says_what_the_program_says() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let tutorial = std::fs::read_to_string(root.join("docs/guide/tutorial.md")).unwrap();
+    let stage = Stage::new("guide-tutorial");
+    let mut scene = String::new();
+    let mut said = Vec::new();
+    let blocks = tutorial.split("```toml\n").skip(1);
+    for block in blocks {
+        scene += block.split("```").next().unwrap();
+        stage.write("still-life.toml", &scene);
+        let run = stage.done("render still-life.toml --width 24 --samples 1 --denoise off");
+        assert!(!run.stderr.contains("<scene>"), "{}", run.stderr);
+        said.push(run.stderr);
+    }
+    let warnings = |step: usize| said[step].lines().filter(|line| line.starts_with("warning: ")).count();
+    assert_eq!(warnings(0), 1, "{}", said[0]);
+    assert!(said[0].contains("no geometry"), "{}", said[0]);
+    assert!((1..said.len()).all(|step| warnings(step) == 0), "{said:?}");
+    assert!(said[1].contains("note: still-life.toml: there is no light: one is added"), "{}", said[1]);
+    assert!(!said.last().unwrap().contains("note:"), "{said:?}");
 }

@@ -9,7 +9,7 @@ fn a_scene_in_words() {
     let stage = Stage::new("info");
     let run = stage.done("info scene.toml");
     let text = String::from_utf8(run.stdout).unwrap();
-    for word in ["1 quad, 1 sphere", "1 point", "lookfrom 0,1,5", "fov 40°", "40 × 30", "whitted", "nodes"]
+    for word in ["1 quad, 1 sphere", "1 point", "lookfrom 0,1,5", "fov 40°", "40 × 30", "whitted", "1 node"]
     {
         assert!(text.contains(word), "{word:?} is not in: {text}");
     }

@@ -32,7 +32,8 @@ fn what_cannot_be_served_is_refused() {
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
     for (typed, code, says) in [
-        ("view missing.toml", 1, "missing.toml: no such file"),
+        ("view nowhere/missing.toml", 1, "missing.toml: no such file"),
+        ("view missing.png", 1, "missing.png: no such file"),
         ("view scene.toml --port 70000", 2, "--port"),
         ("view scene.toml --host example.org", 2, "--host"),
         (&format!("view scene.toml --port {port}"), 3, "cannot serve at 127.0.0.1"),
