@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use lookfrom_scene::material::{Color, MaterialKind};
+use lookfrom_scene::scene::MaterialId;
 use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, Scene, load};
 use proptest::prelude::*;
 
@@ -202,7 +203,7 @@ proptest! {
                     uses += 1;
                     prop_assert!(uses <= MOST);
                     if let MaterialKind::Mix { materials, .. } = scene.materials[index].kind {
-                        open.extend(materials.map(|id| id.index()));
+                        open.extend(materials.map(MaterialId::index));
                     }
                 }
             }

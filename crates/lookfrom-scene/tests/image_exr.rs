@@ -21,9 +21,11 @@ fn part(
     channels: &[Channel],
 ) -> Layer<AnyChannels<FlatSamples>> {
     let list = channels.iter().map(|(name, values)| AnyChannel::new(*name, FlatSamples::F32(values.clone())));
-    let mut attributes = LayerAttributes::default();
-    attributes.layer_name = name.map(|name| exr::prelude::Text::from(name));
-    attributes.layer_position = Vec2(x, y);
+    let attributes = LayerAttributes {
+        layer_name: name.map(exr::prelude::Text::from),
+        layer_position: Vec2(x, y),
+        ..LayerAttributes::default()
+    };
     Layer::new(Vec2(width, height), attributes, Encoding::UNCOMPRESSED, AnyChannels::sort(list.collect()))
 }
 

@@ -14,18 +14,21 @@ fn flat(pixels: &[[u8; 4]]) -> Vec<u8> {
     pixels.as_flattened().to_vec()
 }
 
-fn read_by(by: By, head: &str, pixels: &[u8]) -> Result<(Vec<[f32; 3]>, [u32; 2], Vec<String>), String> {
+/// Colours, columns and rows, warnings.
+type Read = (Vec<[f32; 3]>, [u32; 2], Vec<String>);
+
+fn read_by(by: By, head: &str, pixels: &[u8]) -> Result<Read, String> {
     let mut files = Memory::default();
     files.0.insert("a.pic".into(), [head.as_bytes(), pixels].concat());
     let mut context = LoadContext::new(&files);
     let reading = Reading { by, ..Reading::new(Encoding::Srgb) };
     let image =
         image::read_as(Path::new("a.pic"), &reading, &mut context).map_err(|error| error.to_string())?;
-    let said = context.warnings.iter().map(|warning| warning.to_string()).collect();
+    let said = context.warnings.iter().map(ToString::to_string).collect();
     Ok((image.texels().collect(), [image.width, image.height], said))
 }
 
-fn read(head: &str, pixels: &[u8]) -> (Vec<[f32; 3]>, [u32; 2], Vec<String>) {
+fn read(head: &str, pixels: &[u8]) -> Read {
     read_by(By::Standard, head, pixels).unwrap()
 }
 
@@ -123,7 +126,7 @@ fn shapes_that_are_no_panorama_are_told() {
         files.0.insert("a.toml".into(), scene.into());
         let mut context = LoadContext::new(&files);
         lookfrom_scene::load::scene(Path::new("a.toml"), &mut context).unwrap();
-        context.warnings.iter().map(|warning| warning.to_string()).collect::<Vec<_>>()
+        context.warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     for panorama in [[2, 1], [64, 32], [64, 31], [200, 99], [1, 1]] {
         assert_eq!(said(panorama), Vec::<String>::new(), "{panorama:?}");

@@ -49,7 +49,7 @@ fn models_of_maps_keep_their_shape() {
         let mut ply = head("ascii", "float");
         corners.iter().for_each(|&corner| writeln!(ply, "{}", row(corner)).unwrap());
         let mut binary = head("binary_little_endian", "double").into_bytes();
-        binary.extend(corners.iter().flat_map(|corner| corner.to_array()).flat_map(f64::to_le_bytes));
+        binary.extend(corners.iter().flat_map(DVec3::to_array).flat_map(f64::to_le_bytes));
         for [a, b, c] in FACES {
             writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).unwrap();
             writeln!(ply, "3 {a} {b} {c}").unwrap();
@@ -186,7 +186,7 @@ fn stl_files_of_careless_programs() {
     for face in FACES {
         text += "Facet Normal 0 0 0\nOuter Loop\n";
         face.iter().for_each(|&k| {
-            writeln!(text, "Vertex {} {} {}", CORNERS[k][0], CORNERS[k][1], CORNERS[k][2]).unwrap()
+            writeln!(text, "Vertex {} {} {}", CORNERS[k][0], CORNERS[k][1], CORNERS[k][2]).unwrap();
         });
         text += "End Loop\nend facet\n";
     }
