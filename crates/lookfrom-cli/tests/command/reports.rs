@@ -56,15 +56,23 @@ fn subject(line: &str) -> String {
     words.take(5).map(|word| word.chars().take(4).collect::<String>()).collect::<Vec<_>>().join(" ")
 }
 
+/// Whether a line of a block is one of a report, whatever its indentation, or the end of one.
+fn is_same(printed: &str, shown: &str) -> bool {
+    printed.trim_end().ends_with(shown.trim())
+}
+
 /// The lines of a report that a block shows now, in its order, as many as can be: for each line of the block the index of one
-/// about the same.
+/// about the same. Lines of dots stand for others.
 fn followed(block: &[&str], report: &[String], from: usize) -> Vec<Option<usize>> {
     let mut next = from;
     block
         .iter()
         .map(|line| {
             let wanted = subject(line);
-            let exact = report[next..].iter().position(|other| other.trim() == line.trim());
+            if is_ellipsis(line) {
+                return None;
+            }
+            let exact = report[next..].iter().position(|other| is_same(other, line));
             let alike = || report[next..].iter().position(|other| subject(other) == wanted);
             let at = next + exact.or_else(alike)?;
             next = at + 1;
@@ -73,24 +81,32 @@ fn followed(block: &[&str], report: &[String], from: usize) -> Vec<Option<usize>
         .collect()
 }
 
+fn is_ellipsis(line: &str) -> bool {
+    matches!(line.trim(), "" | "…")
+}
+
 /// The block as it is printed now: by the report, and the place in it, that agrees best.
 fn printed(block: &[&str], reports: &[Vec<String>]) -> Vec<String> {
-    let Some(first) = block.iter().find(|line| line.trim() != "…") else { return Vec::new() };
+    let Some(first) = block.iter().find(|line| !is_ellipsis(line)) else { return Vec::new() };
     let mut best: Option<([i64; 3], Vec<String>)> = None;
     for report in reports {
-        let starts = report.iter().enumerate().filter(|(_, line)| subject(line) == subject(first));
-        for (start, _) in starts {
+        let begins = |line: &str| is_same(line, first) || subject(line) == subject(first);
+        for start in (0..report.len()).filter(|start| begins(&report[*start])) {
             let places = followed(block, report, start);
             let found: Vec<usize> = places.iter().flatten().copied().collect();
             let same = |(place, line): &(&Option<usize>, &&str)| {
-                place.is_some_and(|place| report[place].trim() == line.trim())
+                place.is_some_and(|place| is_same(&report[place], line))
             };
             let exact = places.iter().zip(block).filter(same).count() as i64;
             let length = found.last().map_or(0, |last| last - start) as i64;
             let score = [exact, found.len() as i64, -length];
             if best.as_ref().is_none_or(|(known, _)| score > *known) {
-                let line = |(place, line): (&Option<usize>, &&str)| {
-                    place.map_or_else(|| (*line).to_owned(), |place| report[place].clone())
+                let line = |(place, line): (&Option<usize>, &&str)| match place {
+                    Some(place) if !is_same(&report[*place], line) => {
+                        let indent = line.len() - line.trim_start().len();
+                        format!("{:indent$}{}", "", report[*place].trim_start())
+                    }
+                    _ => (*line).to_owned(),
                 };
                 best = Some((score, places.iter().zip(block).map(line).collect()));
             }
@@ -119,11 +135,8 @@ fn the_guide_shows_what_is_printed() {
                 (Some(lines), "```") => {
                     let shown = printed(lines, &reports);
                     for (before, after) in lines.iter().zip(&shown) {
-                        let is_printed =
-                            |report: &Vec<String>| report.iter().any(|other| other.trim() == before.trim());
-                        if before.trim() != "…"
-                            && (before.trim() != after.trim() || !reports.iter().any(is_printed))
-                        {
+                        let is_there = |report: &Vec<String>| report.iter().any(|line| is_same(line, before));
+                        if !is_ellipsis(before) && (before != after || !reports.iter().any(is_there)) {
                             wrong.push(format!("{file}: {before}\n     now: {after}"));
                         }
                     }
