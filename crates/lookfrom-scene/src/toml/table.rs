@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use ::toml::de::DeTable;
+use ::toml::de::{DeTable, DeValue};
 
 use super::document::Document;
 use super::synonyms;
@@ -86,7 +86,7 @@ impl<'a> Table<'a> {
         for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
             let word: &str = key.get_ref();
             let message = format!("unknown key `{word}` in {}", self.title);
-            let list = || format!("it may have: {}", known.join(", "));
+            let list = || format!("it may have: {}", distinct(&known).join(", "));
             let hint = self.suggestion(word, &known).unwrap_or_else(list);
             self.refuse(key.span().start, message, hint);
         }
@@ -118,9 +118,15 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Those of the keys that the table does not have yet: no other can be meant by an unknown one.
+    /// Those of the keys that may still be added: those that the table does not have yet, and shapes and lights, which may be
+    /// several. No other can be meant by an unknown one.
     fn absent(&self, keys: &[&'static str]) -> Vec<&'static str> {
-        keys.iter().copied().filter(|key| !self.has(key)).collect()
+        let is_open = |key: &str| match self.map.get(key).map(::toml::Spanned::get_ref) {
+            None => true,
+            Some(DeValue::Array(_)) => self.title == SCENE,
+            Some(_) => false,
+        };
+        keys.iter().copied().filter(|key| is_open(key)).collect()
     }
 
     /// Records these keys as suggestions.
@@ -242,4 +248,10 @@ impl<'a> Table<'a> {
         let document = self.document;
         self.map.iter().map(move |(key, item)| Value { document, key: key.get_ref(), item })
     }
+}
+
+/// The words, each once: groups of keys may have some in common.
+fn distinct(words: &[&'static str]) -> Vec<&'static str> {
+    let is_first = |(place, word): &(usize, &&'static str)| !words[..*place].contains(word);
+    words.iter().enumerate().filter(is_first).map(|(_, word)| *word).collect()
 }
