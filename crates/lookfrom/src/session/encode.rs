@@ -162,7 +162,7 @@ pub(super) fn encode(
     let is_transparent = background == Background::Transparent;
     let background = behind(background);
     let developed = || srgb8_before(picture, background, exposure, tonemap);
-    let linear = || picture.clone().before(background).pixels;
+    let linear = || before(picture, background);
     let size = [width, height];
     let metadata = || metadata(header, development);
     match format {
@@ -195,6 +195,14 @@ pub(super) fn encode(
     }
 }
 
+/// The light of a picture before a background; its own where it has no alpha.
+fn before(picture: &Picture, background: [f32; 3]) -> Cow<'_, [[f32; 3]]> {
+    match picture.alpha.is_empty() {
+        true => Cow::Borrowed(&picture.pixels),
+        false => Cow::Owned(picture.clone().before(background).pixels),
+    }
+}
+
 /// The metadata of a picture for display: the texts of an EXR's header, and its development.
 fn metadata(header: &[(String, String)], development: &Development) -> Metadata {
     let mut lines: Vec<String> = header
@@ -213,7 +221,7 @@ pub(super) fn channels<'a>(
     layers: &'a [(String, Vec<f32>)],
     background: Background,
 ) -> Vec<(String, Cow<'a, [f32]>)> {
-    let pixels = picture.clone().before(behind(background)).pixels;
+    let pixels = before(picture, behind(background));
     let mut channels: Vec<(String, Cow<'a, [f32]>)> = ["R", "G", "B"]
         .iter()
         .enumerate()
