@@ -250,17 +250,15 @@ impl Summary {
         // The denoiser removes them.
         let Outliers { count, brightest } = &self.fireflies;
         if *count > 0 && !self.denoised {
+            let (pixels, are) = if *count == 1 { ("pixel", "is") } else { ("pixels", "are") };
             let _ = write!(
                 text,
-                "\n  {} pixels are made far brighter than those around them by single samples:",
+                "\n  noise   {} {pixels} {are} made far brighter by single samples",
                 thousands(*count as u64)
             );
-            for Outlier { x, y, sample, expression } in brightest {
-                let sample = sample.map_or("all".to_owned(), |sample| sample.to_string());
-                let _ = write!(text, "\n    lookfrom inspect {scene} {x} {y} --sample {sample}{of}");
-                if let Some(expression) = expression {
-                    let _ = write!(text, "   {expression}");
-                }
+            if let Some(Outlier { x, y, sample, .. }) = brightest.first() {
+                let _ =
+                    write!(text, "; the brightest: lookfrom inspect {scene} {x} {y} --sample {sample}{of}");
             }
         }
         text

@@ -29,6 +29,7 @@ use trace_log::TraceLogBuilder;
 
 pub use candidate::{Candidate, Number, Test, TestNumbers, TraversalReport};
 pub use expression::Contribution;
+pub(crate) use expression::light_seen_by_bounces;
 pub use lights::{LightPlace, lights};
 pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};

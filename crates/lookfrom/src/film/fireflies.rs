@@ -4,17 +4,27 @@
 //! miss that light. Clamping it would darken the picture. Here the excess is spread over the pixels around, so that the
 //! sum over the picture is preserved: noise is traded for blur where it is worst.
 //!
-//! A pixel is a firefly if it is brighter than the median of its eight neighbours by more than three of their standard
-//! errors (their median), and by less than three of its own. A pixel that is really bright (a light, a highlight) is so
-//! by many of its own standard errors, and stays. The excess above the median goes in equal parts to the 5 × 5 pixels
-//! around.
+//! A single sample that carries a pixel makes its standard error about as large as its mean. So a pixel is a firefly if its
+//! standard error is most of its mean, it is brighter than the median of its eight neighbours by more than three of their
+//! standard errors (their median), none of them is a quarter as bright, and no pixel of the 5 × 5 around whose mean is
+//! known better is half as bright: edges, lamps and highlights have such neighbours. Thus nothing is taken for a firefly
+//! in a picture that converges. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
-use super::pixel::Pixel;
 use super::{Film, Picture};
 use lookfrom_scene::settings::PixelBounds;
 
 /// Number of standard errors beyond which a difference is significant.
 const STANDARD_ERRORS: f64 = 3.0;
+
+/// Standard error over mean above which few samples carry a pixel: of n samples of which k have equal light and the others
+/// none, it is about 1 / √k.
+const CARRIED_BY_FEW: f64 = 0.7;
+
+/// Light of a neighbour over that of a pixel from which on the pixel does not stand alone.
+const NOT_ALONE: f64 = 0.25;
+
+/// Light of a pixel nearby whose mean is known over that of a pixel from which on the pixel belongs to its edge.
+const AT_EDGE: f64 = 0.5;
 
 /// The radius in pixels over which an excess is spread.
 const RADIUS: u32 = 2;
@@ -29,32 +39,14 @@ pub struct Firefly {
 }
 
 impl Film {
-    /// The fireflies of the film that are at least twice as bright as the median of their neighbours, those with the
-    /// largest excess first.
+    /// The fireflies of the film, those with the largest excess first.
     pub fn fireflies(&self) -> Vec<Firefly> {
         let area = self.area();
-        let luminance = |x, y| self.tile.pixel(x, y).map_or(0.0, Pixel::luminance);
-        let rows = (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| (x, y)));
-        let lights: Vec<f64> = rows.clone().map(|(x, y)| luminance(x, y)).collect();
-        let width = (area.x1 - area.x0) as usize;
-        let at = |x: u32, y: u32| lights[(y - area.y0) as usize * width + (x - area.x0) as usize];
-        // Few pixels are so much brighter than half of their neighbours: only of these the errors are compared.
-        let stands_out = |x: u32, y: u32| {
-            let (half, near) = (0.5 * at(x, y), around(area, x, y, 1));
-            let (mut darker, mut all) = (0, 0);
-            for row in near.y0..near.y1 {
-                for column in near.x0..near.x1 {
-                    darker += u32::from(at(column, row) <= half);
-                    all += 1;
-                }
-            }
-            half > 0.0 && 2 * darker >= all - 1
-        };
-        let mut found: Vec<Firefly> = rows
-            .filter(|&(x, y)| stands_out(x, y))
-            .filter_map(|(x, y)| {
+        let mut found: Vec<Firefly> = (area.y0..area.y1)
+            .flat_map(|y| (area.x0..area.x1).map(move |x| [x, y]))
+            .filter_map(|[x, y]| {
                 let [own, median] = self.outlier(x, y)?;
-                (own >= 2.0 * median).then_some(Firefly { pixel: [x, y], excess: own - median })
+                Some(Firefly { pixel: [x, y], excess: own - median })
             })
             .collect();
         found.sort_by(|a, b| b.excess.total_cmp(&a.excess));
@@ -104,25 +96,29 @@ impl Film {
 
     /// The luminance of a firefly, and the median of its neighbours; `None` for other pixels.
     fn outlier(&self, x: u32, y: u32) -> Option<[f64; 2]> {
-        let at = |x, y| {
-            let pixel = self.tile.pixel(x, y)?;
-            Some((pixel.luminance(), pixel.standard_error()))
-        };
+        let at = |x, y| self.tile.pixel(x, y).map(|pixel| (pixel.luminance(), pixel.standard_error()));
         let (own, own_error) = at(x, y)?;
-        let area = around(self.area(), x, y, 1);
-        let (mut lights, mut errors): (Vec<f64>, Vec<f64>) = (area.y0..area.y1)
-            .flat_map(|row| (area.x0..area.x1).map(move |column| (column, row)))
-            .filter(|&place| place != (x, y))
-            .filter_map(|(column, row)| at(column, row))
-            .unzip();
+        // Few pixels are carried by few samples: only these are compared with others.
+        if !(own > 0.0 && own_error > CARRIED_BY_FEW * own) {
+            return None;
+        }
+        let others = |radius| {
+            let area = around(self.area(), x, y, radius);
+            (area.y0..area.y1)
+                .flat_map(move |row| (area.x0..area.x1).map(move |column| (column, row)))
+                .filter(move |&place| place != (x, y))
+                .filter_map(move |(column, row)| at(column, row))
+        };
+        let is_alone = others(1).all(|(light, _)| light < NOT_ALONE * own);
+        let is_at_edge =
+            others(RADIUS).any(|(light, error)| error <= CARRIED_BY_FEW * light && light >= AT_EDGE * own);
+        if !is_alone || is_at_edge {
+            return None;
+        }
+        let (mut lights, mut errors): (Vec<f64>, Vec<f64>) = others(1).unzip();
         let (median, error) = (median(&mut lights)?, median(&mut errors)?);
-        let excess = own - median;
         // The error of a pixel with one sample is infinite; infinities compare as they should.
-        let is_firefly = own > 0.0
-            && median >= 0.0
-            && excess > STANDARD_ERRORS * error
-            && excess < STANDARD_ERRORS * own_error;
-        is_firefly.then_some([own, median])
+        (median >= 0.0 && own - median > STANDARD_ERRORS * error).then_some([own, median])
     }
 }
 

@@ -369,6 +369,38 @@ fn fireflies_are_spread_and_the_sum_is_kept() {
     }
 }
 
+/// A picture of an edge, of a lattice of small lamps and of noise that is not carried by single samples has no fireflies,
+/// however many samples there are: it is the same with and without the filter.
+#[test]
+fn edges_and_lamps_are_no_fireflies() {
+    const SIZE: u32 = 24;
+    for samples in [2, 4, 8, 16, 64] {
+        let mut film = Film::new(SIZE, SIZE, None).unwrap();
+        for (x, y, sample) in
+            (0..SIZE * SIZE).flat_map(|i| (0..samples).map(move |sample| (i % SIZE, i / SIZE, sample)))
+        {
+            let bits = mix(u64::from((y * SIZE + x) * samples + sample) + 1);
+            let [s, t] = [bits & 0xffff, bits >> 16 & 0xffff].map(|bits| bits as f32 / 65536.0);
+            // A point in the pixel and its surroundings, as pixel filters choose it.
+            let [px, py] = [x as f32 + 3.0 * s - 1.0, y as f32 + 3.0 * t - 1.0];
+            let edge = if px + 0.6 * py > 19.3 { 1.0 } else { 0.02 };
+            let grain = edge * (0.5 + (bits >> 32 & 0xffff) as f32 / 65536.0);
+            film.add(x, y, sample, [grain; 3]);
+        }
+        assert_eq!(film.fireflies(), [], "{samples} samples");
+        assert_eq!(film.picture(), film.picture_without_fireflies());
+    }
+    // Lamps half as large as a pixel.
+    let mut film = Film::new(SIZE, SIZE, None).unwrap();
+    for (x, y, sample) in
+        (0..SIZE * SIZE).flat_map(|i| (0..16).map(move |sample| (i % SIZE, i / SIZE, sample)))
+    {
+        let hits = x % 6 == 3 && y % 6 == 3 && sample % 2 == 0;
+        film.add(x, y, sample, if hits { [300.0; 3] } else { [0.1; 3] });
+    }
+    assert_eq!(film.fireflies(), []);
+}
+
 /// Not a check but a measurement: `cargo test --release -p lookfrom film -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures time"]

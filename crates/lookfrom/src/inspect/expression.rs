@@ -5,9 +5,11 @@ use std::fmt::{self, Display, Formatter};
 
 use serde::Serialize;
 
+use super::inspect_without_tests;
 use super::report::{Addition, Inspection, MetReport, RayReport};
 use super::scatter::{FoundReport, LightSampleReport};
 use crate::core::math::luminance;
+use crate::render::{Renderer, SampleId};
 
 /// Number of contributions in a summary.
 pub(super) const LARGEST: usize = 3;
@@ -47,12 +49,8 @@ pub(super) fn largest(inspection: &Inspection) -> Vec<Contribution> {
 fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribution> {
     let ray = inspection.ray(addition.address)?;
     let light = light_of(ray, addition);
-    let end = match addition.term.as_str() {
-        // Light of the surface itself, or of what is behind the scene, is where the way ends.
-        "emission" | "sky" | "open sky" => None,
-        term if term.starts_with("found ") => None,
-        _ => Some(letters_toward_light(ray, addition)),
-    };
+    // Emission is where the way ends.
+    let end = (!is_emission(addition)).then(|| letters_toward_light(ray, addition));
     let mut links = links(inspection, ray);
     if let (Some(letters), Some(met)) = (end, &ray.met) {
         links.push(link(met, &letters));
@@ -70,6 +68,31 @@ fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribu
         expression: links.join(" → "),
         why: why(inspection, ray, addition),
     })
+}
+
+/// The expression of the largest contribution to a sample; `None` without light, and where the camera sees the light
+/// itself, straight or by mirrors and sharp glass.
+pub(crate) fn light_seen_by_bounces(renderer: &Renderer, id: SampleId) -> Option<String> {
+    let inspection = inspect_without_tests(renderer, id);
+    let largest = inspection.contributions.first()?;
+    let light = inspection
+        .additions
+        .iter()
+        .filter(|addition| addition.address == largest.address)
+        .max_by(|a, b| brightness(a.value.rgb).total_cmp(&brightness(b.value.rgb)))?;
+    let mut ray = inspection.ray(largest.address)?;
+    let mut is_seen = is_emission(light);
+    while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
+        is_seen &= parent.bounce.as_ref().is_none_or(|bounce| matches!(bounce.letters, "R" | "T"));
+        ray = parent;
+    }
+    (!is_seen).then(|| largest.expression.clone())
+}
+
+/// Whether it is the light of the surface itself, or of what is behind the scene.
+fn is_emission(addition: &Addition) -> bool {
+    let term = addition.term.as_str();
+    matches!(term, "emission" | "sky" | "open sky") || term.starts_with("found ")
 }
 
 /// The expression of a sample without light: its longest way, and nothing at its end.

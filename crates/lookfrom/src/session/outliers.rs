@@ -1,21 +1,24 @@
 //! Fireflies of a finished film, and the samples that made them.
 
-use std::ops::Range;
-
 use lookfrom_scene::settings::PixelBounds;
 use serde::Serialize;
 
 use super::Session;
-use crate::film::Film;
-use crate::inspect::inspect_pixel;
+use crate::core::math::luminance;
+use crate::film::{Film, Firefly};
+use crate::inspect::light_seen_by_bounces;
+use crate::render::SampleId;
 
-/// Maximum number of samples of a pixel that are traced again.
-const MOST_TRACED: u32 = 4096;
+/// Maximum number of samples that are traced again.
+const MOST_TRACED: usize = 1 << 18;
+
+/// The share of a firefly's excess that one sample has at least.
+const CARRIED_BY_ONE: f64 = 0.5;
 
 /// Pixels that single samples make far too bright.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Outliers {
-    /// Number of all.
+    /// Number of all, as far as their samples were traced again.
     pub count: usize,
     /// Those with the largest excess over their neighbours.
     pub brightest: Vec<Outlier>,
@@ -28,34 +31,50 @@ pub struct Outlier {
     pub x: u32,
     /// Row from the top.
     pub y: u32,
-    /// Its brightest sample; `None` where the pixel has more than are traced again.
-    pub sample: Option<u32>,
+    /// Its brightest sample.
+    pub sample: u32,
     /// The way of most of that sample's light, such as "camera → floor (D) → window".
-    pub expression: Option<String>,
+    pub expression: String,
 }
 
 impl Session {
-    /// The fireflies of a film that this session rendered; of the brightest `most`, whose samples are traced again, the
-    /// sample to be inspected.
+    /// The fireflies of a film that this session rendered; of the brightest `most`, the sample to be inspected.
+    ///
+    /// The samples of each are traced again: one of them has to carry the pixel, by light that it found after a bounce. A
+    /// small lamp that the camera sees itself makes few samples bright, too, and nothing is wrong with it.
     pub fn fireflies(&self, film: &Film, most: usize) -> Outliers {
-        let found = film.fireflies();
-        let brightest = found.iter().take(most).map(|firefly| {
-            let [x, y] = firefly.pixel;
-            let worst = samples_of(film, [x, y])
-                .and_then(|samples| inspect_pixel(self.renderer(), [x, y], samples).ok())
-                .and_then(|report| report.all.into_iter().next());
-            let (sample, expression) = worst.map(|worst| (worst.sample, worst.expression)).unzip();
-            Outlier { x, y, sample, expression }
-        });
-        Outliers { count: found.len(), brightest: brightest.collect() }
+        let mut outliers = Outliers::default();
+        let mut traced = 0;
+        for firefly in film.fireflies() {
+            let samples = samples_of(film, firefly.pixel);
+            traced += samples.len();
+            if traced > MOST_TRACED {
+                break;
+            }
+            let Some(brightest) = self.carrying_sample(&firefly, &samples) else { continue };
+            let Some(expression) = light_seen_by_bounces(self.renderer(), brightest) else { continue };
+            outliers.count += 1;
+            if outliers.brightest.len() < most {
+                let SampleId { pixel: [x, y], sample } = brightest;
+                outliers.brightest.push(Outlier { x, y, sample, expression });
+            }
+        }
+        outliers
+    }
+
+    /// The brightest sample of a pixel, if it carries most of the excess.
+    fn carrying_sample(&self, firefly: &Firefly, samples: &[SampleId]) -> Option<SampleId> {
+        let (traced, _) = self.renderer().trace(samples);
+        let lights = traced.iter().map(|traced| f64::from(luminance(traced.rgb)));
+        let (brightest, light) = samples.iter().zip(lights).max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (light >= CARRIED_BY_ONE * firefly.excess * samples.len() as f64).then_some(*brightest)
     }
 }
 
-/// The samples of a pixel, if they are one range of not too many.
-fn samples_of(film: &Film, [x, y]: [u32; 2]) -> Option<Range<u32>> {
-    let pixel = PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
-    match film.ledger().uniform(pixel)?.as_slice() {
-        [range] if range.len() <= MOST_TRACED as usize => Some(range.clone()),
-        _ => None,
-    }
+/// The samples of a pixel that a film holds.
+fn samples_of(film: &Film, pixel: [u32; 2]) -> Vec<SampleId> {
+    let [x, y] = pixel;
+    let bounds = PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+    let ranges = film.ledger().uniform(bounds).unwrap_or_default();
+    ranges.into_iter().flatten().map(|sample| SampleId { pixel, sample }).collect()
 }
