@@ -162,3 +162,30 @@ fn who_watches_sees_the_film_grow_and_may_stop_it() {
     assert_eq!((rendered.reason, rendered.samples), (StopReason::Cancelled, 1));
     assert!(rendered.samples_taken > 72 * 50 && rendered.samples_taken < 2 * 72 * 50);
 }
+
+/// A render asks for a cancellation often enough, before anything is known of the cost of samples: after each row of the
+/// first tile, not only after the tile, and what was taken of a tile does not count then.
+#[test]
+fn a_cancellation_is_noticed_within_the_first_tile() {
+    struct Cancelling {
+        rows: u32,
+        asked: std::sync::atomic::AtomicU32,
+        tiles: std::sync::atomic::AtomicU32,
+    }
+    impl Progress for Cancelling {
+        fn cancelled(&self) -> bool {
+            // Once before the part, then before each of its pieces.
+            self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > self.rows
+        }
+        fn tile(&self, _: TileDone) {
+            self.tiles.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+    for rows in [0, 3, 20] {
+        let progress = Cancelling { rows, asked: 0.into(), tiles: 0.into() };
+        let rendered = Compiled::new(small(64)).renderer().render(Some(1), &progress).expect("a render");
+        assert_eq!(rendered.reason, StopReason::Cancelled);
+        assert_eq!(progress.tiles.into_inner(), 0, "no tile was finished after {rows} rows");
+        assert_eq!(rendered.samples_taken, 0);
+    }
+}

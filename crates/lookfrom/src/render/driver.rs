@@ -29,6 +29,14 @@ const TILE: u32 = 32;
 /// Maximum number of samples per pixel between two evaluations of the stop criteria.
 const LONGEST_ROUND: u32 = 64;
 
+/// Number of samples of each pixel of a part between two looks for a cancellation.
+const MOST_TOGETHER: u32 = 8;
+
+/// Times of one sample of each pixel of a part, in nanoseconds, from which on a cancellation is looked for after each
+/// sample, and after each row.
+const SLOW: u64 = 100_000_000;
+const VERY_SLOW: u64 = 600_000_000;
+
 /// Minimum number of samples per pixel before a tile or picture may count as clean.
 pub const FEWEST_SAMPLES: u32 = 16;
 
@@ -90,6 +98,7 @@ impl Renderer {
             total: AtomicU64::new(all * u64::from(end.saturating_sub(first))),
             film: Mutex::new((film, Rays::default())),
             batches: Mutex::default(),
+            cost: AtomicU64::new(0),
         };
         let (samples, reason) = parallel::on_threads(threads, || work.render(stop, pilot))??;
         let (film, rays) = work.film.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -117,6 +126,8 @@ struct Work<'a> {
     batches: Mutex<Vec<Batch>>,
     done: AtomicU64,
     total: AtomicU64,
+    /// Time of a sample in the last piece of work, in nanoseconds; 0 before the first.
+    cost: AtomicU64,
 }
 
 /// Pixels of a tile that lack the same samples.
@@ -191,7 +202,7 @@ impl Work<'_> {
                 if self.progress.cancelled() || index > 0 && self.progress.wants_checkpoint() {
                     return Ok(false);
                 }
-                self.part(&parts[index]).map(|()| true)
+                self.part(&parts[index])
             });
             let done = done.into_iter().collect::<Result<Vec<bool>>>()?;
             if done.into_iter().all(|done| done) {
@@ -206,13 +217,14 @@ impl Work<'_> {
         Ok(Pass::Done)
     }
 
-    /// Adds the samples of a part.
-    fn part(&self, Part { areas, samples }: &Part) -> Result<()> {
-        let Some(around) = areas.iter().copied().reduce(union) else { return Ok(()) };
+    /// Adds the samples of a part, unless it is cancelled meanwhile; returns whether they are added.
+    fn part(&self, Part { areas, samples }: &Part) -> Result<bool> {
+        let Some(around) = areas.iter().copied().reduce(union) else { return Ok(true) };
         let mut tile = FilmTile::for_image(around, self.renderer.image())?;
         let mut batch = locked(&self.batches).pop().unwrap_or_default();
-        let rays = self.renderer.render_pixels(&mut batch, areas, samples.clone(), &mut tile)?;
+        let rays = self.rays_of_part(&mut batch, areas, samples.clone(), &mut tile)?;
         locked(&self.batches).push(batch);
+        let Some(rays) = rays else { return Ok(false) };
         let wants_pixels = self.progress.wants_pixels();
         let (rays, picture) = {
             let mut guard = locked(&self.film);
@@ -229,7 +241,54 @@ impl Work<'_> {
             rays,
             picture,
         });
-        Ok(())
+        Ok(true)
+    }
+
+    /// Takes the samples of a part, in pieces that are short enough for a cancellation between them: rows of single samples
+    /// while samples are slow, or nothing is known of their cost. `None` where it was cancelled.
+    fn rays_of_part(
+        &self,
+        batch: &mut Batch,
+        areas: &[PixelBounds],
+        samples: Range<u32>,
+        tile: &mut FilmTile,
+    ) -> Result<Option<Rays>> {
+        let pixels: u64 = areas.iter().map(area).sum();
+        let mut rays = Rays::default();
+        let mut piece = |areas: &[PixelBounds], samples: Range<u32>| -> Result<bool> {
+            if self.progress.cancelled() {
+                return Ok(false);
+            }
+            let count = areas.iter().map(area).sum::<u64>() * u64::from(samples.end - samples.start);
+            let started = Stopwatch::start();
+            rays += self.renderer.render_pixels(batch, areas, samples, tile)?;
+            let cost = started.elapsed().as_nanos() as u64 / count.max(1);
+            self.cost.store(cost.max(1), Ordering::Relaxed);
+            Ok(true)
+        };
+        let mut next = samples.start;
+        while next < samples.end {
+            let cost = self.cost.load(Ordering::Relaxed);
+            let of_all = cost.saturating_mul(pixels);
+            let is_done = if cost == 0 || of_all > VERY_SLOW {
+                let rows = areas.iter().flat_map(rows);
+                let mut is_done = true;
+                for row in rows {
+                    is_done = is_done && piece(&[row], next..next + 1)?;
+                }
+                next += 1;
+                is_done
+            } else {
+                let most = if of_all > SLOW { 1 } else { MOST_TOGETHER };
+                let together = most.min(samples.end - next);
+                next += together;
+                piece(areas, next - together..next)?
+            };
+            if !is_done {
+                return Ok(None);
+            }
+        }
+        Ok(Some(rays))
     }
 
     /// At the end of the pilot: decides how many samples each pixel gets, unless an interrupted render has decided. Returns the
@@ -286,6 +345,12 @@ enum Pass {
     Complete,
     /// The render was cancelled.
     Cancelled,
+}
+
+/// The rows of an area.
+fn rows(area: &PixelBounds) -> impl Iterator<Item = PixelBounds> + use<> {
+    let area = *area;
+    (area.y0..area.y1).map(move |y| PixelBounds { y0: y, y1: y + 1, ..area })
 }
 
 /// What a mutex guards, though a thread may have panicked while it held it.
