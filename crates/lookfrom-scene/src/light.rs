@@ -120,6 +120,13 @@ pub enum LightKind {
     },
 }
 
+impl LightKind {
+    /// Whether it is seen under a solid angle, so that paths can meet it by chance.
+    pub fn has_size(&self) -> bool {
+        matches!(self, Self::Environment { .. } | Self::Ambient { .. })
+    }
+}
+
 /// Whether four points are the corners of a rectangle, in order around it.
 pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
     let (u, v) = (b - a, d - a);

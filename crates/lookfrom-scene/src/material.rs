@@ -402,6 +402,24 @@ pub struct Coat {
     pub max_depth: u32,
     /// Number of random walks that are averaged.
     pub samples: u32,
+    /// How its random walks are weighted.
+    pub estimate: CoatEstimate,
+}
+
+impl Coat {
+    /// Maximum number of bounces where a file does not set one and pbrt's picture does not decide: so many that Russian
+    /// roulette alone ends walks.
+    pub const MAX_DEPTH: u32 = 1000;
+}
+
+/// The estimate of what a coat and its base reflect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoatEstimate {
+    /// That of pbrt-v4, whose two strategies of leaving through a rough coat have weights that do not add up to one: up to 9 %
+    /// too bright, and not reciprocal.
+    Pbrt,
+    /// With weights that add up to one: reciprocal and without bias.
+    Unbiased,
 }
 
 /// The model of Whitted 1980, with Blinn's highlight:

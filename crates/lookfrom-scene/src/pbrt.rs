@@ -42,7 +42,7 @@ use crate::chain;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
-use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
 
 /// Reads a scene of pbrt-v4 with all its includes. File names are relative to the folder of `path`, or else to the folder
@@ -53,7 +53,7 @@ use crate::settings::ColorMode;
 /// for excessive sizes and nesting, and the errors of the files that are named. All missing files are reported at once, as
 /// [`Error::more`].
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
-    let mut scene = Scene::default();
+    let mut scene = Scene { vertex_normals: VertexNormals::AsGiven, ..Scene::default() };
     scene.render.color = ColorMode::Spectral;
     let gray = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
     scene.materials.push(Material::new("default", Location::file(path), gray));

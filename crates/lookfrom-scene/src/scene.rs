@@ -53,6 +53,8 @@ pub struct Scene {
     pub is_complete: bool,
     /// The format of the file that it was read from.
     pub source_format: SourceFormat,
+    /// The use of vertex normals.
+    pub vertex_normals: VertexNormals,
     /// Whether z is up by the custom of its format, not y: of STL, without a camera that says so.
     pub z_is_up: bool,
     /// The animations, variants, cameras and scenes of the file.
@@ -96,6 +98,18 @@ pub enum SourceFormat {
     Gltf,
     /// A model of another format, which has neither a camera nor lights.
     Model,
+}
+
+/// The use of vertex normals in shading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VertexNormals {
+    /// They describe a smooth surface that the mesh stands for: where they face away from the viewer they are bent, so that
+    /// silhouettes do not darken, and rays start at the smooth surface, so that facets cast no shadows on their own mesh
+    /// near the terminator.
+    #[default]
+    Smooth,
+    /// They are taken as they are, as in pbrt.
+    AsGiven,
 }
 
 /// A named group of shapes, invisible until an [`Instance`] places it.

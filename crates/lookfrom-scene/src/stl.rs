@@ -193,7 +193,10 @@ fn read_binary(
             there
         }
         _ if claimed > there => {
-            let message = format!("{} declared, but there are only bytes for {there}", crate::plural::are(claimed, "triangle"));
+            let message = format!(
+                "{} declared, but there are only bytes for {there}",
+                crate::plural::are(claimed, "triangle")
+            );
             return Err(
                 Error::syntax(file, message).hint("the file may be cut off, or it may not be an STL file")
             );
@@ -207,7 +210,11 @@ fn read_binary(
     let used = TRIANGLE * count as usize;
     let rest = body.len() - used;
     if rest > 0 {
-        let message = format!("{} after the last triangle ignored", crate::plural::are(rest as u64, "byte"));
+        let message = format!(
+            "{} after the last triangle {} ignored",
+            crate::plural::counted(rest as u64, "byte"),
+            crate::plural::be(rest as u64)
+        );
         // The rest may contain triangles; less than one is padding.
         if rest >= TRIANGLE { context.warn(file, message) } else { context.notice(file, message) }
     }

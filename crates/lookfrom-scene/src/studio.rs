@@ -112,15 +112,11 @@ pub fn samples_for_models(image: &ImageSettings) -> u32 {
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 
-/// The same with denoising: small pictures are there at once, middle ones within about a second; but thumbnails need more,
-/// since their shadows are a few pixels wide.
+/// The same with denoising: middle pictures are there within about a second; small ones need more, since fewer leave stair
+/// steps at silhouettes.
 fn denoised_samples(pixels: u64) -> u32 {
-    let fits = |side: u64| pixels <= side * side;
-    match (fits(160), fits(320), fits(512)) {
-        (false, true, _) => 6,
-        (_, false, true) => 11,
-        _ => 16,
-    }
+    let is_middle = pixels > 320 * 320 && pixels <= 512 * 512;
+    if is_middle { 11 } else { 16 }
 }
 
 /// A camera that shows the box from the right, above and front, as large as it fits into an image of this aspect ratio

@@ -112,6 +112,8 @@ pub struct SurfacePoint {
     /// Shading bitangent. Where the mesh has tangents or normals it is perpendicular to `ns` and `shading_dpdu`: along
     /// `ns × shading_dpdu`, or opposite to it where the mesh's tangents say so (mirrored texture coordinates).
     pub shading_dpdv: DVec3,
+    /// The way to the smooth surface that a coarse mesh stands for, to the outside; zero for all else.
+    pub lift: DVec3,
     /// The mesh's own linear colour; white where it has none.
     pub color: [f32; 3],
     /// Its attributes.
@@ -130,6 +132,7 @@ impl SurfacePoint {
             dpdv,
             shading_dpdu: dpdu,
             shading_dpdv: dpdv,
+            lift: DVec3::ZERO,
             color: [1.0; 3],
             binding,
         }

@@ -9,6 +9,7 @@ mod camera_warnings;
 mod cost;
 mod driver;
 mod first_hit;
+mod interior;
 mod progress;
 mod sensor;
 mod start;
@@ -34,6 +35,7 @@ use crate::integrator::{
     Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
     StepOutput, resolve_shadows,
 };
+use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
 use crate::view::View;
 use crate::world::World;
@@ -49,7 +51,7 @@ pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 5;
+pub const SAMPLING_VERSION: u32 = 6;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.
@@ -68,6 +70,11 @@ pub struct Renderer {
     is_plugged_in: bool,
     /// The camera's position in render space.
     eye: DVec3,
+    /// The point in render space that its rays start at or around: the eye, or of a parallel camera far away a point nearer
+    /// to the scene.
+    ray_start: DVec3,
+    /// The bodies and the medium around it.
+    interior: InteriorStack,
     filter: Filter,
     sampler: Sampler,
     sensor: Sensor,
@@ -156,6 +163,8 @@ impl Renderer {
             ));
         }
         let eye = view.camera.lookfrom() - world.origin();
+        let ray_start = start::ray_start(&world, &view.camera, eye);
+        let interior = interior::interior_at(&world, ray_start, world.space_of(view.medium));
         Ok(Self {
             filter: Filter::new(image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
@@ -168,6 +177,8 @@ impl Renderer {
             view,
             settings,
             eye,
+            ray_start,
+            interior,
         })
     }
 
@@ -295,7 +306,6 @@ impl Renderer {
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
         output.queues.first_surfaces.start(first_hits.are_wanted());
-        let interior = self.world.space_of(self.view.medium);
         let Queues { paths: started, lanes, .. } = &mut output.queues;
         started.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             ray: *ray,
@@ -303,7 +313,7 @@ impl Renderer {
             slot: slot as u32,
             depth: 0,
             address: Path::ROOT,
-            interior,
+            interior: self.interior,
             previous: PreviousVertex::default(),
             light_path,
         }));

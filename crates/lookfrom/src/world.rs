@@ -9,6 +9,7 @@ mod class;
 mod compile;
 mod lights;
 mod memory;
+mod origin;
 mod place;
 mod precision;
 mod reflectance;
@@ -193,7 +194,7 @@ impl World {
             }
         };
         let wo = -direction.normalize();
-        let SurfacePoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, color, binding } =
+        let SurfacePoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift, color, binding } =
             at_primitive;
         SurfaceInteraction {
             point,
@@ -204,6 +205,7 @@ impl World {
             dpdv: dpdv.as_vec3(),
             shading_dpdu: shading_dpdu.as_vec3(),
             shading_dpdv: shading_dpdv.as_vec3(),
+            lift: lift.as_vec3(),
             color,
             wo: wo.as_vec3(),
             front: ng.dot(wo) > 0.0,
@@ -425,6 +427,7 @@ impl PlacedInstance<'_> {
             dpdv: vector(of_object.dpdv),
             shading_dpdu: vector(of_object.shading_dpdu),
             shading_dpdv: vector(of_object.shading_dpdv),
+            lift: vector(of_object.lift),
             binding,
             ..of_object
         }

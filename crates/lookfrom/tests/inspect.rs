@@ -265,7 +265,8 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         for color in [ColorMode::Rgb, ColorMode::Spectral] {
             let compiled = Compiled::new(room(integrator, color));
             let renderer = compiled.renderer();
-            for (pixel, sample) in pixels().flat_map(|pixel| [0, 1, 3].map(|sample| (pixel, sample))) {
+            for (pixel, sample) in pixels().flat_map(|pixel| [0, 1, 2, 3, 4, 5].map(|sample| (pixel, sample)))
+            {
                 let inspection = inspect(&renderer, SampleId { pixel, sample });
                 for ray in &inspection.rays {
                     let name = inspection.integrator;

@@ -33,10 +33,21 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("camera", &["math", "vector", "warp"]),
     ("interior_stack", &[]),
     ("texture", &["color", "hash", "lanes", "noise", "spectrum", "vector"]),
-    ("interaction", &["interior_stack", "math", "texture"]),
+    ("interaction", &["interior_stack", "math", "points", "texture"]),
     (
         "material",
-        &["bsdf", "interior_stack", "math", "optics", "spectrum", "interaction", "texture", "vector", "warp"],
+        &[
+            "bsdf",
+            "interior_stack",
+            "math",
+            "optics",
+            "points",
+            "spectrum",
+            "interaction",
+            "texture",
+            "vector",
+            "warp",
+        ],
     ),
     ("primitive", &["lanes", "math", "points", "interaction", "texture", "vector", "warp"]),
     (
@@ -100,6 +111,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "render",
         &[
+            "interior_stack",
             "camera",
             "clock",
             "color",
@@ -143,6 +155,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "session",
         &[
+            "math",
             "clock",
             "color",
             "denoise",

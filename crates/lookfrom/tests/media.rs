@@ -257,3 +257,67 @@ fn what_is_told_of_media_adds_up() {
         assert!((0..3).all(|k| (f64::from(mean[k]) - sum[k]).abs() <= 1e-5 * sum[k]), "{mean:?} {sum:?}");
     }
 }
+
+/// A camera in a body of our own scenes starts in it: water absorbs on the way to its surface, wherever the eye stands, and
+/// bodies beside it do not.
+#[test]
+fn an_eye_in_water_sees_through_water() {
+    let scene = |integrator: &str, eye: f32, sigma: [f64; 3]| {
+        let [r, g, b] = sigma;
+        support::scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [0, {eye}, 0]
+            lookat = [0.0, 5.0, 0.001]
+            up = [0, 0, 1]
+            fov = 0.2
+            [image]
+            width = 4
+            height = 4
+            filter = "box"
+            [render]
+            integrator = "{integrator}"
+            samples = 64
+            [[light]]
+            type = "environment"
+            color = 1
+            [materials.water]
+            type = "principled"
+            roughness = 0
+            transmission = 1
+            solid = true
+            ior = 1.333
+            absorption = [{r}, {g}, {b}]
+            [materials.ink]
+            type = "principled"
+            roughness = 0
+            transmission = 1
+            solid = true
+            absorption = [3, 3, 3]
+            [[box]]
+            min = [-40, -30, -40]
+            max = [40, 0, 40]
+            material = "water"
+            [materials.black]
+            type = "diffuse"
+            reflectance = 0
+            [[quad]]
+            corner = [-39, -20, 39]
+            edge_u = [78, 0, 0]
+            edge_v = [0, 0, -78]
+            material = "black"
+            [[sphere]]
+            center = [5, -4, 1]
+            radius = 2
+            material = "ink"
+            "#
+        ))
+    };
+    for integrator in ["path", "whitted"] {
+        for eye in [-5.0, -1.0, 2.0] {
+            let [absorbing, clear] = [SIGMA, [0.0; 3]].map(|sigma| mean(scene(integrator, eye, sigma)));
+            let passed = std::array::from_fn(|k| absorbing[k] / clear[k]);
+            assert_way(passed, f64::from(-eye).max(0.0), &format!("{integrator}, {eye}"));
+        }
+    }
+}

@@ -4,7 +4,9 @@ use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
-use lookfrom_scene::material::{Coat, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar};
+use lookfrom_scene::material::{
+    Coat, CoatEstimate, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+};
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler};
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
@@ -171,6 +173,7 @@ fn a_smooth_coat_keeps_all_light() {
         g: Scalar::Value(0.0),
         max_depth: 100,
         samples: 1,
+        estimate: CoatEstimate::Unbiased,
     };
     let found = mean(furnace(MaterialKind::CoatedDiffuse { reflectance: Color::gray(1.0), coat }));
     assert!(found[0] > 0.985 && found[0] < 1.005, "{found:?}");

@@ -29,8 +29,8 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("killeroos/killeroo-simple", "killeroo-simple", 1024, 32, 0.005),
     ("killeroos/killeroo-gold", "killeroo-gold", 1024, 4, 0.005),
     ("coffee/scene", "coffee", 1024, 4, 0.005),
-    ("staircase2/scene", "staircase2", 512, 4, 0.005),
-    ("cornell-sensor/scene", "cornell-sensor", 256, 4, 0.005),
+    ("staircase2/scene", "staircase2", 512, 5, 0.005),
+    ("cornell-sensor/scene", "cornell-sensor", 256, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how

@@ -230,3 +230,73 @@ fn empty_and_odd_scenes_are_pictures_too() {
     bad.shapes[0].world_from_object = glam::DMat4::from_scale(glam::DVec3::new(1.0, 0.0, 1.0));
     assert!(World::compile(bad, &mut warnings).expect_err("not invertible").to_string().contains("inverted"));
 }
+
+/// The distance of a parallel camera changes nothing.
+#[test]
+fn a_parallel_camera_may_be_far_away() {
+    let picture = |distance: f64, forward: [f64; 3]| {
+        let [x, y, z] = forward.map(|w| -w * distance);
+        let scene = scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [{x}, {y}, {z}]
+            lookat = [0, 0, 0]
+            projection = "orthographic"
+            height = 0.3
+            [image]
+            width = 40
+            height = 40
+            filter = "box"
+            [render]
+            integrator = "path"
+            samples = 4
+            [[sphere]]
+            radius = 0.1
+            material = "m"
+            [materials.m]
+            type = "diffuse"
+            [[light]]
+            type = "distant"
+            direction = [-1, -0.3, -1]
+            intensity = 1
+            "#
+        ));
+        Compiled::new(scene).film().picture()
+    };
+    for forward in [[0.0, 0.0, -1.0], [0.6, -0.64, 0.48]] {
+        let near = picture(1.0, forward);
+        for distance in [1e3, 1e5, 1e7] {
+            let far = picture(distance, forward);
+            let differ = |(a, b): (&[f32; 3], &[f32; 3])| (a[1] - b[1]).abs() > 0.02;
+            let count = near.pixels.iter().zip(&far.pixels).filter(|pair| differ(*pair)).count();
+            assert!(count < 8, "{forward:?} from {distance}: {count} pixels differ");
+        }
+    }
+}
+
+/// The ground below an eye is where it is on a sphere of any size.
+#[test]
+fn the_ground_of_planets_is_where_it_is() {
+    for radius in [1e4, 1e5, 6.371e6, 1e8, 3e9] {
+        let scene = scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [0, 1.7, 0]
+            lookat = [0, 0, 0]
+            up = [0, 0, 1]
+            fov = 1
+            [image]
+            width = 4
+            height = 4
+            [render]
+            integrator = "depth"
+            samples = 1
+            [[sphere]]
+            center = [0, -{radius}, 0]
+            radius = {radius}
+            "#
+        ));
+        let depths = Compiled::new(scene).film().picture().pixels;
+        assert!(depths.iter().all(|depth| (depth[0] - 1.7).abs() < 2e-3), "{radius}: {depths:?}");
+    }
+}

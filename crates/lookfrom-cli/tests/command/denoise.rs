@@ -17,7 +17,7 @@ fn models_are_denoised_until_somebody_says_otherwise() {
         (summary["denoised"].as_bool().unwrap(), summary["samples"].as_u64().unwrap())
     };
     assert_eq!(summary("--size 24"), (true, 16));
-    assert_eq!(summary("--size 164"), (true, 6));
+    assert_eq!(summary("--size 164"), (true, 16));
     assert_eq!(summary("--width 103 --height 1000"), (true, 11));
     assert_eq!(summary("--size 24 --samples 3"), (true, 3));
     assert_eq!(summary("--size 24 --samples 3 --denoise"), (true, 3));

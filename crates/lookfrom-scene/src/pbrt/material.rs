@@ -6,7 +6,9 @@ use super::spectra::Meaning::{Reflectance, Unbounded};
 use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
-use crate::material::{BumpMapping, Coat, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{
+    BumpMapping, Coat, CoatEstimate, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+};
 use crate::scene::{ImageId, MaterialId};
 
 const KINDS: &[&str] = &[
@@ -204,6 +206,7 @@ impl Reader<'_, '_> {
             g: self.scalar(p, "g", 0.0)?,
             max_depth: p.integer("maxdepth", 10, 1, 1 << 20)? as u32,
             samples: p.integer("nsamples", 1, 1, 1 << 16)? as u32,
+            estimate: CoatEstimate::Pbrt,
         })
     }
 
@@ -245,6 +248,7 @@ impl Reader<'_, '_> {
             g: Scalar::Value(0.0),
             max_depth: 10,
             samples: 1,
+            estimate: CoatEstimate::Pbrt,
         };
         Ok(MaterialKind::CoatedDiffuse { reflectance, coat })
     }

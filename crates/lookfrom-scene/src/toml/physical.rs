@@ -7,7 +7,7 @@ use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::material::{Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{Coat, CoatEstimate, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
 
 /// Default index of refraction.
 const IOR: f32 = 1.5;
@@ -103,8 +103,9 @@ impl Reader<'_, '_> {
             thickness,
             albedo: self.color_or(table, "coat_albedo", 0.0),
             g,
-            max_depth: 10,
+            max_depth: Coat::MAX_DEPTH,
             samples: 1,
+            estimate: CoatEstimate::Unbiased,
         }
     }
 

@@ -86,7 +86,26 @@ impl<R: Real> Points<R> {
         let Self { position, error } = *self;
         let reach = unit_normal.abs().times(error + position.abs() * position.x.like(4.0 * UNIT));
         let step = (reach.x + reach.y + reach.z) * (1.0 + 1e-6);
-        Exits { position, normal: unit_normal, step: unit_normal * step }
+        Exits { position, normal: unit_normal, step: unit_normal * step, lift: None }
+    }
+}
+
+/// The smooth surface that coarse meshes stand for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lift<R: Real> {
+    /// The way to it from points, to the outside; zero where there is none.
+    pub(crate) way: Vector<R>,
+    /// Its normal, of unit length.
+    pub(crate) ns: Vector<R>,
+}
+
+impl<R: Real> Lift<R> {
+    /// The directions that lead to the outside of such a surface, whatever the side of the triangle.
+    #[inline(always)]
+    pub(crate) fn is_above(&self, direction: Vector<R>) -> <R::Double as Float>::Mask {
+        let zero = self.way.x.widen().like(0.0);
+        let is_lifted = self.way.widen().length_squared().gt(zero);
+        is_lifted & self.ns.widen().dot(direction.widen()).gt(zero)
     }
 }
 
@@ -96,16 +115,29 @@ pub(crate) struct Exits<R: Real> {
     normal: Vector<R::Double>,
     /// On the side of the normal.
     step: Vector<R::Double>,
+    lift: Option<Lift<R>>,
 }
 
 impl<R: Real> Exits<R> {
+    /// The ways from smooth surfaces, where directions are above those.
+    #[inline(always)]
+    pub(crate) fn lifted(self, lift: Option<Lift<R>>) -> Self {
+        Self { lift, ..self }
+    }
+
     /// The origins of rays in some directions.
     #[inline(always)]
     pub(crate) fn toward(&self, direction: Vector<R>) -> Vector<R> {
         let cos = self.normal.dot(direction.widen());
-        let is_behind = cos.lt(cos.like(0.0));
+        let mut is_behind = cos.lt(cos.like(0.0));
+        let mut position = self.position;
+        if let Some(lift) = &self.lift {
+            let is_above = lift.is_above(direction);
+            is_behind = is_behind & !is_above;
+            position = Vector::select(is_above, position + lift.way.widen(), position);
+        }
         let normal = self.normal.negate_where(is_behind);
-        let moved = self.position + self.step.negate_where(is_behind);
+        let moved = position + self.step.negate_where(is_behind);
         Vector {
             x: round_away(moved.x, normal.x, direction.x),
             y: round_away(moved.y, normal.y, direction.y),

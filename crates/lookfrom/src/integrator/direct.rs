@@ -110,7 +110,6 @@ pub(super) fn local_light<P: Probe>(
         return coefficients;
     }
     let n = surface.ns_facing();
-    let ng = surface.ng_facing();
     for (index, light) in world.lights.iter().enumerate() {
         let index = index as u32;
         let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
@@ -118,7 +117,7 @@ pub(super) fn local_light<P: Probe>(
         let u = if is_random { stream.two_with_pixel(index) } else { [0.0; 2] };
         let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
         // Light from behind the surface does not reach its front, whatever the interpolated normal says.
-        let sample = sample.filter(|sample| ng.dot(sample.wi) > 0.0);
+        let sample = sample.filter(|sample| !surface.crosses(sample.wi));
         let (diffuse, specular) =
             sample.map(|sample| coefficients.lit(n, surface.wo, sample.wi)).unwrap_or_default();
         output.probe.notice(|| Event::LocalLight {

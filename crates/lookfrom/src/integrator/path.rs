@@ -33,6 +33,8 @@ mod dimension {
     pub(super) const DIRECTION: u32 = 3;
     /// Russian roulette.
     pub(super) const ROULETTE: u32 = 4;
+    /// Seed of the walks of layered BSDFs.
+    pub(super) const WALK: u32 = 5;
 }
 
 /// Number of bounces before Russian roulette begins: the light that the first bounces find is most of the picture, and
@@ -216,7 +218,8 @@ impl PathTracer {
 
         // Evaluate the material; dispersion leaves one wavelength, or one colour.
         let lanes = &mut output.queues.lanes[path.slot as usize];
-        let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u };
+        let [seed, _] = stream.two(dimension::WALK);
+        let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(mut shading) = world.shading(&surface, arrival) else {
             let direction = Vec3::from_array(path.ray.direction);
             let interior = path.interior.leaving(&world.materials, &surface, direction, true);

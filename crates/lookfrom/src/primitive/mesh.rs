@@ -35,6 +35,9 @@ pub struct Mesh {
     /// Whether the outside is the side from which triangles are clockwise: after a reflection, or a reversal, but not
     /// both.
     pub flip: bool,
+    /// Whether rays that leave it start at the smooth surface that its normals describe, so that the facets of a coarse mesh
+    /// cast no shadows on themselves near the terminator.
+    pub is_lifted: bool,
     /// Its attributes.
     pub binding: MaterialBinding,
 }
@@ -105,7 +108,7 @@ impl Mesh {
 
     /// The point with weight `u` of a triangle's second corner and `v` of its third.
     pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
-        let TrianglePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv } =
+        let TrianglePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv, lift } =
             self.triangle(index).points(u, v);
         let point = Point { position: points.position.into(), error: points.error.into() };
         SurfacePoint {
@@ -117,6 +120,7 @@ impl Mesh {
             dpdv: dpdv.into(),
             shading_dpdu: shading_dpdu.into(),
             shading_dpdv: shading_dpdv.into(),
+            lift: lift.into(),
             color: self.color(index, u, v),
             binding: self.binding,
         }
@@ -136,6 +140,7 @@ impl Mesh {
             have_normals: !self.normals.is_empty(),
             have_tangents: !self.tangents.is_empty(),
             want_derivatives: self.wants_derivatives,
+            are_lifted: self.is_lifted,
         }
     }
 }

@@ -15,6 +15,9 @@ type WideMask<R> = <<R as Real>::Double as Float>::Mask;
 /// Determinants of texture coordinates below this count as degenerate.
 const LEAST_DETERMINANT: f64 = 1e-9;
 
+/// Cosine between the normals of a triangle and of its corners below which it is not lifted: that of 45°.
+const LEAST_COS_OF_LIFT: f64 = 0.707;
+
 /// Triangles with what their vertices have.
 pub(crate) struct Triangles<R: Real> {
     pub(crate) positions: [Vector<R>; 3],
@@ -30,6 +33,8 @@ pub(crate) struct Triangles<R: Real> {
     pub(crate) have_tangents: WideMask<R>,
     /// The lanes that need derivatives by texture coordinates; in others they are 0.
     pub(crate) want_derivatives: WideMask<R>,
+    /// The lanes whose meshes stand for smooth surfaces ([`Mesh::is_lifted`](super::Mesh::is_lifted)).
+    pub(crate) are_lifted: WideMask<R>,
 }
 
 impl Triangles<f32> {
@@ -46,6 +51,7 @@ impl Triangles<f32> {
             have_normals: mask64x8::splat(simd, self.have_normals),
             have_tangents: mask64x8::splat(simd, self.have_tangents),
             want_derivatives: mask64x8::splat(simd, self.want_derivatives),
+            are_lifted: mask64x8::splat(simd, self.are_lifted),
         };
         for corner in 0..3 {
             let ([u, v], Tangent { along, sign }) = (self.uvs[corner], self.tangents[corner]);
@@ -76,6 +82,7 @@ pub(crate) struct TrianglePoints<R: Real> {
     pub(crate) dpdv: Vector<R::Double>,
     pub(crate) shading_dpdu: Vector<R::Double>,
     pub(crate) shading_dpdv: Vector<R::Double>,
+    pub(crate) lift: Vector<R::Double>,
 }
 
 impl<R: Real> Triangles<R> {
@@ -112,11 +119,41 @@ impl<R: Real> Triangles<R> {
             dpdv: none,
             shading_dpdu: none,
             shading_dpdv: none,
+            lift: none,
         };
+        let is_lifted = is_smooth & self.are_lifted;
+        if is_lifted.any() {
+            result.lift = Vector::select(is_lifted, self.lift(weights, ng), none);
+        }
         if self.want_derivatives.any() {
             self.derive(&mut result, winding, weights, is_smooth);
         }
         result
+    }
+
+    /// The way from points to the smooth surface that the triangles stand for: with the weights of the corners, the ways up
+    /// to their tangent planes (Hanika 2021, "Hacking the Shadow Terminator", eq. 4.1). Zero where the surface is hollow, and
+    /// where a corner's normal leans so far from the triangle's that it was hardly meant to be a part of a smooth surface.
+    #[inline(always)]
+    fn lift(&self, [w0, w1, w2]: [R; 3], ng: Vector<R::Double>) -> Vector<R::Double> {
+        let [p0, p1, p2] = self.positions;
+        let zero = w0.like(0.0);
+        let (e1, e2) = (p1 - p0, p2 - p0);
+        let from_first = e1 * w1 + e2 * w2;
+        let ways = [from_first, from_first - e1, from_first - e2];
+        let mut is_gentle = ng.x.like(0.0).lt(ng.x.like(1.0));
+        let mut lift = Vector { x: zero, y: zero, z: zero };
+        let mut corner = 0;
+        while corner < 3 {
+            let n = self.normals[corner];
+            let below = Float::min(ways[corner].dot(n), zero);
+            lift = lift - n * (below * [w0, w1, w2][corner]);
+            is_gentle = is_gentle & n.widen().dot(ng).gt(ng.x.like(LEAST_COS_OF_LIFT));
+            corner += 1;
+        }
+        let lift = lift.widen();
+        let none = Vector { x: ng.x.like(0.0), y: ng.x.like(0.0), z: ng.x.like(0.0) };
+        Vector::select(is_gentle, lift, none)
     }
 
     /// Adds the derivatives.
@@ -199,6 +236,7 @@ impl<R: Real> TrianglePoints<R> {
             dpdv: Vector::select(mask, placement.vector(self.dpdv), self.dpdv),
             shading_dpdu: Vector::select(mask, placement.vector(self.shading_dpdu), self.shading_dpdu),
             shading_dpdv: Vector::select(mask, placement.vector(self.shading_dpdv), self.shading_dpdv),
+            lift: Vector::select(mask, placement.vector(self.lift), self.lift),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The start of a batch: random numbers of the camera, points of the image, and camera rays, eight side by side where the
 //! camera is linear.
 
+use glam::{DVec3, Vec3};
 use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
@@ -9,7 +10,8 @@ use crate::core::lanes::{LANES, by_lane, filled, scatter};
 use crate::core::sampler::{self, lanes::PixelSamplers};
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
-use crate::view::camera::CameraRay;
+use crate::view::camera::{Camera, CameraRay};
+use crate::world::World;
 
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
 const LENS_DIMENSION: u32 = 1;
@@ -37,6 +39,23 @@ impl Start {
     }
 }
 
+/// Distance of a parallel camera from the scene, in sizes of the scene, beyond which its rays start nearer.
+const FAR: f64 = 8.0;
+
+/// The point in render space at or around which rays of a camera start. Those of a parallel camera begin with the scene
+/// where it is far away, so that its distance costs no precision.
+pub(super) fn ray_start(world: &World, camera: &Camera, eye: DVec3) -> DVec3 {
+    let bounds = world.bvh.bounds();
+    let [min, max] = [bounds.min, bounds.max].map(|corner| Vec3::from_array(corner).as_dvec3());
+    if !camera.is_parallel() || !(max - min).is_finite() || min.x > max.x {
+        return eye;
+    }
+    let w = camera.w().normalize();
+    let size = (max - min).length();
+    let distance = ((min + max) * 0.5 - eye).dot(w) - size;
+    if distance > FAR * size { eye + w * distance } else { eye }
+}
+
 impl Renderer {
     /// The camera ray of a sample and the filter weight.
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
@@ -47,7 +66,7 @@ impl Renderer {
 
     /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane.
     pub(super) fn kernel_ray(&self, ray: &CameraRay) -> Ray {
-        let a = self.eye + ray.a_from_eye;
+        let a = self.ray_start + ray.a_from_eye;
         Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
     }
 
@@ -147,7 +166,7 @@ impl Kernel for LinearRays<'_> {
         let Self { renderer, ids, rays, weights } = self;
         rays.reserve(ids.len());
         weights.reserve(ids.len());
-        let eye = Vector::splat(f64x8::splat(simd, 0.0), renderer.eye.to_array());
+        let eye = Vector::splat(f64x8::splat(simd, 0.0), renderer.ray_start.to_array());
         for ids in ids.chunks(LANES) {
             let (point, weight) = renderer.image_points(simd, ids);
             let [a, direction] = renderer.view.camera.linear_ray(point);

@@ -219,20 +219,20 @@ impl Bsdf {
         Self::conductor(eta, k, roughness)
     }
 
-    /// pbrt's `coateddiffuse`.
+    /// pbrt's `coateddiffuse`, with walks of the seed 0.
     pub fn coated_diffuse(reflectance: Spectrum, coat: &CoatLayer) -> Self {
-        Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat))
+        Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat, 0.0))
     }
 
     /// pbrt's `coatedconductor` by the metal's index of refraction and extinction in air: both are divided by the
-    /// coat's index.
+    /// coat's index; with walks of the seed 0.
     pub fn coated_conductor(
         eta: Spectrum,
         k: Spectrum,
         roughness: TrowbridgeReitz,
         coat: &CoatLayer,
     ) -> Self {
-        Self::CoatedConductor(Layered::coated_conductor(eta, k, roughness, coat))
+        Self::CoatedConductor(Layered::coated_conductor(eta, k, roughness, coat, 0.0))
     }
 
     /// The BSDF: the fraction of light from `wi` that leaves along `wo`, per solid angle and without the cosine of

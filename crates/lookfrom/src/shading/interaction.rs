@@ -5,6 +5,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::{OriginPrimitive, Point};
 
+use crate::core::points::{Lift, Points};
 use crate::shading::interior_stack::MediumInterface;
 use crate::shading::texture::FloatTexture;
 
@@ -30,6 +31,9 @@ pub struct SurfaceInteraction {
     /// tangent frame of normal maps: along `ns × shading_dpdu`, or opposite to it where the tangents mark the
     /// texture coordinates as mirrored.
     pub shading_dpdv: Vec3,
+    /// The way to the smooth surface that a coarse mesh stands for, to the outside; zero for all else. Rays that leave to
+    /// the outside of that surface start there.
+    pub lift: Vec3,
     /// The mesh's vertex colour (linear) at this point; white where it has none.
     pub color: [f32; 3],
     /// Direction back to the origin of the ray, unit length.
@@ -102,11 +106,23 @@ impl SurfaceInteraction {
 
     /// True if light toward `wi` leaves on the other side of the surface than `wo`.
     pub(crate) fn crosses(&self, wi: Vec3) -> bool {
-        (self.ng.dot(wi.as_dvec3()) > 0.0) != self.front
+        self.is_outside(wi) != self.front
+    }
+
+    /// True if light toward `wi` leaves to the outside: of the smooth surface, where a mesh stands for one.
+    pub(crate) fn is_outside(&self, wi: Vec3) -> bool {
+        self.ng.dot(wi.as_dvec3()) > 0.0 || self.lift().is_some_and(|lift| lift.is_above(wi.into()))
+    }
+
+    /// The smooth surface that its mesh stands for, if it is above and seen from there.
+    pub(crate) fn lift(&self) -> Option<Lift<f32>> {
+        (self.front && self.lift != Vec3::ZERO).then(|| Lift { way: self.lift.into(), ns: self.ns.into() })
     }
 
     /// Origin of a ray into `direction`: beyond the error bound, on the side to which the ray leaves.
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
-        self.point.leave(self.ng.to_array(), direction.to_array())
+        let Point { position, error } = self.point;
+        let points = Points::<f32> { position: position.into(), error: error.into() };
+        points.exits(self.ng.into()).lifted(self.lift()).toward(direction.into()).into()
     }
 }

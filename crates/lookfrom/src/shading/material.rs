@@ -18,6 +18,7 @@ mod whitted;
 use glam::Vec3;
 use lookfrom_scene::scene::CurveId;
 
+use crate::core::points::Lift;
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::bsdf::conductor::Conductor;
@@ -50,6 +51,8 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Perturbation of the shading normal.
     pub bump_mapping: BumpMapping,
+    /// Whether shading normals are bent so that reflections stay outside (`Bending::valid`).
+    pub reflects_outside: bool,
     /// Index into the world's media of the medium inside a body of this material, where the
     /// material declares one.
     pub medium: Option<u32>,
@@ -71,6 +74,8 @@ pub struct Shading {
     frame: Frame,
     /// The geometric normal to the outside, to prevent light leaks where the shading normal differs from it.
     ng: Vec3,
+    /// The smooth surface that the mesh stands for.
+    lift: Option<Lift<f32>>,
 }
 
 /// An orthonormal frame of unit vectors in render space.
@@ -107,6 +112,7 @@ impl Shading {
             bsdf: Bsdf::diffuse(reflectance),
             frame: bump::plain(&surface.shading_geometry()),
             ng: surface.ng.as_vec3(),
+            lift: surface.lift(),
         }
     }
 
@@ -129,7 +135,9 @@ impl Shading {
     /// do without this test.
     fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
         let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
-        !matches!(self.bsdf, Bsdf::Principled(_)) || on_one_side(self.ng) == on_one_side(self.frame.n)
+        let is_above = || self.lift.is_some_and(|lift| lift.is_above(wi.into()));
+        !matches!(self.bsdf, Bsdf::Principled(_))
+            || (on_one_side(self.ng) || is_above()) == on_one_side(self.frame.n)
     }
 
     /// The factors of its microfacets for two unit directions in render space ([`Bsdf::factors`]), with ω_m there.
@@ -208,6 +216,8 @@ pub struct ShadingContext<'a> {
     /// Random number in [0, 1) that chooses among mixed materials and dispersed colours. Used where
     /// [`Material::is_stochastic`].
     pub u: f32,
+    /// Random number in [0, 1) that seeds the walks of layered BSDFs.
+    pub seed: f32,
 }
 
 impl Material {
@@ -223,9 +233,9 @@ impl Material {
 
     /// The shading frame of this material.
     fn frame(&self, textures: &Textures, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
-        match self.kind {
-            MaterialKind::Principled(_) => bump::valid_frame(&self.bump_mapping, textures, surface, point),
-            _ => bump::frame(&self.bump_mapping, textures, surface, point),
+        match self.reflects_outside {
+            true => bump::valid_frame(&self.bump_mapping, textures, surface, point),
+            false => bump::frame(&self.bump_mapping, textures, surface, point),
         }
     }
 
@@ -265,10 +275,10 @@ pub fn shading(
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = material.frame(textures, &geometry, point);
         let (bsdf, frame) = at.principled(look, index, &geometry, frame);
-        return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng });
+        return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng, lift: surface.lift() });
     }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: material.frame(textures, &geometry, point), ng })
+    Some(Shading { bsdf, frame: material.frame(textures, &geometry, point), ng, lift: surface.lift() })
 }
 
 /// The shading normal, to the outside, of unit length: that of [`shading`]; for mixed materials that of the first.
@@ -297,6 +307,7 @@ pub(crate) struct Evaluator<'a> {
     throughput: &'a mut Spectrum,
     interior: InteriorStack,
     u: f32,
+    seed: f32,
 }
 
 impl<'a> Evaluator<'a> {
@@ -306,8 +317,8 @@ impl<'a> Evaluator<'a> {
         point: &'a TexturePoint,
         context: ShadingContext<'a>,
     ) -> Self {
-        let ShadingContext { lanes, throughput, interior, u } = context;
-        Self { materials, textures, point, lanes, throughput, interior, u }
+        let ShadingContext { lanes, throughput, interior, u, seed } = context;
+        Self { materials, textures, point, lanes, throughput, interior, u, seed }
     }
 }
 
@@ -369,13 +380,13 @@ impl Evaluator<'_> {
 
     fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &Coat) -> Layered<Diffuse> {
         let coat = self.coat(coat);
-        Layered::new(self.diffuse(reflectance), &coat)
+        Layered::new(self.diffuse(reflectance), &coat, self.seed)
     }
 
     fn coated_conductor(&mut self, metal: &Metal, roughness: &Roughness, coat: &Coat) -> Layered<Conductor> {
         let coat = self.coat(coat);
         let (eta, k) = self.indices(metal);
-        Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat)
+        Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat, self.seed)
     }
 
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
@@ -413,6 +424,8 @@ impl Evaluator<'_> {
             g: self.float(coat.g).clamp(-1.0, 1.0),
             max_depth: coat.max_depth,
             samples: coat.samples,
+            estimate: coat.estimate,
+            internal_reflectance: coat.internal_reflectance,
         }
     }
 }

@@ -159,6 +159,11 @@ impl Camera {
         self.t4 * self.r3
     }
 
+    /// Whether its rays are parallel: orthographic, without a lens.
+    pub(crate) fn is_parallel(&self) -> bool {
+        self.lens.is_none() && matches!(self.projection, Projection::Orthographic { .. })
+    }
+
     /// Whether its rays are those of [`Camera::linear_ray`].
     pub(crate) fn is_linear(&self) -> bool {
         let is_panoramic =

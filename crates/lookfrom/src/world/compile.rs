@@ -13,7 +13,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
 use super::place::{self, Compiler, Group, Labels};
-use super::{Instance, Medium, Names, World, reflectance};
+use super::{Instance, Medium, Names, World, origin, reflectance};
 use crate::core::math;
 use crate::light::{Light, LightChoice};
 use crate::primitive::Primitives;
@@ -30,7 +30,7 @@ impl World {
     /// than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
     pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let camera = scene.camera.clone().unwrap_or_default();
-        let origin = camera.view.lookfrom();
+        let origin = origin::of_render_space(&camera, &scene);
         if !origin.is_finite() {
             return Err(Error::invalid(&camera.at, format!("lookfrom is {origin}; expected finite numbers")));
         }
@@ -56,6 +56,7 @@ impl World {
             shapes: Vec::new(),
             grains: grains(&scene.materials),
             has_instance_grain: false,
+            is_in_object: false,
             alphas: Vec::new(),
             medium_interfaces: Vec::new(),
             vertex_data: Vec::new(),
@@ -72,6 +73,7 @@ impl World {
         let labelled = |object: usize| scene.objects[object].shapes.iter().zip(&labels.objects[object]);
         for index in 0..scene.objects.len() {
             let mut group = Group::default();
+            compiler.is_in_object = true;
             compiler.has_instance_grain = scene.instances.iter().any(|instance| {
                 let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
                 instance.object.index() == index && instance.material.is_some_and(is_grained)
@@ -81,7 +83,7 @@ impl World {
             }
             in_objects.push(group);
         }
-        compiler.has_instance_grain = false;
+        (compiler.has_instance_grain, compiler.is_in_object) = (false, false);
         let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
         let quality = quality(&scene);
         let trees = objects
@@ -116,10 +118,18 @@ impl World {
             let message = "ambient light belongs to Whitted's model: path tracing ignores it";
             warnings.push(Warning::new(&light.at, message));
         }
+        if scene.render.integrator == Kind::RandomWalk
+            && let Some(light) = scene.lights.iter().find(|light| !light.kind.has_size())
+        {
+            let message =
+                "\"random_walk\" finds no light without a size, since no path meets it: use \"path\"";
+            warnings.push(Warning::new(&light.at, message));
+        }
 
         // Build the BVH of the world, over those of the objects. What is compiled makes room for it.
         let written_materials = std::mem::take(&mut scene.materials);
         let written_media = std::mem::take(&mut scene.media);
+        let vertex_normals = scene.vertex_normals;
         drop((scene, labels));
         let primitives = in_world.into_primitives();
         let bvh = tree(&primitives, builder, quality)?;
@@ -136,7 +146,7 @@ impl World {
         };
         let mut media: Vec<Medium> =
             written_media.iter().map(|written| medium(written.absorption, written.scale)).collect();
-        let mut compiler = material::Compiler::new(&textures);
+        let mut compiler = material::Compiler::new(&textures, vertex_normals);
         for written in written_materials {
             let (mut material, absorption) = compiler.compile(&written);
             // An absorbing body is filled with a medium of its own.

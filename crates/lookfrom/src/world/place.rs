@@ -76,6 +76,8 @@ pub(super) struct Compiler<'a> {
     pub(super) grains: Vec<bool>,
     /// Whether an instance gives the object that is being placed such a material.
     pub(super) has_instance_grain: bool,
+    /// Whether shapes are those of an object, in its own space.
+    pub(super) is_in_object: bool,
     /// Alpha textures.
     pub(super) alphas: Vec<FloatTexture>,
     /// Media on the two sides of surfaces.
@@ -186,14 +188,14 @@ impl Compiler<'_> {
     ) -> Result<()> {
         let Placing { shape, matrix, binding } = placing;
         let linear = DMat3::from_mat4(*matrix);
+        let as_quadric = |compiler: &mut Self, sphere: &Sphere, group: &mut Group| {
+            let own = *matrix * DMat4::from_translation(sphere.center) * DMat4::from_mat3(pole);
+            let own = Placing { matrix: &own, ..placing };
+            compiler.quadric(own, whole_sphere(sphere.radius), 360.0, group)
+        };
         let Some(scale) = even_scale(&linear) else {
             // With a non-uniform scale they are ellipsoids.
-            for sphere in spheres {
-                let own = *matrix * DMat4::from_translation(sphere.center) * DMat4::from_mat3(pole);
-                let own = Placing { matrix: &own, ..placing };
-                self.quadric(own, whole_sphere(sphere.radius), 360.0, group)?;
-            }
-            return Ok(());
+            return spheres.iter().try_for_each(|sphere| as_quadric(self, sphere, group));
         };
         let render_from_z = orthonormal(&linear) * pole;
         let first_binding = group.spheres.bindings.len() as u32;
@@ -205,7 +207,12 @@ impl Compiler<'_> {
         };
         group.spheres.bindings.push(sphere_binding);
         for sphere in spheres {
-            let center = matrix.transform_point3(sphere.center).as_vec3();
+            let center = matrix.transform_point3(sphere.center);
+            if !self.is_in_object && is_planet(center, sphere.radius * scale) {
+                as_quadric(self, sphere, group)?;
+                continue;
+            }
+            let center = center.as_vec3();
             let radius = (sphere.radius * scale) as f32;
             let light = self.area_light(placing, |two_sided| {
                 let kind = whole_sphere(f64::from(radius));
@@ -307,6 +314,13 @@ impl Compiler<'_> {
     fn warn(&mut self, at: &Location, message: &str) {
         self.warnings.push(Warning::new(at, message));
     }
+}
+
+/// Whether the surface of a sphere in render space is so near to the eye, by its radius, that the rounding of its centre and radius to
+/// single precision would be seen. Quadrics are in double precision.
+fn is_planet(center: DVec3, radius: f64) -> bool {
+    const RADII_PER_DISTANCE: f64 = 4096.0;
+    radius > RADII_PER_DISTANCE * (center.length() - radius).abs() && radius.is_finite()
 }
 
 fn whole_sphere(radius: f64) -> QuadricKind {

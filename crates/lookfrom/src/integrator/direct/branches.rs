@@ -88,7 +88,7 @@ impl Rays {
     ) {
         self.exist = exist.to_bitmask() as u32;
         self.beta = scatter_spectrum(beta);
-        let origin = surfaces.points.leave(surfaces.ng, direction);
+        let origin = surfaces.exits().toward(direction);
         self.rays = scatter_rays(simd, origin, direction, f32::INFINITY);
     }
 }

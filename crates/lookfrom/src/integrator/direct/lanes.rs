@@ -1,7 +1,7 @@
 //! The kernel of Whitted's model for plain hits, eight side by side, from the hit on: direct light and branches. The bits are
 //! those of [`super::local_light`] and of Whitted's step.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Float, Kernel, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::arriving::{Arriving, Ends};
 use super::coefficients::{CoefficientColumns, Modes};
@@ -65,7 +65,8 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
         let wants_uvs = first.is_some() || !eight.plain.are_on_spheres;
         let at = SurfacePoints::of(simd, world, &eight.plain, wants_uvs);
         let surfaces = Surfaces::at(simd, &at);
-        let Surfaces { points, ng, ng_facing, ns_facing, wo, front, .. } = surfaces;
+        let Surfaces { points, ns_facing, wo, front, .. } = surfaces;
+        let exits = surfaces.exits();
         let coefficients = CoefficientColumns::of(simd, world, eight, &surfaces, &modes);
         if let Some(first) = first {
             at.leave(first);
@@ -95,8 +96,10 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
                 continue;
             };
             let n_dot_l = ns_facing.dot(wi);
+            // Light from behind the surface does not reach its front, whatever the interpolated normal says.
+            let crosses = surfaces.is_outside(wi) ^ front;
             let mut lit =
-                exists & ng_facing.dot(wi).gt(zero) & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
+                exists & !zero.narrow_mask(crosses) & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
             if !lit.any() {
                 continue;
             }
@@ -108,18 +111,16 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
             }
             let contribution = beta * reflected * li;
             lit &= !contribution.is_black();
-            let wide = wi.widen();
-            let origin = points.leave(ng, wi);
+            let origin = exits.toward(wi);
             let (direction, t_max) = match target {
                 Ends::Nowhere => (wi, f32::INFINITY),
                 Ends::Points(position) => (Vector::narrow(position - origin.widen()), 1.0),
                 Ends::Surfaces(points, normal) => (points.just_before(normal, wi, origin), 1.0),
             };
-            let is_outside = ng.dot(wide).gt(f64x8::splat(simd, 0.0));
             let from = lights.add();
             from.light = index as u32;
             from.lit = lit.to_bitmask() as u32;
-            from.crosses = (is_outside.to_bitmask() ^ front.to_bitmask()) as u32;
+            from.crosses = crosses.to_bitmask() as u32;
             from.contribution = scatter_spectrum(contribution);
             from.rays = scatter_rays(simd, origin, direction, t_max);
             group.lights[1] = lights.count();

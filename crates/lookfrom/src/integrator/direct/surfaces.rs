@@ -2,11 +2,11 @@
 
 use glam::Vec2;
 use lookfrom_bvh::Hit;
-use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
 use super::plain::{self, PlainHits};
 use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
-use crate::core::points::Points;
+use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
 use crate::primitive::{Triangles, gather_triangles};
@@ -23,6 +23,8 @@ pub(in crate::integrator) struct SurfacePoints<S: Simd> {
     ns: Vector<f64x8<S>>,
     /// Texture coordinates, where they are known.
     uv: Option<[f32x8<S>; 2]>,
+    /// The smooth surfaces that meshes stand for.
+    lift: Option<Lift<f32x8<S>>>,
 }
 
 /// Eight surfaces with the directions that shading needs.
@@ -35,10 +37,14 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) front: mask64x8<S>,
     /// Texture coordinates, where they are known.
     pub(super) uv: Option<[f32x8<S>; 2]>,
+    /// The smooth surfaces that meshes stand for.
+    pub(super) lift: Option<Lift<f32x8<S>>>,
 }
 
-/// Points, geometric and shading normals, and texture coordinates where they are known.
-type Shapes<S> = (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>, Option<[f32x8<S>; 2]>);
+/// Points, geometric and shading normals, texture coordinates where they are known, and the ways to smooth surfaces where
+/// there are any.
+type Shapes<S> =
+    (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>, Option<[f32x8<S>; 2]>, Option<Vector<f64x8<S>>>);
 
 impl<S: Simd> SurfacePoints<S> {
     /// The surfaces of hits; without texture coordinates where they are not wanted.
@@ -46,12 +52,18 @@ impl<S: Simd> SurfacePoints<S> {
     pub(in crate::integrator) fn of(simd: S, world: &World, plain: &PlainHits<'_>, wants_uvs: bool) -> Self {
         let [origin, direction] = gather_rays(simd, &plain.rays);
         let wide = direction.widen();
-        let (points, ng, ns, uv) = match plain.are_on_spheres {
+        let (points, ng, ns, uv, lift) = match plain.are_on_spheres {
             true => on_spheres(simd, world, plain, [origin.widen(), wide], wants_uvs),
             false => on_triangles(simd, world, plain, wants_uvs),
         };
         let wo = -wide.normalize();
-        Self { direction, points, ng, front: ng.dot(wo).gt(f64x8::splat(simd, 0.0)), wo, ns, uv }
+        let zero = f64x8::splat(simd, 0.0);
+        let front = ng.dot(wo).gt(zero);
+        let lift = lift.map(|way| {
+            let way = Vector::select(front, way, Vector::splat(zero, [0.0; 3]));
+            Lift { way: Vector::narrow(way), ns: Vector::narrow(ns) }
+        });
+        Self { direction, points, ng, front, wo, ns, uv, lift }
     }
 
     /// Leaves them to AOVs, but for the albedo.
@@ -71,13 +83,30 @@ impl<S: Simd> Surfaces<S> {
     /// Those at points.
     #[inline(always)]
     pub(super) fn at(simd: S, at: &SurfacePoints<S>) -> Self {
-        let SurfacePoints { points, ng, front, wo, ns, uv, .. } = *at;
+        let SurfacePoints { points, ng, front, wo, ns, uv, lift, .. } = *at;
         let wo = Vector::<f32x8<S>>::narrow(wo);
         let ng_facing = Vector::narrow(ng.negate_where(!front));
         let ns_facing = Vector::<f32x8<S>>::narrow(ns.negate_where(!front));
         let is_facing = ns_facing.dot(wo).gt(f32x8::splat(simd, 0.0));
         let ns_facing = Vector::select(is_facing, ns_facing, ng_facing);
-        Self { points, ng, ng_facing, ns_facing, wo, front, uv }
+        Self { points, ng, ng_facing, ns_facing, wo, front, uv, lift }
+    }
+
+    /// The ways out of the surfaces.
+    #[inline(always)]
+    pub(super) fn exits(&self) -> Exits<f32x8<S>> {
+        self.points.exits(self.ng).lifted(self.lift)
+    }
+
+    /// Whether directions lead to the outside: of the smooth surfaces, where meshes stand for those.
+    #[inline(always)]
+    pub(super) fn is_outside(&self, wi: Vector<f32x8<S>>) -> mask64x8<S> {
+        let cos = self.ng.dot(wi.widen());
+        let is_outside = cos.gt(cos.like(0.0));
+        match &self.lift {
+            Some(lift) => is_outside | lift.is_above(wi),
+            None => is_outside,
+        }
     }
 }
 
@@ -100,14 +129,15 @@ fn on_triangles<S: Simd>(simd: S, world: &World, plain: &PlainHits<'_>, wants_uv
 #[inline(always)]
 fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
     let at = triangles.points(u, v);
-    (at.points, at.ng, at.ns, Some(at.uv))
+    let lift = triangles.are_lifted.any().then_some(at.lift);
+    (at.points, at.ng, at.ns, Some(at.uv), lift)
 }
 
 /// No points, of no hits.
 #[inline(always)]
 fn nowhere<S: Simd>(simd: S) -> Shapes<S> {
     let none = Vector::splat(f64x8::splat(simd, 0.0), [0.0; 3]);
-    (Points { position: none, error: none }, none, none, None)
+    (Points { position: none, error: none }, none, none, None, None)
 }
 
 /// The points of hits on spheres.
@@ -137,7 +167,7 @@ fn on_spheres<S: Simd>(
     let points = Points::<f32x8<S>>::on_spheres(center, radius, near);
     let ng = (points.position - center).normalize() * flip;
     let uv = if wants_uvs { Some(sphere_uvs(simd, world, hits, Vector::narrow(ng))) } else { None };
-    (points, ng, ng, uv)
+    (points, ng, ng, uv, None)
 }
 
 /// The texture coordinates of hits on spheres, by their normals; one by one.

@@ -22,13 +22,14 @@ pub(crate) fn gather_triangles<S: Simd>(
     let none = Vector { x: zero, y: zero, z: zero };
     let mut corners = [[0; 3]; LANES];
     let mut orientation = [1.0; LANES];
-    let (mut have_normals, mut have_tangents, mut want_derivatives) = (0, 0, 0);
+    let (mut have_normals, mut have_tangents, mut want_derivatives, mut are_lifted) = (0, 0, 0, 0);
     for (lane, mesh) in meshes.iter().enumerate() {
         corners[lane] = mesh.triangles[indices[lane] as usize];
         orientation[lane] = if mesh.flip { -1.0 } else { 1.0 };
         have_normals |= u32::from(!mesh.normals.is_empty()) << lane;
         have_tangents |= u32::from(!mesh.tangents.is_empty()) << lane;
         want_derivatives |= u32::from(mesh.wants_derivatives) << lane;
+        are_lifted |= u32::from(mesh.is_lifted) << lane;
     }
     let mut triangles = Triangles {
         positions: [
@@ -43,6 +44,7 @@ pub(crate) fn gather_triangles<S: Simd>(
         have_normals: mask64x8::from_bitmask(simd, have_normals.into()),
         have_tangents: mask64x8::from_bitmask(simd, have_tangents.into()),
         want_derivatives: mask64x8::from_bitmask(simd, want_derivatives.into()),
+        are_lifted: mask64x8::from_bitmask(simd, are_lifted.into()),
     };
     if have_normals != 0 {
         triangles.normals = [
@@ -150,16 +152,17 @@ mod tests {
             opacities: Vec::new(),
             wants_derivatives: has(3),
             flip: has(4),
+            is_lifted: has(5),
             binding: MaterialBinding::NONE,
         }
     }
 
     /// The numbers of a point.
-    type Numbers = ([[f64; 3]; 8], [f32; 2]);
+    type Numbers = ([[f64; 3]; 9], [f32; 2]);
 
     fn numbers(at: &TrianglePoints<f32>) -> Numbers {
-        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv } = *at;
-        let vectors = [points.position, points.error, ng, ns, dpdu, dpdv, shading_dpdu, shading_dpdv];
+        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift } = *at;
+        let vectors = [points.position, points.error, ng, ns, dpdu, dpdv, shading_dpdu, shading_dpdv, lift];
         (vectors.map(<[f64; 3]>::from), uv)
     }
 
@@ -187,6 +190,7 @@ mod tests {
                 at.dpdv,
                 at.shading_dpdu,
                 at.shading_dpdv,
+                at.lift,
             ]
             .map(scatter_f64);
             let uv = scatter(Vector { x: at.uv[0], y: at.uv[1], z: at.uv[0] });

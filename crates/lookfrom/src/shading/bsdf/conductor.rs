@@ -150,4 +150,9 @@ impl<R: Real> Base<R> for Conductor<R> {
     fn is_specular(&self) -> R::Mask {
         self.roughness.is_smooth()
     }
+
+    #[inline(always)]
+    fn lambertian(&self) -> Option<Spectrum<R>> {
+        None
+    }
 }

@@ -85,6 +85,11 @@ impl<R: Real> Base<R> for Diffuse<R> {
     fn is_specular(&self) -> R::Mask {
         self.reflectance.is_black().like(false)
     }
+
+    #[inline(always)]
+    fn lambertian(&self) -> Option<Spectrum<R>> {
+        Some(self.reflectance)
+    }
 }
 
 /// Reflects the fraction `reflectance` of the light and transmits the fraction `transmittance`, both uniformly.

@@ -257,6 +257,8 @@ macro_rules! layered_class {
             fn regularize(&mut self) {
                 self.coat.regularize();
                 self.base.regularize();
+                // It was that of a smoother coat.
+                self.internal_reflectance = -1.0;
             }
 
             #[inline(always)]
@@ -270,6 +272,12 @@ macro_rules! layered_class {
                     phase: HenyeyGreenstein { g },
                     max_depth: f32x8::load_array(simd, by_lane!(lane => rows[lane].max_depth)),
                     samples: f32x8::load_array(simd, by_lane!(lane => rows[lane].samples)),
+                    unbiased: f32x8::load_array(simd, by_lane!(lane => rows[lane].unbiased)),
+                    seed: f32x8::load_array(simd, by_lane!(lane => rows[lane].seed)),
+                    internal_reflectance: f32x8::load_array(
+                        simd,
+                        by_lane!(lane => rows[lane].internal_reflectance),
+                    ),
                 }
             }
         }

@@ -2,25 +2,29 @@
 //!
 //! Between the coat (a dielectric boundary) and the base lies a slab of `thickness` in units of the mean free path,
 //! which absorbs or scatters. Its scattering has no closed form; `f` estimates it by a short random walk whose
-//! random numbers are a hash of the directions, so that `f` is a deterministic function of its arguments with the
-//! right mean. `pdf` is also an estimate, of single reflections off the base, mixed with a tenth of a uniform
-//! density. `sample` walks until it leaves the coat; only the ratio `f / pdf` of its result is meaningful.
+//! random numbers are a hash of a seed, which differs by sample, and of the directions: `f` is a deterministic function
+//! whose mean over seeds is right. Over a diffuse base, below a slab without particles, only the ways through the coat are
+//! sampled: what goes to and fro between is a geometric series, where its ratio is known beforehand. `pdf` is also an estimate, of single reflections off the base, mixed with a tenth of
+//! a uniform density. `sample` walks until it leaves the coat; only the ratio `f / pdf` of its result is meaningful.
 //!
 //! This is pbrt-v4's model, including every simplification that is visible in images: the slab absorbs even where
 //! nothing scatters (exp(−thickness / cos θ) per crossing), walks are cut off after `max_depth` steps, and both
-//! sides scatter alike. Where pbrt is biased, so is this: under a rough coat the MIS weights of the two exit
-//! strategies in `f` do not add up to one (9 % too much for roughness 0.4 on white), and `f` misses light from a
-//! particle that is reflected specularly before it leaves through a smooth coat. `sample` is unbiased in both
-//! cases. (pbrt's issue 187 shows the first.) So for equal images, the weights of light sampling and of `sample`
-//! must also be pbrt's.
+//! sides scatter alike. `f` misses light from a particle that a smooth base reflects before it leaves through a smooth
+//! coat; `sample` finds it.
+//!
+//! For equal images, pbrt's files take pbrt's weights, too ([`CoatEstimate::Pbrt`]): under a rough coat the MIS weights
+//! of the two exit strategies in `f` do not add up to one (9 % too much for roughness 0.4 on white; pbrt's issue 187).
+//! `sample` is unbiased in both cases.
 //!
 //! Guo, Hašan & Zhao 2018 (position-free Monte Carlo).
 
 mod coat;
 mod random;
+mod walk;
 
 use std::f32::consts::FRAC_1_PI;
 
+use lookfrom_scene::material::CoatEstimate;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::conductor::Conductor;
@@ -30,18 +34,21 @@ use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
 use super::microfacet::TrowbridgeReitz;
 use super::{DirectionSample, Lobes, Mode, is_grazing};
-use crate::core::elementary::{exp, ln};
+use crate::core::elementary::exp;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 pub use coat::CoatLayer;
 use coat::{coat_f, coat_pdf, sample_coat};
 use random::{Purpose, Random};
+use walk::{Walk, surviving};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
 pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
     /// True if it reflects in single directions.
     fn is_specular(&self) -> R::Mask;
+    /// The albedo of a base that reflects all light alike into all directions.
+    fn lambertian(&self) -> Option<Spectrum<R>>;
 }
 
 /// A base under a coat.
@@ -59,6 +66,12 @@ pub struct Layered<B, R = f32> {
     /// A whole number, as `samples` is.
     pub(crate) max_depth: R,
     pub(crate) samples: R,
+    /// 1 for [`CoatEstimate::Unbiased`], 0 for [`CoatEstimate::Pbrt`].
+    pub(crate) unbiased: R,
+    /// The seed of its walks, in [0, 1).
+    pub(crate) seed: R,
+    /// [`CoatLayer::internal_reflectance`]; negative where it is not known.
+    pub(crate) internal_reflectance: R,
 }
 
 impl Layered<Conductor> {
@@ -68,27 +81,11 @@ impl Layered<Conductor> {
         k: Spectrum,
         roughness: TrowbridgeReitz,
         coat: &CoatLayer,
+        seed: f32,
     ) -> Self {
         let coat_eta = fresnel::valid_eta(coat.eta);
-        Self::new(Conductor::new(eta / coat_eta, k / coat_eta, roughness), coat)
+        Self::new(Conductor::new(eta / coat_eta, k / coat_eta, roughness), coat, seed)
     }
-}
-
-/// Russian roulette: the throughput after a step, and the walks that go on.
-#[inline(always)]
-fn surviving<R: Real>(
-    beta: Spectrum<R>,
-    depth: u32,
-    alive: R::Mask,
-    random: &mut Random<R>,
-) -> (Spectrum<R>, R::Mask) {
-    let survival = beta.max_lane();
-    let in_doubt = alive & survival.lt(survival.like(0.25));
-    if depth <= 3 || !in_doubt.any() {
-        return (beta, alive);
-    }
-    let survives = random.one(in_doubt).lt(survival);
-    (Spectrum::select(in_doubt, beta / survival, beta), alive & (!in_doubt | survives))
 }
 
 /// Transmittance along `w` through `depth` mean free paths of the slab.
@@ -99,8 +96,8 @@ fn transmittance<R: Real>(depth: R, w: Vector<R>) -> R {
 }
 
 impl<B> Layered<B> {
-    /// A coat on a base; the base's indices are those over the coat's.
-    pub fn new(base: B, coat: &CoatLayer) -> Self {
+    /// A coat on a base, whose indices are those over the coat's; walks of different seeds in [0, 1) are independent.
+    pub fn new(base: B, coat: &CoatLayer, seed: f32) -> Self {
         Self {
             coat: Dielectric::new(coat.eta, coat.roughness),
             base,
@@ -109,6 +106,9 @@ impl<B> Layered<B> {
             phase: HenyeyGreenstein::new(coat.g),
             max_depth: f32::from(coat.max_depth),
             samples: f32::from(coat.samples.max(1)),
+            unbiased: if coat.estimate == CoatEstimate::Unbiased { 1.0 } else { 0.0 },
+            seed,
+            internal_reflectance: coat.internal_reflectance.unwrap_or(-1.0),
         }
     }
 
@@ -128,73 +128,11 @@ impl<B> Layered<B> {
     }
 }
 
-/// The steps of a walk through the slab.
-struct Walk<R: Real> {
-    beta: Spectrum<R>,
-    /// Direction of travel.
-    w: Vector<R>,
-    /// Height above the base.
-    z: R,
-    alive: R::Mask,
-}
-
-/// The places that walks have reached in a step.
-struct Step<R: Real> {
-    /// Walks that are at the coat.
-    at_coat: R::Mask,
-    /// Walks that are at the base.
-    at_base: R::Mask,
-    /// Walks that have met a particle, at the height `next`.
-    at_particle: R::Mask,
-    next: R,
-    /// Walks that are where they were.
-    stays: R::Mask,
-}
-
 impl<R: Real, B: Base<R>> Layered<B, R> {
     /// True if there is a lobe that is not specular.
     #[inline(always)]
     pub(super) fn has_density(&self) -> R::Mask {
         self.base.has_density() | !self.albedo.is_black() | !self.coat.is_specular()
-    }
-
-    /// Moves walks to the next boundary or particle, and attenuates those that nothing scatters.
-    #[inline(always)]
-    fn step(&self, walk: &mut Walk<R>, random: &mut Random<R>) -> Step<R> {
-        let zero = walk.z.like(0.0);
-        let none = walk.alive.like(false);
-        let mut step = Step { at_coat: none, at_base: none, at_particle: none, next: walk.z, stays: none };
-        let scatters = !self.albedo.is_black();
-        let mut at_boundary = walk.alive;
-        if scatters.any() {
-            let moves = walk.alive & scatters;
-            // 1 − u is exact.
-            step.next = walk.z - ln(zero.like(1.0) - random.one(moves)) * walk.w.z;
-            step.stays = moves & Float::eq(step.next, walk.z);
-            step.at_particle = moves & step.next.gt(zero) & step.next.lt(self.thickness) & !step.stays;
-            at_boundary = at_boundary & !step.at_particle & !step.stays;
-            let within = Float::min(Float::max(step.next, zero), self.thickness);
-            walk.z = R::select(moves & at_boundary, within, walk.z);
-        }
-        let crosses = at_boundary & !scatters;
-        let other_side = R::select(Float::eq(walk.z, self.thickness), zero, self.thickness);
-        walk.z = R::select(crosses, other_side, walk.z);
-        let attenuated = walk.beta * transmittance(self.thickness, walk.w);
-        walk.beta = Spectrum::select(crosses, attenuated, walk.beta);
-        let is_top = Float::eq(walk.z, self.thickness);
-        step.at_coat = at_boundary & is_top;
-        step.at_base = at_boundary & !is_top;
-        step
-    }
-
-    /// Goes on in a sampled direction; walks without one end.
-    #[inline(always)]
-    fn turn(walk: &mut Walk<R>, mask: R::Mask, sample: &DirectionSample<R>) {
-        walk.alive = walk.alive & (!mask | sample.is_valid);
-        let mask = mask & sample.is_valid;
-        let beta = walk.beta * sample.f * (Float::abs(sample.wi.z) / sample.pdf);
-        walk.beta = Spectrum::select(mask, beta, walk.beta);
-        walk.w = Vector::select(mask, sample.wi, walk.w);
     }
 
     /// As [`super::Bsdf::f`].
@@ -210,111 +148,61 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             return black;
         }
         let mut sum = Spectrum::splat(coat_f(&self.coat, wo, wi, mode)) * self.samples;
-        let mut random = Random::new(Purpose::Value, wo, [wi.x, wi.y, wi.z]);
+        let mut random = Random::new(Purpose::Value, self.seed, wo, [wi.x, wi.y, wi.z]);
         let mut taken = 0.0;
         loop {
             let active = is_lit & self.samples.gt(zero.like(taken));
             if !active.any() {
-                return Spectrum::select(is_lit, sum / self.samples, black);
+                // Products of numbers of any size may be too large.
+                let mean = (sum / self.samples).map(
+                    #[inline(always)]
+                    |lane| R::select(Float::is_finite(lane), lane, zero),
+                );
+                return Spectrum::select(is_lit, mean, black);
             }
-            sum += self.walk::<false>([wo, wi], mode, &mut random, active);
+            sum += match self.base.lambertian() {
+                Some(reflectance) => self.through(reflectance, [wo, wi], mode, &mut random, active),
+                None => self.walk([wo, wi], mode, &mut random, active),
+            };
             taken += 1.0;
         }
     }
 
-    /// One estimate of what enters along `wo` and leaves along `wi`, above the coat; black where a side cannot be
-    /// passed.
-    ///
-    /// Two strategies of leaving through a rough coat are combined by MIS: by the density of sampling the way inside from
-    /// `wi` (`UNBIASED`), or as pbrt has it: that of `wi` given the way.
+    /// One estimate of what enters along `wo` and leaves along `wi`, over a Lambertian base. Where it is known how much of its
+    /// light comes back from the coat, the way between is a geometric series.
     #[inline(always)]
-    fn walk<const UNBIASED: bool>(
+    fn through(
         &self,
+        reflectance: Spectrum<R>,
         [wo, wi]: [Vector<R>; 2],
         mode: Mode,
         random: &mut Random<R>,
         active: R::Mask,
     ) -> Spectrum<R> {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
-        let black = Spectrum::splat(zero);
-        let coat_is_specular = self.coat.is_specular();
-        let base_is_specular = self.base.is_specular();
-        // Enter along `wo`, and find the direction from which light leaves along `wi`.
-        let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
-        let to_exit = -exit.wi;
-        let exit_weight = exit.f / exit.pdf;
-
-        let mut sum = black;
-        let beta = entry.f * (Float::abs(entry.wi.z) / entry.pdf);
-        let mut walk = Walk { beta, w: entry.wi, z: self.thickness, alive: active & exit.is_valid };
-        for depth in 0_u32.. {
-            walk.alive = walk.alive & self.max_depth.gt(zero.like(depth as f32));
-            if !walk.alive.any() {
-                break;
-            }
-            (walk.beta, walk.alive) = surviving(walk.beta, depth, walk.alive, random);
-            let step = self.step(&mut walk, random);
-            if step.at_particle.any() {
-                // Join the particle with the exit.
-                let phase = self.phase.p(-walk.w, to_exit);
-                let weight = R::select(coat_is_specular, one, power_heuristic(exit.pdf, phase));
-                let out = transmittance(step.next - self.thickness, to_exit);
-                let joined = walk.beta * self.albedo * exit_weight * (phase * weight * out);
-                sum += Spectrum::select(step.at_particle, joined, black);
-                // Scatter, and see whether this leads out, too.
-                let wi_in = self.phase.sample(-walk.w, random.two(step.at_particle));
-                let pdf = self.phase.p(-walk.w, wi_in);
-                let scatters = step.at_particle & !is_grazing(wi_in) & pdf.gt(zero);
-                walk.beta = Spectrum::select(scatters, walk.beta * self.albedo, walk.beta);
-                walk.w = Vector::select(scatters, wi_in, walk.w);
-                walk.z = R::select(scatters, step.next, walk.z);
-                let leaves = scatters & walk.w.z.gt(zero) & !coat_is_specular;
-                if leaves.any() {
-                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
-                    let weight = power_heuristic(pdf, self.exit_density::<UNBIASED>(-walk.w, wi));
-                    let out = transmittance(walk.z - self.thickness, walk.w);
-                    let light = walk.beta * (leaving * (out * weight));
-                    sum += Spectrum::select(leaves & leaving.gt(zero), light, black);
-                }
-            }
-            if step.at_coat.any() {
-                // Reflect at the coat, from inside.
-                let u = (random.one(step.at_coat), random.two(step.at_coat));
-                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, mode, Lobes::REFLECTION);
-                Self::turn(&mut walk, step.at_coat, &sample);
-            }
-            if step.at_base.any() {
-                // Join the base with the exit.
-                let joins = step.at_base & !base_is_specular;
-                if joins.any() {
-                    let weight = power_heuristic(exit.pdf, self.base.pdf(&-walk.w, to_exit));
-                    let weight = R::select(coat_is_specular, one, weight);
-                    let out = transmittance(self.thickness, to_exit);
-                    let factor = Float::abs(to_exit.z) * weight * out;
-                    let joined = walk.beta * self.base.f(&-walk.w, to_exit) * exit_weight * factor;
-                    sum += Spectrum::select(joins, joined, black);
-                }
-                // Reflect at the base, and see whether this leads out, too.
-                let sample = self.base.sample(&-walk.w, zero, random.two(step.at_base)).if_lit();
-                Self::turn(&mut walk, step.at_base, &sample);
-                let leaves = step.at_base & walk.alive & !coat_is_specular;
-                if leaves.any() {
-                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
-                    let weight = power_heuristic(sample.pdf, self.exit_density::<UNBIASED>(-walk.w, wi));
-                    let weight = R::select(base_is_specular, one, weight);
-                    let light = walk.beta * (leaving * (weight * transmittance(self.thickness, walk.w)));
-                    sum += Spectrum::select(leaves & leaving.gt(zero), light, black);
-                }
-            }
+        let is_unknown = self.internal_reflectance.lt(zero);
+        let is_known = active & !is_unknown;
+        let mut sum = Spectrum::splat(zero);
+        if (active & is_unknown).any() {
+            sum = self.walk([wo, wi], mode, random, active & is_unknown);
+        }
+        if is_known.any() {
+            let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, is_known);
+            let [entering, leaving] = [entry, exit].map(
+                #[inline(always)]
+                |way| {
+                    let passed = transmittance(self.thickness, way.wi) / way.pdf;
+                    way.f.0[0] * Float::abs(way.wi.z) * passed
+                },
+            );
+            let both = entering * leaving * FRAC_1_PI;
+            let series = reflectance.map(
+                #[inline(always)]
+                |rho| both * rho / (one - rho * self.internal_reflectance),
+            );
+            sum = Spectrum::select(is_known & exit.is_valid, series, sum);
         }
         sum
-    }
-
-    /// The density of leaving along `wi` by a direction `w` inside, away from the coat.
-    #[inline(always)]
-    fn exit_density<const UNBIASED: bool>(&self, w: Vector<R>, wi: Vector<R>) -> R {
-        let (from, to) = if UNBIASED { (wi, w) } else { (w, wi) };
-        coat_pdf(&self.coat, from, to, Lobes::TRANSMISSION)
     }
 
     /// The directions in which light enters along `wo` and comes from below to leave along `wi`; the second is valid
@@ -354,7 +242,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             ..first
         };
 
-        let mut random = Random::new(Purpose::Sample, wo, [uc, u[0], u[1]]);
+        let mut random = Random::new(Purpose::Sample, self.seed, wo, [uc, u[0], u[1]]);
         let (mut is_specular, mut is_diffuse) = (first.is_specular, none);
         let beta = first.f * (Float::abs(first.wi.z) / first.pdf);
         let alive = first.is_valid & first.is_transmission;
@@ -427,7 +315,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             return uniform;
         }
         let mut sum = coat_pdf(&self.coat, wo, wi, Lobes::REFLECTION) * self.samples;
-        let mut random = Random::new(Purpose::Density, wi, [wo.x, wo.y, wo.z]);
+        let mut random = Random::new(Purpose::Density, self.seed, wi, [wo.x, wo.y, wo.z]);
         let mut taken = 0.0;
         loop {
             let active = reflects & self.samples.gt(zero.like(taken));

@@ -28,7 +28,7 @@
 //!   factor, as in the extensions, and reciprocal.
 //! - **Glass** uses Fresnel's equations instead of Schlick's approximation (rescaled by `specular`), so that it
 //!   agrees with `dielectric`.
-//! - **Anisotropic** reflectors have the albedo of isotropic ones with the same √(α_x α_y).
+//! - **Anisotropic** reflectors have tables of albedo of their own.
 //!
 //! Both sides scatter alike, except that the inside of a body is below. Everything is a deterministic function of
 //! its arguments without Monte Carlo estimates, and the density is exact. Tangents and the rotation of anisotropy

@@ -1,8 +1,8 @@
 //! Bump and normal maps: the shading frame.
 //!
-//! pbrt's materials take the perturbed normal as it is. glTF's take one that is [`valid`](Bending::valid), so that reflected
-//! directions leave the surface: the surface neither turns black where a reflection would point inside nor is lit
-//! through itself.
+//! Materials of pbrt's scenes take the perturbed normal as it is. Others take one that is [`valid`](Bending::valid), so that
+//! reflected directions leave the surface: the surface neither turns black where a reflection would point inside, as at
+//! the silhouettes of coarse meshes with smooth normals, nor is lit through itself.
 //!
 //! Blinn 1978 (bumps).
 
@@ -36,7 +36,7 @@ pub(super) fn frame(
     around(side, surface.dpdu)
 }
 
-/// The same for glTF's material, with a normal that is [`valid`](Bending::valid).
+/// The shading frame with a normal that is [`valid`](Bending::valid).
 pub(super) fn valid_frame(
     bump_mapping: &BumpMapping,
     textures: &Textures,

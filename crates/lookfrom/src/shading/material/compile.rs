@@ -2,24 +2,26 @@
 
 use lookfrom_scene::material as written;
 use lookfrom_scene::material::{Color, Scalar};
-use lookfrom_scene::scene::TextureId;
+use lookfrom_scene::scene::{TextureId, VertexNormals};
 
 use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
 use super::{Material, albedo, approximate, pictures, principled};
+use crate::shading::bsdf::layered::CoatLayer;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
 /// Compiles materials. A mix may only refer to earlier ones.
 pub(crate) struct Compiler<'a> {
     textures: &'a Textures,
+    vertex_normals: VertexNormals,
     /// By material: its nearest equivalent in Whitted's model.
     whitted: Vec<written::Whitted>,
 }
 
 impl<'a> Compiler<'a> {
-    pub(crate) fn new(textures: &'a Textures) -> Self {
-        Self { textures, whitted: Vec::new() }
+    pub(crate) fn new(textures: &'a Textures, vertex_normals: VertexNormals) -> Self {
+        Self { textures, vertex_normals, whitted: Vec::new() }
     }
 
     /// The next material, and the absorption coefficient of a body of it per unit of length, by primary,
@@ -27,6 +29,7 @@ impl<'a> Compiler<'a> {
     pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
         let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
+        let is_principled = matches!(kind, MaterialKind::Principled(_));
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
         let compiled = Material {
             albedo: albedo::constant(&kind, self.textures),
@@ -34,6 +37,7 @@ impl<'a> Compiler<'a> {
             varies,
             kind,
             bump_mapping,
+            reflects_outside: is_principled || self.vertex_normals == VertexNormals::Smooth,
             medium: None,
             whitted: self.whitted(&whitted),
         };
@@ -117,14 +121,25 @@ impl<'a> Compiler<'a> {
     }
 
     fn coat(&self, coat: &written::Coat) -> Coat {
+        let roughness = rough(&coat.roughness);
+        let internal_reflectance = match (coat.eta, &roughness, coat.thickness) {
+            (written::Ior::Value(eta), Roughness::Constant(distribution), Scalar::Value(thickness))
+                if coat.albedo == Color::BLACK && coat.estimate == written::CoatEstimate::Unbiased =>
+            {
+                Some(CoatLayer::internal_reflectance(eta, *distribution, thickness))
+            }
+            _ => None,
+        };
         Coat {
             eta: index(coat.eta),
-            roughness: rough(&coat.roughness),
+            roughness,
+            internal_reflectance,
             thickness: coat.thickness.into(),
             albedo: self.albedo(coat.albedo),
             g: coat.g.into(),
             max_depth: coat.max_depth.min(u16::MAX.into()) as u16,
             samples: coat.samples.min(u16::MAX.into()) as u16,
+            estimate: coat.estimate,
         }
     }
 

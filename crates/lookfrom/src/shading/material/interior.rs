@@ -24,7 +24,7 @@ impl InteriorStack {
         crosses: bool,
     ) -> Self {
         if let Some(MediumInterface { inside, outside }) = surface.medium_interface {
-            let is_outside = surface.ng.dot(direction.as_dvec3()) > 0.0;
+            let is_outside = surface.is_outside(direction);
             return if is_outside { outside } else { inside };
         }
         match (crosses && materials[surface.material as usize].is_body(), surface.front) {

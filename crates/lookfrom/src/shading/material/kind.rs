@@ -1,6 +1,7 @@
 //! Compiled materials: those of [`lookfrom_scene::material`] with typed inputs and folded constants.
 
 use glam::Vec3;
+use lookfrom_scene::material::CoatEstimate;
 use lookfrom_scene::scene::CurveId;
 
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -176,6 +177,10 @@ pub struct Coat {
     pub max_depth: u16,
     /// Number of random walks that are averaged.
     pub samples: u16,
+    /// How they are weighted.
+    pub estimate: CoatEstimate,
+    /// [`internal_reflectance`](crate::shading::bsdf::layered::CoatLayer::internal_reflectance) where the coat is the same everywhere and has no particles, and is not pbrt's.
+    pub internal_reflectance: Option<f32>,
 }
 
 /// Perturbations of the shading normal.

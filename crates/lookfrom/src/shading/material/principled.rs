@@ -67,7 +67,8 @@ pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option
         ShadingGeometry { ng: Vec3::Z, ns: Vec3::Z, dpdu: Vec3::X, dpdv: Vec3::Y, wo: Vec3::Z, front: true };
     let (mut lanes, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
     let interior = InteriorStack::default();
-    let context = ShadingContext { lanes: &mut lanes, throughput: &mut throughput, interior, u: 0.0 };
+    let context =
+        ShadingContext { lanes: &mut lanes, throughput: &mut throughput, interior, u: 0.0, seed: 0.0 };
     let mut evaluator = Evaluator::new(&[], textures, &TexturePoint::NOWHERE, context);
     Some(evaluator.principled(look, 0, &surface, bump::plain(&surface)).0)
 }
@@ -305,7 +306,8 @@ mod tests {
             };
             let kind = written::MaterialKind::Principled(Box::new(look));
             let written = written::Material::new("", lookfrom_scene::Location::default(), kind);
-            let (material, _) = Compiler::new(&textures).compile(&written);
+            let (material, _) =
+                Compiler::new(&textures, lookfrom_scene::scene::VertexNormals::Smooth).compile(&written);
             let MaterialKind::Principled(look) = &material.kind else { panic!("{:?}", material.kind) };
             let whole = PrincipledMaterial { template: None, ..(**look).clone() };
             let uv = glam::Vec2::new(4.0 * number(), 4.0 * number());
@@ -326,7 +328,7 @@ mod tests {
             let mut evaluate = |look: &PrincipledMaterial| {
                 let (interior, mut throughput) = (InteriorStack::default(), throughput);
                 let (lanes, throughput) = (&mut lanes, &mut throughput);
-                let context = ShadingContext { lanes, throughput, interior, u: 0.5 };
+                let context = ShadingContext { lanes, throughput, interior, u: 0.5, seed: 0.0 };
                 let mut evaluator = Evaluator::new(&[], &textures, &point, context);
                 evaluator.principled(look, 0, &surface, bump::plain(&surface)).0
             };

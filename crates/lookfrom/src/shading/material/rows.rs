@@ -36,14 +36,16 @@ impl Material {
     /// Whether its shading frame is another than that of the surface.
     #[inline]
     pub(crate) fn bends_frames(&self) -> bool {
-        self.has_bumps() || matches!(self.kind, MaterialKind::Principled(_))
+        self.has_bumps() || self.reflects_outside
     }
 
-    /// Whether its frames are bent in lanes: glTF's material with a normal map or none, whose BSDF does not depend on the
-    /// frame.
+    /// Whether its frames are bent in lanes: with a normal map or none, and a BSDF that does not depend on the frame.
     #[inline]
     pub(crate) fn bends_in_lanes(&self) -> bool {
-        matches!(&self.kind, MaterialKind::Principled(look) if look.template.is_some())
+        let depends_on_frame =
+            matches!(&self.kind, MaterialKind::Principled(look) if look.template.is_none());
+        self.reflects_outside
+            && !depends_on_frame
             && matches!(self.bump_mapping, BumpMapping::None | BumpMapping::NormalTexture(_))
     }
 
@@ -88,6 +90,9 @@ impl Material {
 
 /// A class of BSDFs that materials have.
 pub(crate) trait MaterialRow: RowBsdf {
+    /// Whether it depends on [`ShadingContext::seed`].
+    const TAKES_SEED: bool = false;
+
     /// The BSDF of a material of this class.
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self>;
 
@@ -125,8 +130,10 @@ impl MaterialRow for Principled {
 }
 
 macro_rules! material_row {
-    ($row:ty, $kind:ident { $($field:ident),+ } => $method:ident) => {
+    ($row:ty, $kind:ident { $($field:ident),+ } => $method:ident $(, $takes_seed:literal)?) => {
         impl MaterialRow for $row {
+            $(const TAKES_SEED: bool = $takes_seed;)?
+
             #[inline]
             fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
                 match kind {
@@ -141,5 +148,5 @@ macro_rules! material_row {
 material_row!(Diffuse, Diffuse { reflectance } => diffuse);
 material_row!(Conductor, Conductor { metal, roughness } => conductor);
 material_row!(Dielectric, Dielectric { eta, roughness } => dielectric);
-material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse);
-material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor);
+material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
+material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use lookfrom_scene::material::Color;
+use lookfrom_scene::scene::VertexNormals;
 use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Strand};
 use lookfrom_scene::{Error, ErrorKind, Result};
 
@@ -40,6 +41,7 @@ impl Compiler<'_> {
             opacities: mesh.opacities.clone(),
             wants_derivatives: self.has_grain(placing),
             flip,
+            is_lifted: self.scene.vertex_normals == VertexNormals::Smooth && !mesh.normals.is_empty(),
             binding,
         };
         placed.binding.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);

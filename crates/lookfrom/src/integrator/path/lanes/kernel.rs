@@ -1,7 +1,7 @@
 //! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
 //! rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8};
+use lookfrom_simd::{Float, Kernel, Mask, Real, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8};
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
@@ -158,7 +158,11 @@ impl<S: Simd> Surfaces<S> {
     fn agrees(&self, wi: Vector<f32x8<S>>) -> mask32x8<S> {
         let zero = self.cos_ng.like(0.0);
         let is_beside = (self.wo.z * wi.dot(self.n)).gt(zero);
-        (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero).choose(is_beside, !is_beside)
+        let mut is_outside = (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero);
+        if let Some(lift) = &self.lift {
+            is_outside |= zero.narrow_mask(lift.is_above(wi));
+        }
+        is_outside.choose(is_beside, !is_beside)
     }
 
     /// Samples lights and directions at the surfaces.
@@ -176,7 +180,7 @@ impl<S: Simd> Surfaces<S> {
         let view = bsdf.view(self.wo);
         let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
 
-        let exits = self.points.exits(self.ng);
+        let exits = self.points.exits(self.ng).lifted(self.lift);
 
         // Sample one light.
         let has_density = bsdf.has_density();

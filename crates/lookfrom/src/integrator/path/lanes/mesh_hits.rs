@@ -9,9 +9,9 @@ use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
 use super::{Item, Memory};
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, store};
-use crate::core::points::StoredPlacement;
+use crate::core::points::{Lift, StoredPlacement};
 use crate::core::vector::Vector;
-use crate::integrator::path::PathTracer;
+use crate::integrator::path::{PathTracer, dimension};
 use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
 use crate::primitive::{Mesh, VertexData, points_on_meshes};
 use crate::shading::bsdf::lanes::BsdfClass;
@@ -100,8 +100,8 @@ impl PathTracer {
             false => 0,
         };
         MeshKernel { hits: &hits, varies, are_first: are_first != 0, points: mesh_points }.set_points();
-        let MeshPoints { surfaces, uv, front, bent } = mesh_points;
-        let front = *front;
+        let MeshPoints { surfaces, uv, front, smooth, bent } = mesh_points;
+        let (front, smooth) = (*front, *smooth);
 
         // Paths from the camera pass the back faces of single-sided meshes.
         let mut active = (1 << indices.len()) - 1;
@@ -111,7 +111,7 @@ impl PathTracer {
                 self.step(batch.world, &(batch.stream)(path), path, hit, output);
                 active &= !(1 << lane);
             } else if P::LISTENS {
-                self.notice_shading(batch, *index, output);
+                self.notice_shading::<B, P>(batch, *index, output);
             }
         }
         if active == 0 {
@@ -146,9 +146,12 @@ impl PathTracer {
                 throughput: &mut throughput,
                 interior: path.interior,
                 u: 0.0,
+                seed: seed_of_walks::<B>(&(batch.stream)(path)),
             };
             let mut row: Option<B> = if material.bends_in_lanes() {
-                bent.note(lane, material.local_normal(&world.textures, point));
+                if smooth & 1 << lane != 0 || material.has_bumps() {
+                    bent.note(lane, material.local_normal(&world.textures, point));
+                }
                 material.row(&world.textures, point, context)
             } else if material.bends_frames() {
                 let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
@@ -201,7 +204,7 @@ impl PathTracer {
 
     /// Tells the probe of a surface and its shading, as scalar code has them.
     #[cold]
-    fn notice_shading<P: Probe>(
+    fn notice_shading<B: MaterialRow, P: Probe>(
         &self,
         batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
         index: u32,
@@ -210,8 +213,13 @@ impl PathTracer {
         let (path, hit) = (&batch.paths[index as usize], &batch.hits[index as usize]);
         let surface = batch.world.surface(&path.ray, hit);
         let (mut mode, mut beta) = (output.queues.lanes[path.slot as usize], path.beta);
-        let arrival =
-            ShadingContext { lanes: &mut mode, throughput: &mut beta, interior: path.interior, u: 0.0 };
+        let arrival = ShadingContext {
+            lanes: &mut mode,
+            throughput: &mut beta,
+            interior: path.interior,
+            u: 0.0,
+            seed: seed_of_walks::<B>(&(batch.stream)(path)),
+        };
         let Some(mut shading) = batch.world.shading(&surface, arrival) else { return };
         if self.regularize && path.previous.blurred {
             shading.bsdf.regularize();
@@ -223,6 +231,12 @@ impl PathTracer {
             beta: path.beta,
         });
     }
+}
+
+/// [`ShadingContext::seed`], where BSDFs of a class take one.
+#[inline]
+fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
+    if B::TAKES_SEED { stream.two(dimension::WALK)[0] } else { 0.0 }
 }
 
 /// The inputs of texture evaluation at a hit on a mesh, by position and geometric normal, and texture coordinates.
@@ -255,14 +269,21 @@ pub(super) struct MeshPoints {
     uv: Columns<2>,
     /// Bit i for lane i: whether the ray hit the outside.
     front: u32,
+    /// Whether the shading normal is another than the geometric one.
+    smooth: u32,
     /// Of materials that bend frames.
     bent: BentFrames,
 }
 
 impl MeshPoints {
     /// None yet.
-    pub(super) const NONE: Self =
-        Self { surfaces: SurfaceColumns::NONE, uv: [[0.0; LANES]; 2], front: 0, bent: BentFrames::NONE };
+    pub(super) const NONE: Self = Self {
+        surfaces: SurfaceColumns::NONE,
+        uv: [[0.0; LANES]; 2],
+        front: 0,
+        smooth: 0,
+        bent: BentFrames::NONE,
+    };
 }
 
 /// Finds the points of hits.
@@ -302,9 +323,14 @@ impl Kernel for MeshKernel<'_> {
         let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));
         let dpdu = Vector::narrow(at.shading_dpdu);
         let (s, t) = frame_about(n, dpdu);
+        let is_flat = Float::eq(ns.x, ng.x) & Float::eq(ns.y, ng.y) & Float::eq(ns.z, ng.z);
+        points.smooth = !is_flat.to_bitmask() as u32;
+        let is_front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0));
+        points.front = is_front.to_bitmask() as u32;
+        let lift = Vector::<f32x8<S>>::narrow(at.lift);
         points.surfaces.set(at.points, at.ng, [s, t, n], wo);
+        points.surfaces.set_lifts(Lift { way: lift, ns }, points.front);
         points.uv = [at.uv[0].into(), at.uv[1].into()];
-        points.front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0)).to_bitmask() as u32;
         if are_first || hits.iter().any(|hit| hit.material.bends_frames()) {
             let dpdv = Vector::narrow(at.shading_dpdv);
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));

@@ -1,9 +1,9 @@
 //! Eight surfaces side by side, in memory and in vectors.
 
-use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, prelude::*};
+use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
-use crate::core::points::Points;
+use crate::core::points::{Lift, Points};
 use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
@@ -18,6 +18,9 @@ pub(super) struct SurfaceColumns {
     frame: [Columns<3>; 3],
     /// In render space.
     wo: Columns<3>,
+    /// The ways to the smooth surfaces that meshes stand for, and the normals of those; in the lanes of a mask.
+    lift: [Columns<3>; 2],
+    lifted: u32,
 }
 
 impl SurfaceColumns {
@@ -28,6 +31,8 @@ impl SurfaceColumns {
         ng: [[0.0; LANES]; 3],
         frame: [[[0.0; LANES]; 3]; 3],
         wo: [[0.0; LANES]; 3],
+        lift: [[[0.0; LANES]; 3]; 2],
+        lifted: 0,
     };
 
     /// Replaces all of them.
@@ -46,6 +51,16 @@ impl SurfaceColumns {
         self.wo = store(wo);
     }
 
+    /// Replaces the smooth surfaces that meshes stand for, which are there in the lanes of a mask.
+    #[inline(always)]
+    pub(super) fn set_lifts<S: Simd>(&mut self, lift: Lift<f32x8<S>>, lanes: u32) {
+        let zero = lift.way.x.like(0.0);
+        self.lifted = lanes & lift.way.length_squared().gt(zero).to_bitmask() as u32;
+        if self.lifted != 0 {
+            self.lift = [store(lift.way), store(lift.ns)];
+        }
+    }
+
     /// The surfaces of vertices.
     pub(super) fn of_vertices(vertices: &[&Vertex; LANES]) -> Self {
         let mut columns = Self::NONE;
@@ -56,6 +71,11 @@ impl SurfaceColumns {
             set_row(&mut columns.ng, lane, surface.ng.to_array());
             set_row(&mut columns.wo, lane, surface.wo.to_array());
             columns.set_frame(lane, vertex.shading.axes());
+            if let Some(lift) = surface.lift() {
+                columns.lifted |= 1 << lane;
+                set_row(&mut columns.lift[0], lane, lift.way.into());
+                set_row(&mut columns.lift[1], lane, lift.ns.into());
+            }
         }
         columns
     }
@@ -138,6 +158,12 @@ impl SurfaceColumns {
             n,
             wo: Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) },
             cos_ng: wo.dot(Vector::narrow(ng)),
+            lift: (self.lifted != 0).then(|| {
+                let is_lifted = mask32x8::from_bitmask(simd, self.lifted.into());
+                let [way, ns] = [load(simd, &self.lift[0]), load(simd, &self.lift[1])];
+                let none = Vector::splat(way.x, [0.0; 3]);
+                Lift { way: Vector::select(is_lifted, way, none), ns }
+            }),
         }
     }
 }
@@ -155,6 +181,8 @@ pub(super) struct Surfaces<S: Simd> {
     pub(super) wo: Vector<f32x8<S>>,
     /// The cosines of `wo` to the geometric normals.
     pub(super) cos_ng: f32x8<S>,
+    /// The smooth surfaces that meshes stand for.
+    pub(super) lift: Option<Lift<f32x8<S>>>,
 }
 
 impl<S: Simd> Surfaces<S> {

@@ -10,6 +10,7 @@ use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::layered::CoatLayer;
 use crate::shading::bsdf::principled::Parameters;
 use crate::shading::bsdf::principled::film::Film;
+use lookfrom_scene::material::CoatEstimate;
 
 /// Two directions and three numbers.
 #[derive(Clone, Copy, Debug)]
@@ -122,6 +123,8 @@ fn coat(index: u64) -> CoatLayer {
         g: 2.0 * unit(41, index) - 1.0,
         max_depth: 1 + (index % 12) as u16,
         samples: 1 + (index % 2) as u16,
+        internal_reflectance: index.is_multiple_of(4).then(|| unit(43, index)),
+        estimate: if index.is_multiple_of(7) { CoatEstimate::Pbrt } else { CoatEstimate::Unbiased },
     }
 }
 

@@ -1,4 +1,4 @@
-//! Random numbers of walks through a coat: hashes of their directions, at any width.
+//! Random numbers of walks through a coat: hashes of a seed of the sample and of their directions, at any width.
 
 use lookfrom_simd::{Bits, Real};
 
@@ -21,9 +21,9 @@ impl<R: Real> Random<R> {
     const GOLDEN: u32 = 0x9e37_79b9;
 
     #[inline(always)]
-    pub(super) fn new(purpose: Purpose, wo: Vector<R>, [a, b, c]: [R; 3]) -> Self {
-        let seed = a.to_bits().like(purpose as u32);
-        let bits = Self::add(Self::add(Self::add(seed, wo.x), wo.y), wo.z);
+    pub(super) fn new(purpose: Purpose, seed: R, wo: Vector<R>, [a, b, c]: [R; 3]) -> Self {
+        let bits = Self::add(a.to_bits().like(purpose as u32), seed);
+        let bits = Self::add(Self::add(Self::add(bits, wo.x), wo.y), wo.z);
         Self(hash::mix32(Self::add(Self::add(Self::add(bits, a), b), c)))
     }
 

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::*;
 use crate::shading::bsdf::Bsdf;
+use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::tests::{direction, number, numbers};
 use crate::shading::bsdf::{diffuse::cosine_direction, fresnel};
@@ -42,20 +43,19 @@ fn integral_of_f(f: impl Fn(Vec3, Vec3) -> Spectrum, wo: Vec3, n: u64, seed: u64
     })
 }
 
-/// `f` with unbiased MIS weights of the two exit strategies, where pbrt's do not add up to one.
-fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
-    fn of<B: Base<f32>>(layered: &Layered<B>, wo: Vec3, wi: Vec3) -> Spectrum {
-        let (wo, wi): (Vector<f32>, Vector<f32>) = (wo.into(), wi.into());
-        let mut random = Random::new(Purpose::Value, wo, [wi.x, wi.y, wi.z]);
-        let walk = layered.walk::<true>([wo, wi], Mode::Radiance, &mut random, true);
-        layered.coat.f(wo, wi, Mode::Radiance) + walk
-    }
-    let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
-    match bsdf {
-        Bsdf::CoatedDiffuse(layered) => of(layered, wo, wi),
-        Bsdf::CoatedConductor(layered) => of(layered, wo, wi),
+/// The BSDF with an estimate and a seed of its walks.
+fn with_walks(bsdf: &Bsdf, estimate: CoatEstimate, seed: f32) -> Bsdf {
+    let unbiased = if estimate == CoatEstimate::Unbiased { 1.0 } else { 0.0 };
+    match *bsdf {
+        Bsdf::CoatedDiffuse(layered) => Bsdf::CoatedDiffuse(Layered { unbiased, seed, ..layered }),
+        Bsdf::CoatedConductor(layered) => Bsdf::CoatedConductor(Layered { unbiased, seed, ..layered }),
         _ => panic!("not layered"),
     }
+}
+
+/// `f` with MIS weights of the two exit strategies that add up to one, as pbrt's do not.
+fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
+    with_walks(bsdf, CoatEstimate::Unbiased, 0.0).f(wo, wi, Mode::Radiance)
 }
 
 /// The same by `sample`, of the specular or the other lobes.
@@ -148,11 +148,9 @@ fn single_scattering_in_the_slab_has_a_formula() {
     let phase = HenyeyGreenstein::new(0.4).p(wo.into(), wi.into());
     let crossing = 0.7 * (1.0 / wo.z + 1.0 / wi.z);
     let expected = f64::from(0.6 * phase * (1.0 - (-crossing).exp()) / (wo.z + wi.z));
-    // The function is one estimate per pair of directions: jitter them.
+    // The function is one estimate per seed.
     let f = estimate(200_000, |index| {
-        let jitter = |k: u64| 1e-5 * (number(5, index * 6 + k) - 0.5);
-        let wo = (wo + Vec3::new(jitter(0), jitter(1), jitter(2))).normalize();
-        let wi = (wi + Vec3::new(jitter(3), jitter(4), jitter(5))).normalize();
+        let bsdf = with_walks(&bsdf, CoatEstimate::Pbrt, number(5, index));
         f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
     });
     assert!(f.distance(Estimate { mean: expected, error: 1e-5 }) < 4.5, "{f:?} {expected}");
@@ -223,6 +221,71 @@ fn ways_out_are_weighed_as_in_pbrt() {
                 assert!(kept.distance(unbiased) < 4.5, "{name}: {kept:?} {unbiased:?}");
             }
             _ => {}
+        }
+    }
+}
+
+#[test]
+fn the_mean_over_seeds_is_that_over_directions_nearby() {
+    // Where directions repeat, as with a parallel camera and a distant light, only the seed makes walks differ.
+    let (wo, wi) = (direction(40.0, 30.0), direction(25.0, 170.0));
+    for (name, bsdf) in deep() {
+        let over_seeds = estimate(40_000, |index| {
+            let bsdf = with_walks(&bsdf, CoatEstimate::Unbiased, number(80, index));
+            f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+        });
+        let nearby = estimate(40_000, |index| {
+            let jitter = |k: u64| 1e-4 * (number(81, index * 6 + k) - 0.5);
+            let wo = (wo + Vec3::new(jitter(0), jitter(1), jitter(2))).normalize();
+            let wi = (wi + Vec3::new(jitter(3), jitter(4), jitter(5))).normalize();
+            f64::from(unbiased_f(&bsdf, wo, wi).0[0])
+        });
+        assert!(over_seeds.distance(nearby) < 4.5, "{name}: {over_seeds:?} {nearby:?}");
+        let seed = |seed| with_walks(&bsdf, CoatEstimate::Unbiased, seed);
+        let densities = [0.25, 0.75].map(|u| seed(u).pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+        assert!(densities.iter().all(|pdf| *pdf > 0.0), "{name}");
+    }
+}
+
+#[test]
+fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
+    let coat = CoatLayer { max_depth: 300, estimate: CoatEstimate::Unbiased, ..CoatLayer::default() };
+    let rough = TrowbridgeReitz::new(0.4, 0.4);
+    for (eta, roughness, thickness) in [
+        (1.5, TrowbridgeReitz::SMOOTH, 0.01),
+        (1.5, rough, 0.01),
+        (1.33, TrowbridgeReitz::new(0.2, 0.6), 0.3),
+        (2.2, TrowbridgeReitz::new(0.05, 0.05), 0.1),
+    ] {
+        let coat = CoatLayer { eta, roughness, thickness, ..coat };
+        let inside = CoatLayer::internal_reflectance(eta, roughness, thickness);
+        if roughness.is_smooth() && thickness < 0.02 {
+            // ∫ 2 μ F(μ) e^(−2 t / μ) dμ; without the slab it would be 0.596.
+            let steps = 20_000;
+            let expected: f64 = (0..steps)
+                .map(|k| (f64::from(k) + 0.5) / f64::from(steps))
+                .map(|mu| {
+                    let reflected = f64::from(fresnel::dielectric(-(mu as f32), eta));
+                    2.0 * mu * reflected * (-2.0 * f64::from(thickness) / mu).exp()
+                })
+                .sum();
+            assert!((f64::from(inside) - expected / f64::from(steps)).abs() < 1e-3, "{inside}");
+        }
+        let closed = CoatLayer { internal_reflectance: Some(inside), ..coat };
+        for (wo, wi) in
+            [(direction(20.0, 30.0), direction(35.0, 170.0)), (direction(70.0, 10.0), direction(50.0, 190.0))]
+        {
+            let mean = |coat: &CoatLayer, seed: u64| {
+                estimate(40_000, |index| {
+                    let bsdf =
+                        Bsdf::CoatedDiffuse(Layered::new(Diffuse::new(grey(0.9)), coat, number(seed, index)));
+                    f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+                })
+            };
+            let (walks, series) = (mean(&coat, 90), mean(&closed, 91));
+            let error = walks.error.hypot(series.error) + 1e-3 * walks.mean;
+            assert!((walks.mean - series.mean).abs() < 4.5 * error, "{coat:?}: {walks:?} {series:?}");
+            assert!(series.error < 0.8 * walks.error, "{coat:?}: {walks:?} {series:?}");
         }
     }
 }

@@ -8,6 +8,8 @@
 //! split sum of Karis 2013). With F = 1 their sum is the albedo of single scattering; the rest is multiple
 //! scattering (Kulla & Conty 2017).
 
+pub(super) mod anisotropic;
+
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
@@ -50,7 +52,7 @@ impl<R: Real> Split<R> {
 
     /// `yes` where the mask is set, `no` elsewhere.
     #[inline(always)]
-    fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+    pub(super) fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self {
             straight: R::select(mask, yes.straight, no.straight),
             grazing: R::select(mask, yes.grazing, no.grazing),
@@ -201,16 +203,23 @@ fn sheen_at<R: Real>(index: R::Bits, distance: usize) -> R {
     )
 }
 
-/// Integrates over visible normals: each is weighted by the shadowing of the reflected direction.
+/// The directional albedo of an isotropic reflector.
 fn integrated_mirror(cos: f32, alpha: f32) -> Split {
-    let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     if alpha == 0.0 {
         return mirror(cos, 0.0);
     }
-    let roughness = TrowbridgeReitz { alpha_x: alpha, alpha_y: alpha };
+    let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+    // The other half of the circle is symmetric.
+    integrated(wo, TrowbridgeReitz { alpha_x: alpha, alpha_y: alpha }, PI)
+}
+
+/// Integrates over visible normals up to an angle about the surface normal: each is weighted by the shadowing of the
+/// reflected direction.
+fn integrated(wo: Vec3, roughness: TrowbridgeReitz, angle: f32) -> Split {
+    let TrowbridgeReitz { alpha_x, alpha_y } = roughness;
     let g1 = roughness.g1(wo.into());
     let mut sum = Split::<f32>::default();
-    let w = Vec3::new(alpha * wo.x, 0.0, wo.z).normalize();
+    let w = Vec3::new(alpha_x * wo.x, alpha_y * wo.y, wo.z).normalize();
     for radius in 0..STEPS[1] {
         // Denser toward the horizon, where the distribution has its long tail.
         let x = 1.0 - (radius as f32 + 0.5) / STEPS[1] as f32;
@@ -218,9 +227,9 @@ fn integrated_mirror(cos: f32, alpha: f32) -> Split {
         let sin = (depth * (2.0 - depth)).max(0.0).sqrt();
         for turn in 0..STEPS[0] {
             // A visible normal, as in TrowbridgeReitz::sample.
-            let (s, c) = libm::sincosf(PI * (turn as f32 + 0.5) / STEPS[0] as f32);
+            let (s, c) = libm::sincosf(angle * (turn as f32 + 0.5) / STEPS[0] as f32);
             let h = Vec3::new(sin * c, sin * s, 1.0 - depth) + w;
-            let wm = Vec3::new(alpha * h.x, alpha * h.y, h.z.max(1e-6)).normalize();
+            let wm = Vec3::new(alpha_x * h.x, alpha_y * h.y, h.z.max(1e-6)).normalize();
             let wi = math::reflect(wo, wm);
             if wi.z > 0.0 {
                 let seen = weight * roughness.g(wo.into(), wi.into()) / g1;

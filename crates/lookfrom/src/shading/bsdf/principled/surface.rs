@@ -7,6 +7,7 @@ use super::film::Film;
 use super::look::Look;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::shading::bsdf::fresnel;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
@@ -27,7 +28,7 @@ pub(super) struct Surface<R: Real> {
     pub(super) leaf: R,
     pub(super) leaf_color: Spectrum<R>,
     pub(super) roughness: TrowbridgeReitz<R>,
-    /// α of the isotropic reflector with the same albedo; 0 where it is smooth.
+    /// √(α_x α_y); 0 where it is smooth.
     pub(super) alpha: R,
     /// Index of refraction, inside over outside.
     pub(super) eta: R,
@@ -53,6 +54,23 @@ pub(super) struct Facet<R> {
 pub(super) fn multiple<R: Real>(fresnel: R, mean: R) -> R {
     let one = fresnel.like(1.0);
     fresnel * fresnel * mean / (one - fresnel * (one - mean))
+}
+
+/// True for rough surfaces with two roughnesses; `alpha` is 0 for smooth ones.
+#[inline(always)]
+fn has_grain<R: Real>(roughness: &TrowbridgeReitz<R>, alpha: R) -> R::Mask {
+    alpha.gt(alpha.like(0.0)) & !Float::eq(roughness.alpha_x, roughness.alpha_y)
+}
+
+/// The mean specular albedo for a Fresnel term of 1.
+#[inline(always)]
+fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>, alpha: R) -> Split<R> {
+    let isotropic = albedo::mirror_mean(alpha);
+    let has_grain = has_grain(&roughness, alpha);
+    if !has_grain.any() {
+        return isotropic;
+    }
+    Split::select(has_grain, albedo::anisotropic::mirror_mean(roughness), isotropic)
 }
 
 /// Between a reflectance at normal and one at grazing incidence.
@@ -85,7 +103,7 @@ impl<R: Real> Surface<R> {
             eta: look.eta,
             is_solid: look.is_solid,
             film: look.iridescence.gt(zero).any().then_some((look.iridescence, look.film)),
-            mean: albedo::mirror_mean(alpha),
+            mean: mirror_mean(roughness, alpha),
             filmed: black,
             mean_left: black,
         };
@@ -97,6 +115,17 @@ impl<R: Real> Surface<R> {
             surface.mean_left = surface.left(cos, surface.mean);
         }
         surface
+    }
+
+    /// The specular albedo for a Fresnel term, along a direction above the surface.
+    #[inline(always)]
+    pub(super) fn mirror(&self, up: Vector<R>) -> Split<R> {
+        let isotropic = albedo::mirror(Float::min(up.z, up.z.like(1.0)), self.alpha);
+        let has_grain = has_grain(&self.roughness, self.alpha);
+        if !has_grain.any() {
+            return isotropic;
+        }
+        Split::select(has_grain, albedo::anisotropic::mirror(up, self.roughness), isotropic)
     }
 
     /// The reflectance with the film, for the reflectance `f0` at normal incidence and `plain`

@@ -389,6 +389,37 @@ fn tables_agree_with_finer_integration() {
 }
 
 #[test]
+fn the_table_of_grain_agrees_with_finer_integration() {
+    for trial in 0..200 {
+        let cos = number(41, trial).powi(2).max(0.02);
+        let sin = (1.0 - cos * cos).sqrt();
+        let (s, c) = libm::sincosf(std::f32::consts::TAU * number(42, trial));
+        let wo = Vec3::new(sin * c, sin * s, cos);
+        let [along, across] = [43, 44].map(|seed| (0.1 + 0.9 * number(seed, trial)).powi(2));
+        let facets = TrowbridgeReitz { alpha_x: along, alpha_y: across };
+        const N: usize = 100;
+        let seen = |k: usize| {
+            let u = [((k % N) as f32 + 0.5) / N as f32, ((k / N) as f32 + 0.5) / N as f32];
+            let wi = crate::core::math::reflect(wo, facets.sample(wo.into(), u).into());
+            match wi.z > 0.0 {
+                true => f64::from(facets.g(wo.into(), wi.into()) / facets.g1(wo.into())),
+                false => 0.0,
+            }
+        };
+        let expected = (0..N * N).map(seen).sum::<f64>() / (N * N) as f64;
+        let found = f64::from(albedo::anisotropic::mirror(wo.into(), facets).all());
+        assert!((found - expected).abs() < 0.02, "{wo} {facets:?}: {found}, expected {expected}");
+    }
+    // Of equal roughness along both axes it is an isotropic reflector.
+    for alpha in [0.04, 0.2, 0.7] {
+        let facets = TrowbridgeReitz { alpha_x: alpha, alpha_y: alpha };
+        let mean =
+            [albedo::anisotropic::mirror_mean(facets), albedo::mirror_mean(alpha)].map(albedo::Split::all);
+        assert!((mean[0] - mean[1]).abs() < 0.006, "{alpha}: {mean:?}");
+    }
+}
+
+#[test]
 fn it_is_small_and_keeps_what_it_is_made_of() {
     assert!(size_of::<Principled>() <= 96, "{}", size_of::<Principled>());
     let kept = Principled::new(&Parameters::default()).parameters();

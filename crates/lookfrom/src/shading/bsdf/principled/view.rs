@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::albedo::{self, Split};
+use super::albedo::Split;
 use super::facing::{Facing, Facings};
 use super::layers::{Coat, Fibres};
 use super::look::Look;
@@ -38,6 +38,12 @@ pub(super) fn across<R: Real>(w: Vector<R>) -> Vector<R> {
     Vector { x: w.x, y: w.y, z: -w.z }
 }
 
+/// The direction above the surface: mirrored at it where it is below.
+#[inline(always)]
+fn upward<R: Real>(w: Vector<R>) -> Vector<R> {
+    Vector { x: w.x, y: w.y, z: Float::abs(w.z) }
+}
+
 /// True where light passes through the surface.
 #[inline(always)]
 pub(super) fn is_below<R: Real>(wi: Vector<R>) -> R::Mask {
@@ -51,7 +57,7 @@ impl<R: Real> View<R> {
         let wo = Vector::select(is_inside, across(from), from);
         let surface = Surface::new(look);
         let cos = Float::min(wo.z, wo.z.like(1.0));
-        let mirror = albedo::mirror(cos, surface.alpha);
+        let mirror = surface.mirror(wo);
         let black = Spectrum::splat(cos.like(0.0));
         let left = if surface.has_matte().any() { surface.left(cos, mirror) } else { black };
         let mut view = Self {
@@ -134,13 +140,14 @@ impl<R: Real> View<R> {
         Spectrum::select(through, self.again_through(), self.again)
     }
 
-    /// π f of the nearly uniform lobes on a side, where the other direction has this cosine.
+    /// π f of the nearly uniform lobes on a side, for the other direction (`up`: mirrored where it is below).
     #[inline(always)]
-    fn matte(&self, cos: R, through: R::Mask) -> Spectrum<R> {
+    fn matte(&self, up: Vector<R>, through: R::Mask) -> Spectrum<R> {
+        let cos = up.z;
         let surface = &self.surface;
         let (zero, one) = (cos.like(0.0), cos.like(1.0));
         let black = Spectrum::splat(zero);
-        let mirror = albedo::mirror(cos, surface.alpha);
+        let mirror = surface.mirror(up);
         let mut sum = black;
         let hidden = one - surface.mean.all();
         let is_hidden = hidden.gt(zero);
@@ -189,7 +196,7 @@ impl<R: Real> View<R> {
     pub(super) fn below(&self, wi: Vector<R>) -> (R, R) {
         let one = wi.z.like(1.0);
         let through = is_below(wi);
-        let up = Vector { x: wi.x, y: wi.y, z: Float::abs(wi.z) };
+        let up = upward(wi);
         let coat = match &self.coat {
             None => one,
             Some(coat) => {
@@ -221,7 +228,7 @@ impl<R: Real> View<R> {
         let zero = wi.z.like(0.0);
         let through = is_below(wi);
         let (below_coat, below_sheen) = self.below(wi);
-        let mut f = self.matte(Float::abs(wi.z), through) * zero.like(FRAC_1_PI);
+        let mut f = self.matte(upward(wi), through) * zero.like(FRAC_1_PI);
         f += self.facets_f(wi, mode, facets);
         f = f * below_sheen;
         if let Some(sheen) = &self.sheen
@@ -244,7 +251,7 @@ impl<R: Real> View<R> {
         let cos = Float::abs(wi.z);
         let through = is_below(wi);
         let (below_coat, below_sheen) = self.below(wi);
-        let mirror = albedo::mirror(cos, self.surface.alpha);
+        let mirror = self.surface.mirror(upward(wi));
         let mut f = self.matte_body(cos, mirror, through) * (below_sheen * cos.like(FRAC_1_PI));
         if let Some(sheen) = &self.sheen {
             f += Spectrum::select(through, Spectrum::splat(cos.like(0.0)), sheen.f(self.wo, wi));
@@ -265,7 +272,7 @@ impl<R: Real> View<R> {
         let is_seen = first.exists & !(is_rough_body & through);
         if is_seen.any() {
             // With masking-shadowing by other facets.
-            let up = Vector { x: wi.x, y: wi.y, z: Float::abs(wi.z) };
+            let up = upward(wi);
             let value =
                 surface.roughness.d(first.wm) * surface.roughness.g(self.wo, up) / (self.wo.z * 4.0 * up.z);
             let glass = R::select(is_rough_body, zero, surface.glass);
