@@ -36,9 +36,9 @@ fn is_suspicious<K: Eq + Hash>(count: usize, key: impl Fn(usize) -> K) -> bool {
 }
 
 fn of_mesh(mesh: &mut Mesh) -> usize {
-    // The vertices of an index, with all their numbers, are looked at only where they matter.
-    let corners = |index: usize| mesh.triangles[index].map(|vertex| numbers(mesh, vertex as usize));
-    if !is_suspicious(mesh.triangles.len(), |index| turned(corners(index))) {
+    // The other numbers of vertices are looked at only where places are the same.
+    let place = |vertex: u32| mesh.positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
+    if !is_suspicious(mesh.triangles.len(), |index| turned(mesh.triangles[index].map(place))) {
         return 0;
     }
     let mut known = HashMap::new();

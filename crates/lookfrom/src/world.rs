@@ -261,6 +261,11 @@ impl World {
             || self.is_open_front(surface)
     }
 
+    /// Whether the BSDF of a surface takes a seed ([`ShadingContext::seed`]).
+    pub(crate) fn takes_seed(&self, surface: &SurfaceInteraction) -> bool {
+        self.materials[surface.material as usize].takes_seed()
+    }
+
     /// Whether a surface is only an interface between media.
     pub fn is_interface(&self, surface: &SurfaceInteraction) -> bool {
         matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)

@@ -82,7 +82,7 @@ impl<R: Real> Points<R> {
 
     /// The ways out of the error bounds, along the unit normals and against them.
     #[inline(always)]
-    pub(crate) fn exits(&self, unit_normal: Vector<R::Double>) -> Exits<R> {
+    pub(crate) fn exits<'a>(&self, unit_normal: Vector<R::Double>) -> Exits<'a, R> {
         let Self { position, error } = *self;
         let reach = unit_normal.abs().times(error + position.abs() * position.x.like(4.0 * UNIT));
         let step = (reach.x + reach.y + reach.z) * (1.0 + 1e-6);
@@ -110,18 +110,18 @@ impl<R: Real> Lift<R> {
 }
 
 /// The ways from points out of the bounds of their errors: for rays that leave surfaces.
-pub(crate) struct Exits<R: Real> {
+pub(crate) struct Exits<'a, R: Real> {
     position: Vector<R::Double>,
     normal: Vector<R::Double>,
     /// On the side of the normal.
     step: Vector<R::Double>,
-    lift: Option<Lift<R>>,
+    lift: Option<&'a Lift<R>>,
 }
 
-impl<R: Real> Exits<R> {
+impl<'a, R: Real> Exits<'a, R> {
     /// The ways from smooth surfaces, where directions are above those.
     #[inline(always)]
-    pub(crate) fn lifted(self, lift: Option<Lift<R>>) -> Self {
+    pub(crate) fn lifted(self, lift: Option<&'a Lift<R>>) -> Self {
         Self { lift, ..self }
     }
 
@@ -131,7 +131,7 @@ impl<R: Real> Exits<R> {
         let cos = self.normal.dot(direction.widen());
         let mut is_behind = cos.lt(cos.like(0.0));
         let mut position = self.position;
-        if let Some(lift) = &self.lift {
+        if let Some(lift) = self.lift {
             let is_above = lift.is_above(direction);
             is_behind = is_behind & !is_above;
             position = Vector::select(is_above, position + lift.way.widen(), position);

@@ -218,7 +218,7 @@ impl PathTracer {
 
         // Evaluate the material; dispersion leaves one wavelength, or one colour.
         let lanes = &mut output.queues.lanes[path.slot as usize];
-        let [seed, _] = stream.two(dimension::WALK);
+        let seed = if world.takes_seed(&surface) { stream.two(dimension::WALK)[0] } else { 0.0 };
         let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(mut shading) = world.shading(&surface, arrival) else {
             let direction = Vec3::from_array(path.ray.direction);

@@ -123,6 +123,6 @@ impl SurfaceInteraction {
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
         let Point { position, error } = self.point;
         let points = Points::<f32> { position: position.into(), error: error.into() };
-        points.exits(self.ng.into()).lifted(self.lift()).toward(direction.into()).into()
+        points.exits(self.ng.into()).lifted(self.lift().as_ref()).toward(direction.into()).into()
     }
 }

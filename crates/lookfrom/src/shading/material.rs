@@ -231,6 +231,13 @@ impl Material {
         }
     }
 
+    /// True if it is layered, or may be replaced by a material that is.
+    #[inline]
+    pub(crate) fn takes_seed(&self) -> bool {
+        use MaterialKind::{CoatedConductor, CoatedDiffuse, Mix};
+        matches!(self.kind, CoatedDiffuse { .. } | CoatedConductor { .. } | Mix { .. })
+    }
+
     /// The shading frame of this material.
     fn frame(&self, textures: &Textures, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
         match self.reflects_outside {

@@ -94,8 +94,8 @@ impl<S: Simd> Surfaces<S> {
 
     /// The ways out of the surfaces.
     #[inline(always)]
-    pub(super) fn exits(&self) -> Exits<f32x8<S>> {
-        self.points.exits(self.ng).lifted(self.lift)
+    pub(super) fn exits(&self) -> Exits<'_, f32x8<S>> {
+        self.points.exits(self.ng).lifted(self.lift.as_ref())
     }
 
     /// Whether directions lead to the outside: of the smooth surfaces, where meshes stand for those.

@@ -125,7 +125,7 @@ impl<S: Simd> Surfaces<S> {
         simd: S,
         (bsdf, view): (&B, &B::View),
         beta: Spectrum<f32x8<S>>,
-        (lights, exits): (&LightSamples, &Exits<f32x8<S>>),
+        (lights, exits): (&LightSamples, &Exits<'_, f32x8<S>>),
         connections: &mut Connections,
     ) {
         let wi = load(simd, &lights.wi);
@@ -180,7 +180,7 @@ impl<S: Simd> Surfaces<S> {
         let view = bsdf.view(self.wo);
         let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
 
-        let exits = self.points.exits(self.ng).lifted(self.lift);
+        let exits = self.points.exits(self.ng).lifted(self.lift.as_ref());
 
         // Sample one light.
         let has_density = bsdf.has_density();
