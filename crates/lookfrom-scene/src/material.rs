@@ -122,6 +122,8 @@ pub enum MaterialKind {
         metal: Metal,
         /// Roughness of its surface.
         roughness: Roughness,
+        /// What becomes of light between microfacets.
+        energy: Energy,
     },
     /// A dielectric such as glass or water, which encloses an interior.
     Dielectric {
@@ -129,6 +131,8 @@ pub enum MaterialKind {
         eta: Ior,
         /// Roughness of its surface.
         roughness: Roughness,
+        /// What becomes of light between microfacets.
+        energy: Energy,
     },
     /// A sheet so thin that transmitted light is not deflected.
     ThinDielectric {
@@ -383,6 +387,16 @@ pub struct Roughness {
 impl Roughness {
     /// A perfectly smooth surface.
     pub const SMOOTH: Self = Self { u: Scalar::Value(0.0), v: Scalar::Value(0.0), remap: true };
+}
+
+/// What becomes of light that one microfacet of a rough surface sends to another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Energy {
+    /// It leaves in the end: a white surface reflects or transmits all light at any roughness.
+    #[default]
+    Conserved,
+    /// It is lost, as in pbrt: scattering is that of single microfacets (Walter et al. 2007; Heitz 2014), and reciprocal.
+    SingleScattering,
 }
 
 /// A dielectric layer over a base, with a medium in between (Guo, Hašan & Zhao 2018).

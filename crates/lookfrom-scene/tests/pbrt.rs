@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::light::{LightKind, Power, Sky};
-use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Scalar};
+use lookfrom_scene::material::{Color, Energy, Ior, MaterialKind, Metal, Scalar};
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
 use lookfrom_scene::settings::{ColorMode, Filter, Integrator, Layers, PixelBounds, Sampler};
@@ -119,12 +119,18 @@ fn materials_are_found_by_name_before_and_after() {
     );
     let ids: Vec<MaterialId> = scene.shapes.iter().map(|shape| shape.material).collect();
     assert_eq!(ids, [MaterialId(0), MaterialId(1), MaterialId(2)]);
-    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness } = &scene.materials[1].kind else {
+    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness, energy: Energy::SingleScattering } =
+        &scene.materials[1].kind
+    else {
         panic!("{:?}", scene.materials[1])
     };
     assert!(matches!(scene.curves[glass.index()], Curve::Tabulated { .. }));
     assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.25), true));
-    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness } = &scene.materials[2].kind
+    let MaterialKind::Conductor {
+        metal: Metal::Indices { eta, k },
+        roughness,
+        energy: Energy::SingleScattering,
+    } = &scene.materials[2].kind
     else {
         panic!("{:?}", scene.materials[2])
     };

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
-use lookfrom_scene::material::{BumpMapping, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
+use lookfrom_scene::material::{BumpMapping, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
@@ -42,6 +42,7 @@ roughness = 0.5
 type = "conductor"
 reflectance = "#808080"
 roughness = [0.1, "spots"]
+energy = "single_scattering"
 [materials.salt]
 type = "conductor"
 eta = { curve = [[500, 1.5], [600, 2]] }
@@ -83,20 +84,24 @@ type = "dots"
         Color::Curve(id) => &scene.curves[id.index()],
         other => panic!("{other:?} is no curve"),
     };
-    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness } = *kind(&scene, "gold")
+    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness, energy } =
+        *kind(&scene, "gold")
     else {
         panic!("a conductor")
     };
     assert_eq!(*curve(eta), spectrum::named("metal-Au-eta").expect("gold"));
     assert_eq!(*curve(k), spectrum::named("metal-Au-k").expect("gold"));
+    assert_eq!(energy, Energy::Conserved);
     // Perceptual 0.5 is α = 0.25.
     let quarter = Scalar::Value(0.25);
     assert_eq!(roughness, Roughness { u: quarter, v: quarter, remap: false });
 
     // A texture is squared as a number is.
-    let MaterialKind::Conductor { metal: Metal::Reflectance(_), roughness } = *kind(&scene, "tin") else {
+    let MaterialKind::Conductor { metal: Metal::Reflectance(_), roughness, energy } = *kind(&scene, "tin")
+    else {
         panic!("a conductor")
     };
+    assert_eq!(energy, Energy::SingleScattering);
     assert_eq!((roughness.u, roughness.remap), (Scalar::Value(0.1_f32 * 0.1), false));
     let Scalar::Texture(squared) = roughness.v else { panic!("a texture") };
     let TextureKind::Scale { color: Color::Texture(spots), by: Scalar::Texture(also) } =
@@ -114,9 +119,11 @@ type = "dots"
         assert!((curve(eta).at(nm) - expected).abs() < 1e-6);
     }
 
-    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness } = *kind(&scene, "prism") else {
+    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness, energy } = *kind(&scene, "prism")
+    else {
         panic!("a dielectric")
     };
+    assert_eq!(energy, Energy::Conserved);
     assert_eq!(scene.curves[glass.index()], spectrum::named("glass-SF11").expect("a glass"));
     assert_eq!(roughness.u, Scalar::Value(0.0));
     assert_eq!(*kind(&scene, "pane"), MaterialKind::ThinDielectric { eta: Ior::Value(1.3) });

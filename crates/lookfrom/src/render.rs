@@ -9,6 +9,7 @@ mod camera_warnings;
 mod cost;
 mod driver;
 mod first_hit;
+mod footprint;
 mod interior;
 mod progress;
 mod sensor;
@@ -51,7 +52,7 @@ pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 6;
+pub const SAMPLING_VERSION: u32 = 7;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.
@@ -162,6 +163,10 @@ impl Renderer {
                 image.width, image.height
             ));
         }
+        let world = match world.has_bump_maps() {
+            true => world.seen_by(footprint::of_pixels(&view.camera)),
+            false => world,
+        };
         let eye = view.camera.lookfrom() - world.origin();
         let ray_start = start::ray_start(&world, &view.camera, eye);
         let interior = interior::interior_at(&world, ray_start, world.space_of(view.medium));

@@ -30,9 +30,10 @@ use crate::core::points::{Points, StoredPlacement, amplification};
 use crate::core::spectrum::Spectrum;
 use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
+use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
-use crate::shading::material::{self, Material, MaterialKind, Shading, ShadingContext};
+use crate::shading::material::{self, Material, MaterialKind, Relief, Shading, ShadingContext};
 use crate::shading::texture::{
     FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
@@ -96,6 +97,8 @@ pub struct World {
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials, shapes and lights, for reports.
     pub(crate) names: Arc<Names>,
+    /// The pixels of the camera that sees it, by which bump maps are read; `None` before there is one.
+    pub(crate) footprint: Option<PixelFootprint>,
 }
 
 /// An absorbing medium.
@@ -266,6 +269,24 @@ impl World {
         self.materials[surface.material as usize].takes_seed()
     }
 
+    /// Whether any material has a bump map.
+    pub(crate) fn has_bump_maps(&self) -> bool {
+        self.materials.iter().any(Material::has_bump_map)
+    }
+
+    /// The same world seen by a camera with these pixels.
+    pub(crate) fn seen_by(self: Arc<Self>, footprint: PixelFootprint) -> Arc<Self> {
+        match self.footprint == Some(footprint) {
+            true => self,
+            false => Arc::new(Self { footprint: Some(footprint), ..(*self).clone() }),
+        }
+    }
+
+    /// What shading frames are bent by.
+    pub(crate) fn relief(&self) -> Relief<'_> {
+        Relief { textures: &self.textures, footprint: self.footprint.as_ref() }
+    }
+
     /// Whether a surface is only an interface between media.
     pub fn is_interface(&self, surface: &SurfaceInteraction) -> bool {
         matches!(self.materials[surface.material as usize].kind, MaterialKind::Interface)
@@ -277,7 +298,7 @@ impl World {
             return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
         }
         let point = self.texture_point(surface);
-        material::shading(&self.materials, &self.textures, surface, &point, arrival)
+        material::shading(&self.materials, self.relief(), surface, &point, arrival)
     }
 
     /// Radiance that a surface emits toward `wo`.

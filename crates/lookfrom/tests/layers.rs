@@ -34,10 +34,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("interior_stack", &[]),
     ("texture", &["color", "hash", "lanes", "noise", "spectrum", "vector"]),
     ("interaction", &["interior_stack", "math", "points", "texture"]),
+    ("footprint", &["interaction", "texture"]),
     (
         "material",
         &[
             "bsdf",
+            "footprint",
             "interior_stack",
             "math",
             "optics",
@@ -73,6 +75,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         &[
             "bsdf",
             "distribution",
+            "footprint",
             "interior_stack",
             "light",
             "material",
@@ -117,6 +120,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "color",
             "film",
             "filter",
+            "footprint",
             "integrator",
             "lanes",
             "light",

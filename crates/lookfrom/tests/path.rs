@@ -5,7 +5,7 @@ use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
 use lookfrom_scene::material::{
-    Coat, CoatEstimate, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+    Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
 };
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler};
@@ -127,6 +127,9 @@ fn furnace(kind: MaterialKind) -> Scene {
 fn a_white_furnace_hides_what_keeps_all_light() {
     let rough = |alpha: f32| Roughness { u: Scalar::Value(alpha), v: Scalar::Value(alpha), remap: false };
     let white = Color::gray(1.0);
+    let metal =
+        |roughness, energy| MaterialKind::Conductor { metal: Metal::Reflectance(white), roughness, energy };
+    let glass = |roughness, energy| MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness, energy };
     let kinds = [
         ("diffuse", MaterialKind::Diffuse { reflectance: white }),
         (
@@ -137,18 +140,14 @@ fn a_white_furnace_hides_what_keeps_all_light() {
                 scale: 1.0,
             },
         ),
-        ("glass", MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness: Roughness::SMOOTH }),
+        ("glass", glass(Roughness::SMOOTH, Energy::SingleScattering)),
         ("thin glass", MaterialKind::ThinDielectric { eta: Ior::Value(1.5) }),
         ("interface", MaterialKind::Interface),
-        (
-            "mirror",
-            MaterialKind::Conductor { metal: Metal::Reflectance(white), roughness: Roughness::SMOOTH },
-        ),
-        (
-            "nearly smooth metal",
-            MaterialKind::Conductor { metal: Metal::Reflectance(white), roughness: rough(0.05) },
-        ),
-        ("nearly smooth glass", MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness: rough(0.02) }),
+        ("mirror", metal(Roughness::SMOOTH, Energy::SingleScattering)),
+        ("nearly smooth metal", metal(rough(0.05), Energy::SingleScattering)),
+        ("nearly smooth glass", glass(rough(0.02), Energy::SingleScattering)),
+        ("rough metal", metal(rough(0.9), Energy::Conserved)),
+        ("rough glass", glass(rough(0.8), Energy::Conserved)),
     ];
     for (name, kind) in kinds {
         for color in [ColorMode::Rgb, ColorMode::Spectral] {

@@ -3,6 +3,8 @@
 mod support;
 
 use glam::{DMat4, DVec3, Vec3};
+use lookfrom::integrator::Event;
+use lookfrom::render::SampleId;
 use lookfrom_scene::Location;
 use lookfrom_scene::Scene;
 use lookfrom_scene::scene::{MaterialId, MeshId, VertexNormals};
@@ -120,4 +122,29 @@ fn brightness_near_the_terminator_follows_the_sphere() {
             assert!(black * 100 < count, "{integrator:?}, {rings} rings: {black} of {count} are black");
         }
     }
+}
+
+/// A shadow ray is told with what blocks it, and with nothing where it passes: the triangle that it leaves, which it may graze,
+/// does neither.
+#[test]
+fn shadow_rays_are_told_with_what_blocks_them() {
+    let lights = (0..12).map(|k| {
+        let (sin, cos) = (f64::from(k) * 0.53).sin_cos();
+        format!("[[light]]\ntype = \"distant\"\ndirection = [{sin}, {cos}, {}]\nintensity = 1\n", 0.3 * sin)
+    });
+    let settings = "[render]\nsamples = 4\ndepth = 1\n[materials.m]\ntype = \"diffuse\"\n[[sphere]]\ncenter = [0.9, 0.9, 0.9]\nradius = 0.5\nmaterial = \"m\"\n".to_owned();
+    let scene = turned(sphere(9), &lights.fold(settings, |all, light| all + &light));
+    let compiled = Compiled::new(scene);
+    let ids: Vec<_> = (0..100 * 100_u32)
+        .map(|pixel| SampleId { pixel: [pixel % 100, pixel / 100], sample: pixel % 4 })
+        .collect();
+    let mut events = Vec::new();
+    compiled.renderer().trace_events(&ids, &mut events);
+    let (mut passed, mut blocked) = (0, 0);
+    for event in &events {
+        let Event::Shadow { shadow, hit, passed: light } = event else { continue };
+        assert_eq!(hit.is_hit(), light.is_black(), "{:?} meets {hit:?}", shadow.ray);
+        (passed, blocked) = (passed + u32::from(!hit.is_hit()), blocked + u32::from(hit.is_hit()));
+    }
+    assert!(passed > 1000 && blocked > 300, "{passed} pass, {blocked} are blocked");
 }

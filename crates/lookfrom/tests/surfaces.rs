@@ -255,6 +255,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
             v: Scalar::Value(0.5),
             remap: false,
         },
+        energy: lookfrom_scene::material::Energy::SingleScattering,
     };
     scene.materials.push(Material::new("brushed", nowhere(), kind));
     let mixed = MaterialKind::Mix { materials: [MaterialId(0), MaterialId(1)], amount: Scalar::Value(0.5) };

@@ -46,7 +46,7 @@ AttributeEnd
 "#;
 
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 24] = [
+const INSPECTED: [&str; 25] = [
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
@@ -71,6 +71,7 @@ const INSPECTED: [&str; 24] = [
     "scenes/star.pbrt 20 20 --width 40 --height 30 --samples 4 --sample 2",
     "model.obj 5 5 --size 10",
     "around.toml 5 5",
+    "metal.toml 8 8 --samples 4",
 ];
 
 /// Every name of a property that a schema knows.
@@ -113,6 +114,10 @@ fn every_report_is_of_the_schema() {
     stage.write(
         "around.toml",
         "camera = { projection = \"equirectangular\", lookfrom = [0, 0, 0], lookat = [0, 0, 3] }\nsphere = [{ center = [0, 0, 3] }]",
+    );
+    stage.write(
+        "metal.toml",
+        "image = { width = 16, height = 16 }\ncamera = { lookfrom = [0, 0, 3], lookat = [0, 0, 0] }\nsphere = [{ material = \"gold\" }]\n[materials.gold]\ntype = \"conductor\"\nmetal = \"gold\"\nroughness = 0.8",
     );
     stage.write("odd.pbrt", ODD);
     for (name, width) in [("t.png", 2), ("square.png", 1)] {

@@ -7,7 +7,7 @@ use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, CoatEstimate, Color, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
 };
 use crate::scene::{ImageId, MaterialId};
 
@@ -88,10 +88,12 @@ impl Reader<'_, '_> {
             "conductor" => MaterialKind::Conductor {
                 metal: self.metal(p, ["eta", "k", "reflectance"])?,
                 roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
+                energy: Energy::SingleScattering,
             },
             "dielectric" => MaterialKind::Dielectric {
                 eta: self.index_of_refraction(p, "eta", 1.5)?,
                 roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
+                energy: Energy::SingleScattering,
             },
             "thindielectric" => {
                 MaterialKind::ThinDielectric { eta: self.index_of_refraction(p, "eta", 1.5)? }

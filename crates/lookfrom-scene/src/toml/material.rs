@@ -31,8 +31,8 @@ pub(super) const KEYS: Kinds = &[
     ),
     ("diffuse", &["reflectance", "normal_map", "bump"]),
     ("diffuse_transmission", &["reflectance", "transmittance", "normal_map", "bump"]),
-    ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "normal_map", "bump"]),
-    ("dielectric", &["ior", "roughness", "normal_map", "bump"]),
+    ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "energy", "normal_map", "bump"]),
+    ("dielectric", &["ior", "roughness", "energy", "normal_map", "bump"]),
     ("thin_dielectric", &["ior", "normal_map", "bump"]),
     (
         "coated_diffuse",

@@ -7,10 +7,18 @@ use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::material::{Coat, CoatEstimate, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{Coat, CoatEstimate, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
 
 /// Default index of refraction.
 const IOR: f32 = 1.5;
+
+/// The words for what becomes of light between microfacets.
+pub(super) const ENERGIES: &[(&str, Energy)] =
+    &[("conserved", Energy::Conserved), ("single_scattering", Energy::SingleScattering)];
+
+fn energy(table: &Table<'_>) -> Energy {
+    table.or("energy", Energy::default(), |value| value.choice(ENERGIES))
+}
 
 impl Reader<'_, '_> {
     /// A material of a type other than "whitted".
@@ -25,10 +33,12 @@ impl Reader<'_, '_> {
             "conductor" => MaterialKind::Conductor {
                 metal: self.metal_of(table),
                 roughness: self.roughness(table, "roughness"),
+                energy: energy(table),
             },
             "dielectric" => MaterialKind::Dielectric {
                 eta: self.ior_of(table),
                 roughness: self.roughness(table, "roughness"),
+                energy: energy(table),
             },
             "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table) },
             "coated_diffuse" => MaterialKind::CoatedDiffuse {

@@ -58,7 +58,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 /// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
-    use super::{sky, solid};
+    use super::{physical, sky, solid};
     use crate::settings::{Allocation, ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
@@ -75,6 +75,7 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("[[solid.of]]", words(solid::TYPES)),
         ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
+        ("energy", words(physical::ENERGIES)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),
         ("filter", words(texture::FILTERS)),

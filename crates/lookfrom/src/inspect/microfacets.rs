@@ -9,7 +9,7 @@ use crate::shading::bsdf::MicrofacetFactors;
 /// A boundary with microfacets that scatters light between two directions. Its part of the BSDF is, for reflection,
 /// `weight · part · D G / (4 |cos_o cos_i|)`, for refraction
 /// `weight · part · D G |cos_om cos_im| / (|cos_o cos_i| (cos_im + cos_om / η)² η²)`, and where it is smooth
-/// `weight · part / (|cos_i| η²)`, the factor of a delta function.
+/// `weight · part / (|cos_i| η²)`, the factor of a delta function; multiple scattering multiplies it by its gain.
 #[derive(Clone, Debug, Serialize)]
 pub struct MicrofacetReport {
     /// `conductor`, `dielectric`, `thin dielectric` or `coat`; of glTF's layers `specular`, `glass` or `clear coat`.
@@ -41,8 +41,24 @@ pub struct MicrofacetReport {
     pub eta: f32,
     /// The weight of the boundary, below the layers above it.
     pub weight: f32,
+    /// What light between the facets of a conductor adds; `None` where it is lost or there is none.
+    pub multiple_scattering: Option<MultipleScatteringReport>,
     /// The boundary's part of the BSDF: the product.
     pub value: Factor,
+}
+
+/// Light that one facet of a conductor sends to another, over that of single scattering:
+/// `gain = 1 + F̄ Ē / (1 − F̄ (1 − Ē)) · (1 − E) / E`.
+#[derive(Clone, Debug, Serialize)]
+pub struct MultipleScatteringReport {
+    /// E(ω_o): the albedo of single scattering by facets that reflect all light.
+    pub albedo: f32,
+    /// Ē: its mean over all directions.
+    pub mean_albedo: f32,
+    /// F̄: the mean Fresnel reflectance.
+    pub mean_fresnel: Factor,
+    /// All light over that of single scattering.
+    pub gain: Factor,
 }
 
 impl MicrofacetReport {
@@ -50,7 +66,18 @@ impl MicrofacetReport {
     pub(super) fn new(factors: &MicrofacetFactors, factor: impl Fn(Spectrum) -> Factor) -> Self {
         let value = factor(factors.value());
         let &MicrofacetFactors {
-            boundary, refracts, roughness, wm, d, g, fresnel, part, eta, weight, ..
+            boundary,
+            refracts,
+            roughness,
+            wm,
+            d,
+            g,
+            fresnel,
+            part,
+            eta,
+            weight,
+            multiple_scattering,
+            ..
         } = factors;
         let ([cos_o, cos_i], [cos_om, cos_im]) = (factors.cos, factors.cos_m);
         Self {
@@ -68,6 +95,12 @@ impl MicrofacetReport {
             part: factor(part),
             eta,
             weight,
+            multiple_scattering: multiple_scattering.map(|more| MultipleScatteringReport {
+                albedo: more.albedo,
+                mean_albedo: more.mean_albedo,
+                mean_fresnel: factor(more.mean_fresnel),
+                gain: factor(more.gain()),
+            }),
             value,
         }
     }

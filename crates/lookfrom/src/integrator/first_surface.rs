@@ -35,7 +35,7 @@ impl FirstSurface {
         Self {
             position: DVec3::from_array(surface.point.position),
             ng: surface.ng.as_vec3(),
-            ns: material::normal(materials, textures, surface, &point),
+            ns: material::normal(materials, world.relief(), surface, &point),
             wo: surface.wo,
             uv: surface.uv,
             albedo: albedo.unwrap_or_else(|| material::albedo(materials, textures, material, &point)),

@@ -178,6 +178,9 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) -> Option<Vertex> {
         if path.previous.is_catcher {
+            if !hit.is_hit() && self.finds_what_it_expects(path) {
+                return None;
+            }
             self.expect_sky(world, path, output);
         }
 

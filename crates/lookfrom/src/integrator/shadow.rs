@@ -166,7 +166,8 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {
             let shadow = light.of(rays[index], origin_primitives[index]);
-            Event::Shadow { shadow, hit: world.bvh.closest_hit(&shadow.ray), passed }
+            let hit = world.bvh.query().origin(shadow.origin_primitive).closest_hit(&shadow.ray);
+            Event::Shadow { shadow, hit, passed }
         });
         light.contribution *= passed;
     }

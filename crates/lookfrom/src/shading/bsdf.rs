@@ -7,6 +7,7 @@
 //!
 //! Definitions and clamping follow pbrt-v4 (Pharr, Jakob & Humphreys 2023). glTF's material is in [`principled`].
 
+mod albedo;
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
@@ -22,6 +23,7 @@ pub mod principled;
 pub mod whitted;
 
 use glam::Vec3;
+use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use crate::core::spectrum::Spectrum;
@@ -180,6 +182,12 @@ pub(crate) fn is_grazing<R: Real>(w: impl Into<Vector<R>>) -> R::Mask {
     !Float::abs(z).gt(z.like(1e-12))
 }
 
+/// The direction mirrored at the surface.
+#[inline(always)]
+pub(crate) fn across<R: Real>(w: Vector<R>) -> Vector<R> {
+    Vector { x: w.x, y: w.y, z: -w.z }
+}
+
 /// True if both directions are on the same side of the surface, neither grazing.
 #[inline(always)]
 pub(crate) fn same_side<R: Real>(wo: impl Into<Vector<R>>, wi: impl Into<Vector<R>>) -> R::Mask {
@@ -217,6 +225,16 @@ impl Bsdf {
     pub fn conductor_of_reflectance(reflectance: Spectrum, roughness: TrowbridgeReitz) -> Self {
         let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
         Self::conductor(eta, k, roughness)
+    }
+
+    /// The same conductor or dielectric with the light between its microfacets or without it; other BSDFs as they are.
+    #[must_use]
+    pub fn with_energy(self, energy: Energy) -> Self {
+        match self {
+            Self::Conductor(bsdf) => Self::Conductor(bsdf.with_energy(energy)),
+            Self::Dielectric(bsdf) => Self::Dielectric(bsdf.with_energy(energy)),
+            other => other,
+        }
     }
 
     /// pbrt's `coateddiffuse`, with walks of the seed 0.

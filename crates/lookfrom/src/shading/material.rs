@@ -16,6 +16,7 @@ mod rows;
 mod whitted;
 
 use glam::Vec3;
+use lookfrom_scene::material::Energy;
 use lookfrom_scene::scene::CurveId;
 
 use crate::core::points::Lift;
@@ -36,6 +37,7 @@ use crate::shading::texture::{
 
 pub use albedo::albedo;
 pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
+pub use bump::Relief;
 pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use kind::{
@@ -239,10 +241,10 @@ impl Material {
     }
 
     /// The shading frame of this material.
-    fn frame(&self, textures: &Textures, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
+    fn frame(&self, relief: Relief<'_>, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
         match self.reflects_outside {
-            true => bump::valid_frame(&self.bump_mapping, textures, surface, point),
-            false => bump::frame(&self.bump_mapping, textures, surface, point),
+            true => bump::valid_frame(&self.bump_mapping, relief, surface, point),
+            false => bump::frame(&self.bump_mapping, relief, surface, point),
         }
     }
 
@@ -261,11 +263,12 @@ impl Material {
 /// replaced by one of its parts at random.
 pub fn shading(
     materials: &[Material],
-    textures: &Textures,
+    relief: Relief<'_>,
     surface: &SurfaceInteraction,
     point: &TexturePoint,
     arrival: ShadingContext<'_>,
 ) -> Option<Shading> {
+    let textures = relief.textures;
     let mut u = arrival.u;
     let mut index = surface.material;
     let mut material = &materials[index as usize];
@@ -280,18 +283,18 @@ pub fn shading(
     let geometry = surface.shading_geometry();
     let ng = geometry.ng;
     if let MaterialKind::Principled(look) = &material.kind {
-        let frame = material.frame(textures, &geometry, point);
+        let frame = material.frame(relief, &geometry, point);
         let (bsdf, frame) = at.principled(look, index, &geometry, frame);
         return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng, lift: surface.lift() });
     }
     let bsdf = at.bsdf(material)?;
-    Some(Shading { bsdf, frame: material.frame(textures, &geometry, point), ng, lift: surface.lift() })
+    Some(Shading { bsdf, frame: material.frame(relief, &geometry, point), ng, lift: surface.lift() })
 }
 
 /// The shading normal, to the outside, of unit length: that of [`shading`]; for mixed materials that of the first.
 pub fn normal(
     materials: &[Material],
-    textures: &Textures,
+    relief: Relief<'_>,
     surface: &SurfaceInteraction,
     point: &TexturePoint,
 ) -> Vec3 {
@@ -300,7 +303,7 @@ pub fn normal(
         material = &materials[*first as usize];
     }
     match material.has_bumps() {
-        true => material.frame(textures, &surface.shading_geometry(), point).n,
+        true => material.frame(relief, &surface.shading_geometry(), point).n,
         false => surface.ns,
     }
 }
@@ -352,8 +355,12 @@ impl Evaluator<'_> {
                 });
                 Bsdf::diffuse_transmission(reflected, transmitted)
             }
-            MaterialKind::Conductor { metal, roughness } => Bsdf::Conductor(self.conductor(metal, roughness)),
-            MaterialKind::Dielectric { eta, roughness } => Bsdf::Dielectric(self.dielectric(eta, roughness)),
+            MaterialKind::Conductor { metal, roughness, energy } => {
+                Bsdf::Conductor(self.conductor(metal, roughness, energy))
+            }
+            MaterialKind::Dielectric { eta, roughness, energy } => {
+                Bsdf::Dielectric(self.dielectric(eta, roughness, energy))
+            }
             MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
                 Bsdf::CoatedDiffuse(self.coated_diffuse(reflectance, coat))
@@ -376,13 +383,13 @@ impl Evaluator<'_> {
         Diffuse::new(self.albedo(reflectance))
     }
 
-    fn conductor(&self, metal: &Metal, roughness: &Roughness) -> Conductor {
+    fn conductor(&self, metal: &Metal, roughness: &Roughness, &energy: &Energy) -> Conductor {
         let (eta, k) = self.indices(metal);
-        Conductor::new(eta, k, roughness.at(self.textures, self.point))
+        Conductor::new(eta, k, roughness.at(self.textures, self.point)).with_energy(energy)
     }
 
-    fn dielectric(&mut self, eta: &Ior, roughness: &Roughness) -> Dielectric {
-        Dielectric::new(self.ior(eta), roughness.at(self.textures, self.point))
+    fn dielectric(&mut self, eta: &Ior, roughness: &Roughness, &energy: &Energy) -> Dielectric {
+        Dielectric::new(self.ior(eta), roughness.at(self.textures, self.point)).with_energy(energy)
     }
 
     fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &Coat) -> Layered<Diffuse> {

@@ -186,6 +186,7 @@ impl World {
             ambient: textures.spectrum_texture(Color::Value(ambient), SpectrumType::Illuminant),
             textures: Arc::new(textures),
             names: Arc::new(names),
+            footprint: None,
         };
         world.catcher_irradiance = world.unoccluded_irradiance();
         world.has_open_fronts = world.faces_inward();

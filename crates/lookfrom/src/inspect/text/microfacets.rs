@@ -21,7 +21,11 @@ fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
         (_, true) => "(1 − F)",
         _ => "part",
     };
-    let weighted = if *weight == 1.0 { String::new() } else { "weight · ".into() };
+    let weighted = match (*weight == 1.0, &report.multiple_scattering) {
+        (_, Some(_)) => "gain · ",
+        (true, None) => "",
+        (false, None) => "weight · ",
+    };
     match (report.d, report.g) {
         (Some(d), Some(g)) => {
             let (d, g) = (full(d), full(g));
@@ -58,6 +62,15 @@ fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
     }
     if !more.is_empty() {
         writeln!(f, "        {}", more.join("   "))?;
+    }
+    if let Some(more) = &report.multiple_scattering {
+        let (albedo, mean) = (full(more.albedo), full(more.mean_albedo));
+        let (fresnel, gain) = (lanes(&more.mean_fresnel), lanes(&more.gain));
+        writeln!(
+            f,
+            "        light between facets: E(ω_o) = {albedo}   mean Ē = {mean}   mean F̄ = {fresnel}"
+        )?;
+        writeln!(f, "        gain = 1 + F̄ Ē / (1 − F̄ (1 − Ē)) · (1 − E) / E = {gain}")?;
     }
     let formula = match (report.d.is_some(), report.refracts) {
         (true, false) => format!("{weighted}{part} · D G / (4 |ω_o·n| |ω_i·n|)"),

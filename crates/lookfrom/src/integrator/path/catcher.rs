@@ -60,6 +60,12 @@ impl PathTracer {
         }
     }
 
+    /// Whether a path that leaves a catcher and the scene finds the light that [`Self::expect_sky`] subtracts: nothing is
+    /// left of both.
+    pub(super) fn finds_what_it_expects(&self, path: &Path) -> bool {
+        self.has_control_variate() && path.interior.is_empty()
+    }
+
     fn has_control_variate(&self) -> bool {
         self.light_sampling == LightSampling::MultipleImportance
     }

@@ -1,10 +1,17 @@
 //! Conductors, smooth or rough.
 //!
+//! Light that one facet sends to another is lost, as in pbrt, or leaves along the directions of single scattering,
+//! which is increased by what its albedo lacks: `f · (1 + F̄ Ē / (1 − F̄ (1 − Ē)) · (1 − E(ω_o)) / E(ω_o))` (Turquin 2019, with the
+//! colour of Kulla & Conty 2017), where E is the albedo of facets that reflect all light, Ē its mean and F̄ the mean
+//! Fresnel reflectance. White metal then reflects all light; `f` is not reciprocal.
+//!
 //! Cook & Torrance 1982; Walter et al. 2007; Heitz 2014.
 
 use glam::Vec3;
+use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::albedo;
 use super::microfacet::TrowbridgeReitz;
 use super::{
     DirectionSample, Lobes, fresnel, is_grazing,
@@ -25,12 +32,48 @@ pub struct Conductor<R = f32> {
     pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
     pub(crate) roughness: TrowbridgeReitz<R>,
+    /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
+    pub(crate) conserves: R,
+}
+
+/// The cosine at which the Fresnel reflectance stands for its mean over the hemisphere: there Schlick's curve has
+/// its mean, 1/21.
+const MEAN_COSINE: f32 = 0.456;
+
+/// What multiple scattering between facets adds for an outgoing direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MultipleScattering<R = f32> {
+    /// E(ω_o): the albedo of single scattering by facets that reflect all light.
+    pub albedo: R,
+    /// Ē: its mean over all directions.
+    pub mean_albedo: R,
+    /// F̄: the mean Fresnel reflectance.
+    pub mean_fresnel: Spectrum<R>,
+}
+
+impl<R: Real> MultipleScattering<R> {
+    /// All scattered light over that of single scattering.
+    #[inline(always)]
+    pub fn gain(&self) -> Spectrum<R> {
+        let one = self.albedo.like(1.0);
+        let hidden = (one - self.albedo) / self.albedo;
+        self.mean_fresnel.map(
+            #[inline(always)]
+            |fresnel| one + fresnel * self.mean_albedo / (one - fresnel * (one - self.mean_albedo)) * hidden,
+        )
+    }
 }
 
 impl Conductor {
-    /// By index and extinction over the surrounding index.
+    /// By index and extinction over the surrounding index, with single scattering.
     pub fn new(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
-        Self { eta, k, roughness }
+        Self { eta, k, roughness, conserves: 0.0 }
+    }
+
+    /// The same conductor with the light between its facets or without it.
+    #[must_use]
+    pub fn with_energy(self, energy: Energy) -> Self {
+        Self { conserves: if energy == Energy::Conserved { 1.0 } else { 0.0 }, ..self }
     }
 
     /// The kinds of scattering.
@@ -44,7 +87,24 @@ impl<R: Real> Conductor<R> {
     #[inline(always)]
     fn rough_f(&self, wo: Vector<R>, wi: Vector<R>, wm: Vector<R>) -> Spectrum<R> {
         let fresnel = fresnel::conductor(Float::abs(wo.dot(wm)), self.eta, self.k);
-        fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * 4.0 * wi.z))
+        let once = fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * 4.0 * wi.z));
+        let conserves = self.conserves.gt(wo.z.like(0.0));
+        if !conserves.any() {
+            return once;
+        }
+        Spectrum::select(conserves, once * self.multiple_scattering(wo).gain(), once)
+    }
+
+    /// What light between the facets of a rough surface adds along `wo`.
+    #[inline(always)]
+    pub(super) fn multiple_scattering(&self, wo: Vector<R>) -> MultipleScattering<R> {
+        let alpha = albedo::even_alpha(self.roughness);
+        let up = Vector { z: Float::abs(wo.z), ..wo };
+        MultipleScattering {
+            albedo: albedo::reflector(up, self.roughness, alpha).all(),
+            mean_albedo: albedo::reflector_mean(self.roughness, alpha).all(),
+            mean_fresnel: fresnel::conductor(wo.z.like(MEAN_COSINE), self.eta, self.k),
+        }
     }
 
     #[inline(always)]

@@ -1,12 +1,17 @@
 //! Dielectrics, smooth or rough, and thin dielectrics.
 //!
+//! Light that one facet sends to another is lost, as in pbrt; or facets do not shadow what leaves them, and light that would
+//! leave to the wrong side leaves mirrored at the surface, so that all of it leaves (`docs/decisions/0017`; then `f` is not
+//! reciprocal).
+//!
 //! Walter et al. 2007; Veach 1997, § 5.2 (why transmitted radiance is scaled by 1/η² and importance is not).
 
 use glam::Vec3;
+use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, DirectionSample, Lobes, Mode, fresnel, is_grazing};
+use super::{BsdfSample, DirectionSample, Lobes, Mode, across, fresnel, is_grazing};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -18,6 +23,8 @@ pub struct Dielectric<R = f32> {
     pub(crate) eta: R,
     /// Roughness of the boundary.
     pub(crate) roughness: TrowbridgeReitz<R>,
+    /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
+    pub(crate) conserves: R,
 }
 
 /// A microfacet that scatters light between two directions.
@@ -26,17 +33,25 @@ pub(super) struct Facet<R: Real> {
     /// Its normal, z ≥ 0.
     pub(super) wm: Vector<R>,
     /// Its Fresnel reflectance.
-    fresnel: R,
+    pub(super) fresnel: R,
     /// True for reflection, false for refraction.
-    reflects: R::Mask,
+    pub(super) reflects: R::Mask,
     /// The index of refraction on the side of `wi` over the one on the side of `wo`.
-    eta: R,
+    pub(super) eta: R,
+    /// Whether there is one.
+    pub(super) exists: R::Mask,
 }
 
 impl Dielectric {
-    /// By its relative index and its roughness. Index 0 and NaN count as 1, as in pbrt.
+    /// By its relative index and its roughness, with single scattering. Index 0 and NaN count as 1, as in pbrt.
     pub fn new(eta: f32, roughness: TrowbridgeReitz) -> Self {
-        Self { eta: fresnel::valid_eta(eta), roughness }
+        Self { eta: fresnel::valid_eta(eta), roughness, conserves: 0.0 }
+    }
+
+    /// The same boundary with the light between its facets or without it.
+    #[must_use]
+    pub fn with_energy(self, energy: Energy) -> Self {
+        Self { conserves: if energy == Energy::Conserved { 1.0 } else { 0.0 }, ..self }
     }
 
     /// The kinds of scattering. With equal indices nothing is reflected or refracted.
@@ -55,24 +70,45 @@ impl<R: Real> Dielectric<R> {
         Float::eq(self.eta, self.eta.like(1.0)) | self.roughness.is_smooth()
     }
 
-    /// The facet that scatters light between two directions, and whether there is one.
+    /// The facet that scatters light between two directions, and the one that sends it to the wrong side, from where it leaves
+    /// along `wi`, where energy is conserved.
     #[inline(always)]
-    pub(super) fn facet(&self, wo: Vector<R>, wi: Vector<R>) -> (Facet<R>, R::Mask) {
+    pub(super) fn facets(&self, wo: Vector<R>, wi: Vector<R>) -> [Facet<R>; 2] {
+        let reflects = (wo.z * wi.z).gt(wo.z.like(0.0));
+        let first = self.facet_to(wo, wi, reflects);
+        let conserves = self.conserves();
+        if !conserves.any() {
+            return [first, Facet { exists: conserves, ..first }];
+        }
+        let wrong = self.facet_to(wo, across(wi), reflects);
+        [first, Facet { exists: wrong.exists & conserves, ..wrong }]
+    }
+
+    /// The facet that reflects or refracts light between two directions.
+    #[inline(always)]
+    fn facet_to(&self, wo: Vector<R>, wi: Vector<R>, reflects: R::Mask) -> Facet<R> {
         let (zero, one) = (self.eta.like(0.0), self.eta.like(1.0));
-        let reflects = (wo.z * wi.z).gt(zero);
         let eta = R::select(reflects, one, fresnel::relative_eta(wo.z, self.eta));
-        let (wm, exists) = (wi * eta + wo).try_normalize();
+        let (wm, is_defined) = (wi * eta + wo).try_normalize();
         let wm = wm.negate_where(wm.z.lt(zero));
+        let (cos_o, cos_i) = (wo.dot(wm), wi.dot(wm));
         // The backs of facets do not scatter.
-        let is_back = (wm.dot(wi) * wi.z).lt(zero) | (wm.dot(wo) * wo.z).lt(zero);
-        let is_usable = exists & !is_back & !self.is_specular() & !is_grazing(wo) & !is_grazing(wi);
-        (Facet { wm, fresnel: fresnel::dielectric(wo.dot(wm), self.eta), reflects, eta }, is_usable)
+        let is_back =
+            (cos_o * wo.z).lt(zero) | reflects.choose((cos_i * cos_o).lt(zero), (cos_i * cos_o).gt(zero));
+        let exists = is_defined & !is_back & !self.is_specular() & !is_grazing(wo) & !is_grazing(wi);
+        Facet { wm, fresnel: fresnel::dielectric(cos_o, self.eta), reflects, eta, exists }
+    }
+
+    /// True where all light leaves.
+    #[inline(always)]
+    pub(super) fn conserves(&self) -> R::Mask {
+        self.conserves.gt(self.conserves.like(0.0))
     }
 
     /// `f` by a facet, in each lane of a spectrum.
     #[inline(always)]
     fn facet_f(&self, wo: Vector<R>, wi: Vector<R>, facet: &Facet<R>, mode: Mode) -> R {
-        let &Facet { wm, fresnel, reflects, eta } = facet;
+        let &Facet { wm, fresnel, reflects, eta, .. } = facet;
         let visible = self.roughness.d(wm) * self.roughness.g(wo, wi) / Float::abs(wo.z * wi.z);
         let reflected = visible * 0.25 * fresnel;
         if reflects.all() {
@@ -95,26 +131,75 @@ impl<R: Real> Dielectric<R> {
     /// As [`super::Bsdf::f`].
     #[inline(always)]
     pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
-        let (facet, is_usable) = self.facet(wo, wi);
-        let zero = wo.z.like(0.0);
-        if !is_usable.any() {
-            return Spectrum::splat(zero);
+        let (zero, conserves) = (wo.z.like(0.0), self.conserves());
+        let facets = self.facets(wo, wi);
+        let [facet, _] = &facets;
+        let mut f = zero;
+        if facet.exists.any() {
+            f = R::select(facet.exists, self.facet_f(wo, wi, facet, mode), zero);
         }
-        Spectrum::splat(R::select(is_usable, self.facet_f(wo, wi, &facet, mode), zero))
+        if conserves.any() {
+            f = R::select(conserves, self.unmasked_f(wo, wi, &facets, mode), f);
+        }
+        Spectrum::splat(f)
+    }
+
+    /// `f` by a facet and by the one to the wrong side, all of whose light leaves.
+    #[inline(always)]
+    fn unmasked_f(&self, wo: Vector<R>, wi: Vector<R>, facets: &[Facet<R>; 2], mode: Mode) -> R {
+        let [first, _] = facets;
+        let per_cosine = self.sum_of_densities(
+            wo,
+            wi,
+            facets,
+            #[inline(always)]
+            |facet| R::select(facet.reflects, facet.fresnel, wo.z.like(1.0) - facet.fresnel),
+        );
+        let f = per_cosine / Float::abs(wi.z);
+        R::select(first.reflects, f, radiance_scale(f, first.eta, mode))
+    }
+
+    /// The density of `wi` by a facet and by the one to the wrong side, whose sides are chosen with probabilities.
+    #[inline(always)]
+    fn sum_of_densities(
+        &self,
+        wo: Vector<R>,
+        wi: Vector<R>,
+        [first, wrong]: &[Facet<R>; 2],
+        probability: impl Fn(&Facet<R>) -> R,
+    ) -> R {
+        let zero = wo.z.like(0.0);
+        let mut sum = R::select(first.exists, self.facet_pdf(wo, wi, first, probability(first)), zero);
+        if wrong.exists.any() {
+            let other = self.facet_pdf(wo, across(wi), wrong, probability(wrong));
+            sum = sum + R::select(wrong.exists, other, zero);
+        }
+        sum
     }
 
     /// As [`super::Bsdf::pdf`].
     #[inline(always)]
     pub(super) fn pdf(&self, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
-        let (facet, is_usable) = self.facet(wo, wi);
+        self.pdf_of(wo, wi, &self.facets(wo, wi), lobes)
+    }
+
+    #[inline(always)]
+    fn pdf_of(&self, wo: Vector<R>, wi: Vector<R>, facets: &[Facet<R>; 2], lobes: Lobes) -> R {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
-        if !is_usable.any() {
+        if !(facets[0].exists | facets[1].exists).any() {
             return zero;
         }
-        let [r, t] = lobes.allowed([facet.fresnel, one - facet.fresnel]);
-        let part = R::select(facet.reflects, r, t);
-        let pdf = self.facet_pdf(wo, wi, &facet, part / (r + t));
-        R::select(is_usable & (r + t).gt(zero), pdf, zero)
+        self.sum_of_densities(
+            wo,
+            wi,
+            facets,
+            #[inline(always)]
+            |facet| {
+                let [r, t] = lobes.allowed([facet.fresnel, one - facet.fresnel]);
+                let probability = R::select(facet.reflects, r, t) / (r + t);
+                R::select((r + t).gt(zero), probability, zero)
+            },
+        )
     }
 
     /// As [`super::Bsdf::sample`].
@@ -152,15 +237,25 @@ impl<R: Real> Dielectric<R> {
         let (refracted, is_refracted) = optics::refract(wo, wm.negate_where(cos.lt(zero)), eta);
         let wi = Vector::select(reflects, optics::reflect(wo, wm), refracted);
         let eta = R::select(reflects, one, eta);
+        let conserves = self.conserves();
         let stays = (wo.z * wi.z).gt(zero);
-        let is_on_side = (stays & reflects) | (!stays & !reflects & is_refracted);
-        let is_valid = is_on_side & (r + t).gt(zero) & !is_grazing(wo) & !is_grazing(wi);
-        let facet = Facet { wm, fresnel, reflects, eta };
+        let is_on_side = reflects.choose(stays, !stays);
+        let wi = Vector::select(conserves & !is_on_side, across(wi), wi);
+        let exists = (reflects | is_refracted) & (is_on_side | conserves);
+        let is_valid = exists & (r + t).gt(zero) & !is_grazing(wo) & !is_grazing(wi);
+        let facet = Facet { wm, fresnel, reflects, eta, exists };
         let probability = R::select(reflects, reflection, one - reflection);
+        let mut f = self.facet_f(wo, wi, &facet, mode);
+        let mut pdf = self.facet_pdf(wo, wi, &facet, probability);
+        if conserves.any() {
+            let facets = self.facets(wo, wi);
+            f = R::select(conserves, self.unmasked_f(wo, wi, &facets, mode), f);
+            pdf = R::select(conserves, self.pdf_of(wo, wi, &facets, lobes), pdf);
+        }
         DirectionSample {
             wi,
-            f: Spectrum::splat(self.facet_f(wo, wi, &facet, mode)),
-            pdf: self.facet_pdf(wo, wi, &facet, probability),
+            f: Spectrum::splat(f),
+            pdf,
             eta,
             is_specular: reflects.like(false),
             is_diffuse: reflects.like(false),

@@ -9,7 +9,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::conductor::{Conductor, try_half_vector};
+use super::conductor::{Conductor, MultipleScattering, try_half_vector};
 use super::dielectric::{Dielectric, ThinDielectric};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
@@ -44,6 +44,8 @@ pub struct MicrofacetFactors {
     pub eta: f32,
     /// The weight of the boundary, below the layers above it.
     pub weight: f32,
+    /// What light between the facets of a conductor adds.
+    pub multiple_scattering: Option<MultipleScattering>,
 }
 
 impl MicrofacetFactors {
@@ -68,12 +70,13 @@ impl MicrofacetFactors {
             part: Spectrum::BLACK,
             eta: 1.0,
             weight: 1.0,
+            multiple_scattering: None,
         }
     }
 
     /// Its part of the BSDF, by their formula: `weight · part · D G / (4 |cos_o cos_i|)` for reflection, and
     /// `weight · part · D G |cos_om cos_im| / (|cos_o cos_i| (cos_im + cos_om / η)² η²)` for refraction. Where the boundary
-    /// is smooth, the factor of a delta function: `weight · part / (|cos_i| η²)`.
+    /// is smooth, the factor of a delta function: `weight · part / (|cos_i| η²)`. Multiple scattering multiplies it by its gain.
     pub fn value(&self) -> Spectrum {
         let &Self { cos: [cos_o, cos_i], cos_m: [cos_om, cos_im], eta, part, weight, .. } = self;
         let (Some(d), Some(g)) = (self.d, self.g) else {
@@ -84,7 +87,8 @@ impl MicrofacetFactors {
             true => (cos_om * cos_im).abs() / (sum * sum * eta * eta),
             false => 0.25,
         };
-        part * (weight * d * g * jacobian / (cos_o * cos_i))
+        let once = part * (weight * d * g * jacobian / (cos_o * cos_i));
+        self.multiple_scattering.map_or(once, |more| once * more.gain())
     }
 }
 
@@ -94,10 +98,10 @@ impl Bsdf {
     pub fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
         let factors = match self {
             Self::Conductor(bsdf) => bsdf.factors(wo, wi, is_specular),
-            Self::Dielectric(bsdf) => bsdf.factors("dielectric", wo, wi, is_specular),
+            Self::Dielectric(bsdf) => return bsdf.factors("dielectric", wo, wi, is_specular),
             // A part of what is reflected is reflected by the coat; both sides scatter alike.
-            Self::CoatedDiffuse(bsdf) => coat(&bsdf.coat, wo, wi),
-            Self::CoatedConductor(bsdf) => coat(&bsdf.coat, wo, wi),
+            Self::CoatedDiffuse(bsdf) => return coat(&bsdf.coat, wo, wi),
+            Self::CoatedConductor(bsdf) => return coat(&bsdf.coat, wo, wi),
             Self::Principled(look) if !is_specular => {
                 return look.scattering(wo, Lobes::ALL).factors(wi.into());
             }
@@ -145,10 +149,11 @@ impl ThinDielectric {
     }
 }
 
-fn coat(boundary: &Dielectric, wo: Vec3, wi: Vec3) -> Option<MicrofacetFactors> {
+fn coat(boundary: &Dielectric, wo: Vec3, wi: Vec3) -> Vec<MicrofacetFactors> {
     let up = |w: Vec3| if wo.z < 0.0 { -w } else { w };
-    let factors = boundary.factors("coat", up(wo), up(wi), false)?;
-    (!factors.refracts).then(|| MicrofacetFactors { wm: up(factors.wm), ..factors })
+    let mut factors = boundary.factors("coat", up(wo), up(wi), false);
+    factors.retain(|factors| !factors.refracts);
+    factors.into_iter().map(|factors| MicrofacetFactors { wm: up(factors.wm), ..factors }).collect()
 }
 
 impl Conductor {
@@ -160,37 +165,49 @@ impl Conductor {
         let wm = if is_smooth { Vec3::Z } else { try_half_vector(wo, wi)? };
         let plain = MicrofacetFactors::of_boundary("conductor", self.roughness, is_smooth, [wo, wi, wm]);
         let fresnel = fresnel::conductor(plain.cos_m[0].abs(), self.eta, self.k);
-        Some(MicrofacetFactors { fresnel, part: fresnel, ..plain })
+        let multiple_scattering =
+            (self.conserves > 0.0 && !is_smooth).then(|| self.multiple_scattering(wo.into()));
+        Some(MicrofacetFactors { fresnel, part: fresnel, multiple_scattering, ..plain })
     }
 }
 
 impl Dielectric {
+    /// By its facet, and by the one to the wrong side.
     fn factors(
         &self,
         boundary: &'static str,
         wo: Vec3,
         wi: Vec3,
         is_specular: bool,
-    ) -> Option<MicrofacetFactors> {
+    ) -> Vec<MicrofacetFactors> {
         if is_grazing(wo) || is_grazing(wi) || self.is_specular() != is_specular {
-            return None;
+            return Vec::new();
         }
-        let is_smooth = self.is_specular();
         let reflects = wo.z * wi.z > 0.0;
-        let wm = if is_smooth {
-            Vec3::Z
-        } else {
-            let (facet, is_usable) = self.facet(wo.into(), wi.into());
-            is_usable.then(|| facet.wm.into())?
+        let eta = if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) };
+        let of_facet = |wm: Vec3, to: Vec3| {
+            let plain = MicrofacetFactors::of_boundary(boundary, self.roughness, is_specular, [wo, to, wm]);
+            let fresnel = fresnel::dielectric(plain.cos_m[0], self.eta);
+            MicrofacetFactors {
+                refracts: !reflects,
+                fresnel: Spectrum([fresnel; 4]),
+                part: Spectrum([if reflects { fresnel } else { 1.0 - fresnel }; 4]),
+                eta,
+                g: match self.conserves() {
+                    true => plain.g.map(|_| self.roughness.g1(wo.into())),
+                    false => plain.g,
+                },
+                ..plain
+            }
         };
-        let plain = MicrofacetFactors::of_boundary(boundary, self.roughness, is_smooth, [wo, wi, wm]);
-        let f = fresnel::dielectric(plain.cos_m[0], self.eta);
-        Some(MicrofacetFactors {
-            refracts: !reflects,
-            fresnel: Spectrum([f; 4]),
-            part: Spectrum([if reflects { f } else { 1.0 - f }; 4]),
-            eta: if reflects { 1.0 } else { fresnel::relative_eta(wo.z, self.eta) },
-            ..plain
-        })
+        if is_specular {
+            return vec![of_facet(Vec3::Z, wi)];
+        }
+        self.facets(wo.into(), wi.into())
+            .into_iter()
+            .zip([wi, Vec3::new(wi.x, wi.y, -wi.z)])
+            .filter(|(facet, _)| facet.exists)
+            .map(|(facet, to)| of_facet(facet.wm.into(), to))
+            .collect()
     }
 }

@@ -204,6 +204,7 @@ impl RowBsdf for Conductor {
             eta: gather_spectrum(simd, &by_lane!(lane => rows[lane].eta)),
             k: gather_spectrum(simd, &by_lane!(lane => rows[lane].k)),
             roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+            conserves: f32x8::load_array(simd, by_lane!(lane => rows[lane].conserves)),
         }
     }
 }
@@ -224,6 +225,7 @@ impl RowBsdf for Dielectric {
         Dielectric {
             eta: f32x8::load_array(simd, by_lane!(lane => rows[lane].eta)),
             roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+            conserves: f32x8::load_array(simd, by_lane!(lane => rows[lane].conserves)),
         }
     }
 }

@@ -34,7 +34,6 @@
 //! its arguments without Monte Carlo estimates, and the density is exact. Tangents and the rotation of anisotropy
 //! are left to the local frame, absorption to media.
 
-mod albedo;
 mod choice;
 mod facing;
 mod factors;
@@ -42,7 +41,7 @@ pub mod film;
 mod layers;
 mod look;
 mod scattering;
-mod sheen;
+pub(super) mod sheen;
 mod surface;
 mod view;
 

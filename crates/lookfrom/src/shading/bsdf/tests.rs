@@ -74,6 +74,9 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("glass 0.15", Bsdf::dielectric(1.5, rough(0.15, 0.15))),
         ("glass 0.3 × 0.6", Bsdf::dielectric(1.5, rough(0.3, 0.6))),
         ("bubble 0.4", Bsdf::dielectric(1.0 / 1.33, rough(0.4, 0.4))),
+        ("conserving gold 0.7 × 0.2", of_gold(0.7, 0.2).with_energy(Energy::Conserved)),
+        ("conserving glass 0.6", Bsdf::dielectric(1.5, rough(0.6, 0.6)).with_energy(Energy::Conserved)),
+        ("conserving bubble 0.3", Bsdf::dielectric(0.75, rough(0.3, 0.3)).with_energy(Energy::Conserved)),
         ("whitted", Bsdf::Whitted(whitted())),
         ("whitted dull", Bsdf::Whitted(Whitted { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
@@ -157,7 +160,9 @@ fn samples_are_as_dense_as_they_say() {
     let mut faults = Vec::new();
     for (subject, (name, bsdf)) in subjects.iter().enumerate() {
         // BSDFs of many lobes are costly: fewer samples.
-        let is_costly = name.starts_with("principled");
+        let is_costly = name.starts_with("principled") || name.starts_with("conserving");
+        // Refraction to the wrong side has a sharp ridge, of which quadrature misses a part.
+        let missed = if name.starts_with("conserving") { 2e-4 } else { 1e-5 };
         let n: u64 = if is_costly { 300_000 } else { 1_000_000 };
         for (view, wo) in views().into_iter().enumerate() {
             if is_costly && (view + subject) % 2 == 1 {
@@ -193,7 +198,7 @@ fn samples_are_as_dense_as_they_say() {
             let integral: f64 = over_cells(&value, 3e-7).iter().sum();
             let mean = sum / n as f64;
             let error = ((squares / n as f64 - mean * mean).max(0.0) / n as f64).sqrt();
-            if !((mean - integral).abs() < bound * error + 1e-5) {
+            if !((mean - integral).abs() < bound * error + missed) {
                 faults.push(format!("{what}: mean weight {mean} ± {error}, integral {integral}"));
             }
             if !name.starts_with("whitted") && !(integral < 1.0 + 1e-4) {
@@ -239,9 +244,10 @@ fn samples_carry_the_values_of_f_and_pdf() {
 fn light_goes_both_ways() {
     let mut non_zero = 0;
     // Not reciprocal: Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
-    // and the rough glass of a body, which conserves energy.
+    // and rough surfaces that conserve energy, as the glass of principled bodies does.
     let is_not = |name: &str| {
         name.starts_with("whitted")
+            || name.starts_with("conserving")
             || name.contains("tilted")
             || ["principled body", "principled everything"].contains(&name)
     };
@@ -314,6 +320,44 @@ fn nothing_is_lost_in_a_white_furnace() {
         let (r, t) = (part(Lobes::REFLECTION), part(Lobes::TRANSMISSION));
         assert!(r > 0.08 && r < 0.2 && (r + t - 1.0).abs() < 1e-6, "{r} {t}");
     }
+}
+
+#[test]
+fn rough_surfaces_that_conserve_energy_stay_white() {
+    const N: usize = 64;
+    for trial in 0..60 {
+        let of = |seed| number(seed, trial);
+        let wo = uniform_direction([of(70), of(71)]);
+        let roughness = rough(of(72).powi(2), if of(73) < 0.5 { of(72).powi(2) } else { of(74).powi(2) });
+        let eta = 0.4 + 2.1 * of(75);
+        let albedo = |bsdf: Bsdf, energy| {
+            let bsdf = bsdf.with_energy(energy);
+            let weight = |k: usize| {
+                let u = [(k % N) as f32 + 0.5, (k / N) as f32 + 0.5].map(|x| x / N as f32);
+                let sample = bsdf.sample(wo, number(76, k as u64), u, Mode::Importance, Lobes::ALL);
+                sample.map_or(0.0, |s| f64::from(s.f.0[0] * s.wi.z.abs() / s.pdf))
+            };
+            (0..N * N).map(weight).sum::<f64>() / (N * N) as f64
+        };
+        // By a table, linear between its entries.
+        let metal = Bsdf::conductor(grey(1.0), grey(1e8), roughness);
+        let error = albedo(metal, Energy::Conserved) - 1.0;
+        assert!(error.abs() < 0.02, "{roughness:?} {wo}: {error}");
+        // Without a table.
+        let error = albedo(Bsdf::dielectric(eta, roughness), Energy::Conserved) - 1.0;
+        assert!(error.abs() < 1e-3, "{roughness:?} {eta} {wo}: {error}");
+        for bsdf in [metal, Bsdf::dielectric(eta, roughness)] {
+            assert!(albedo(bsdf, Energy::SingleScattering) < 1.0 + 1e-4);
+        }
+    }
+    let dark = |energy| {
+        let (eta, k) = gold();
+        let bsdf = Bsdf::conductor(eta, k, rough(0.9, 0.9)).with_energy(energy);
+        bsdf.f(direction(40.0, 0.0), direction(20.0, 180.0), Mode::Radiance)
+    };
+    // What facets reflect twice is twice coloured.
+    let gains = [0, 2].map(|lane| dark(Energy::Conserved).0[lane] / dark(Energy::SingleScattering).0[lane]);
+    assert!(gains[0] > gains[1] && gains[1] > 1.0, "{gains:?}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], texture
         MaterialKind::Whitted(whitted) => whitted.clone(),
         MaterialKind::Diffuse { reflectance } => Whitted { diffuse: *reflectance, ..plain },
         MaterialKind::DiffuseTransmission { reflectance, .. } => Whitted { diffuse: *reflectance, ..plain },
-        MaterialKind::Conductor { metal, roughness } => metallic(metal, roughness, textures),
+        MaterialKind::Conductor { metal, roughness, .. } => metallic(metal, roughness, textures),
         MaterialKind::Dielectric { eta, .. } => {
             Whitted { transmission: Color::gray(1.0), fresnel: true, ior: ior(eta, textures), ..plain }
         }

@@ -6,18 +6,31 @@
 //!
 //! Blinn 1978 (bumps).
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;
 use crate::core::warp;
+use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
 
-/// Offset in u and v for the finite differences of heights, as in pbrt-v4 without a footprint.
+/// Offset in u and v for the finite differences of heights where there is no footprint, as in pbrt-v4.
 const STEP: f32 = 0.0005;
+/// The smallest offset, in parts of u and v: differences of numbers of single precision need one.
+const LEAST_STEP: f32 = 4e-6;
+
+/// What shading frames are bent by.
+#[derive(Clone, Copy, Debug)]
+pub struct Relief<'a> {
+    /// Pictures and formulas of heights and normals.
+    pub textures: &'a Textures,
+    /// The pixels of the camera: heights are compared at half their footprint, so that a bump map is as rough as it is where
+    /// it can be seen, as in pbrt-v4.
+    pub footprint: Option<&'a PixelFootprint>,
+}
 
 /// The frame of the shading normal without bump mapping.
 pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
@@ -27,11 +40,11 @@ pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
 /// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(
     bump_mapping: &BumpMapping,
-    textures: &Textures,
+    relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    let bent = bent(bump_mapping, textures, surface, at);
+    let bent = bent(bump_mapping, relief, surface, at);
     let side = if bent.dot(surface.ng) < 0.0 { -bent } else { bent };
     around(side, surface.dpdu)
 }
@@ -39,17 +52,17 @@ pub(super) fn frame(
 /// The shading frame with a normal that is [`valid`](Bending::valid).
 pub(super) fn valid_frame(
     bump_mapping: &BumpMapping,
-    textures: &Textures,
+    relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    around(valid(bent(bump_mapping, textures, surface, at), surface), surface.dpdu)
+    around(valid(bent(bump_mapping, relief, surface, at), surface), surface.dpdu)
 }
 
 /// The perturbed normal, of unit length.
 fn bent(
     bump_mapping: &BumpMapping,
-    textures: &Textures,
+    relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Vec3 {
@@ -59,12 +72,12 @@ fn bent(
         BumpMapping::NormalMap(image) => {
             let st = [at.uv.x, 1.0 - at.uv.y];
             let texel =
-                texture::look_up(textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
+                texture::look_up(relief.textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
             let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
             plain().render(local)
         }
-        BumpMapping::NormalTexture(map) => return mapped(map, textures, surface, at),
-        BumpMapping::Bump(height) => bumped(*height, textures, surface, at),
+        BumpMapping::NormalTexture(map) => return mapped(map, relief.textures, surface, at),
+        BumpMapping::Bump(height) => bumped(*height, relief, surface, at),
     };
     bent.normalize_or(surface.ns)
 }
@@ -184,20 +197,24 @@ fn normalized_or<R: Real>(v: Vector<R>, other: Vector<R>) -> Vector<R> {
 }
 
 /// The normal of the surface displaced along its shading normal; not of unit length.
-fn bumped(height: FloatTexture, textures: &Textures, surface: &ShadingGeometry, at: &TexturePoint) -> Vec3 {
+fn bumped(height: FloatTexture, relief: Relief<'_>, surface: &ShadingGeometry, at: &TexturePoint) -> Vec3 {
+    let Relief { textures, footprint } = relief;
     let n = surface.ns;
     let here = textures.float(height, at);
-    let [dpdu, dpdv] = [(surface.dpdu, Vec3::X), (surface.dpdv, Vec3::Y)].map(|(along, uv)| {
-        let moved = TexturePoint {
-            uv: at.uv + STEP * uv.truncate(),
-            world: at.world + (STEP * along).as_dvec3(),
-            looked_up: None,
-            ..*at
-        };
-        // In the tangent plane of the shading normal.
-        let tangent = along - n * n.dot(along);
-        tangent + n * ((textures.float(height, &moved) - here) / STEP)
-    });
+    let half = footprint.and_then(|footprint| footprint.half(at, surface)).unwrap_or_default();
+    let [dpdu, dpdv] =
+        [(surface.dpdu, Vec2::X, half.x), (surface.dpdv, Vec2::Y, half.y)].map(|(along, axis, half)| {
+            let step = if half > 0.0 { half } else { STEP };
+            let step = step.max(LEAST_STEP * at.uv.abs().max_element());
+            let uv = at.uv + step * axis;
+            // As far as u or v moves in single precision.
+            let step = (uv - at.uv).dot(axis);
+            let world = at.world + (step * along).as_dvec3();
+            let moved = TexturePoint { uv, world, looked_up: None, ..*at };
+            // In the tangent plane of the shading normal.
+            let tangent = along - n * n.dot(along);
+            tangent + n * ((textures.float(height, &moved) - here) / step)
+        });
     let across = dpdu.cross(dpdv);
     if surface.dpdu.cross(surface.dpdv).dot(n) < 0.0 { -across } else { across }
 }

@@ -68,11 +68,11 @@ impl<'a> Compiler<'a> {
                     scale: *scale,
                 }
             }
-            Written::Conductor { metal, roughness } => {
-                MaterialKind::Conductor { metal: self.metal(metal), roughness: rough(roughness) }
+            &Written::Conductor { ref metal, ref roughness, energy } => {
+                MaterialKind::Conductor { metal: self.metal(metal), roughness: rough(roughness), energy }
             }
-            Written::Dielectric { eta, roughness } => {
-                MaterialKind::Dielectric { eta: index(*eta), roughness: rough(roughness) }
+            &Written::Dielectric { eta, ref roughness, energy } => {
+                MaterialKind::Dielectric { eta: index(eta), roughness: rough(roughness), energy }
             }
             Written::ThinDielectric { eta } => MaterialKind::ThinDielectric { eta: index(*eta) },
             Written::CoatedDiffuse { reflectance, coat } => MaterialKind::CoatedDiffuse {

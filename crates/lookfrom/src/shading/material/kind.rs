@@ -1,7 +1,7 @@
 //! Compiled materials: those of [`lookfrom_scene::material`] with typed inputs and folded constants.
 
 use glam::Vec3;
-use lookfrom_scene::material::CoatEstimate;
+use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -34,6 +34,8 @@ pub enum MaterialKind {
         metal: Metal,
         /// Roughness of its surface.
         roughness: Roughness,
+        /// What becomes of light between microfacets.
+        energy: Energy,
     },
     /// A dielectric such as glass or water: the inside is a body.
     Dielectric {
@@ -41,6 +43,8 @@ pub enum MaterialKind {
         eta: Ior,
         /// Roughness of its surface.
         roughness: Roughness,
+        /// What becomes of light between microfacets.
+        energy: Energy,
     },
     /// A dielectric sheet so thin that light passes undeviated.
     ThinDielectric {

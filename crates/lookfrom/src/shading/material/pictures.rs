@@ -13,7 +13,7 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.color(reflectance);
             walk.color(transmittance);
         }
-        MaterialKind::Conductor { metal, roughness } => {
+        MaterialKind::Conductor { metal, roughness, .. } => {
             walk.metal(metal);
             walk.roughness(roughness);
         }

@@ -1,7 +1,7 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
 use super::principled::disperses;
-use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, ShadingContext, bump};
+use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, Relief, ShadingContext, bump};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
@@ -31,6 +31,11 @@ impl Material {
     #[inline]
     pub(crate) fn has_bumps(&self) -> bool {
         !matches!(self.bump_mapping, BumpMapping::None)
+    }
+
+    /// Whether it has a bump map.
+    pub(crate) fn has_bump_map(&self) -> bool {
+        matches!(self.bump_mapping, BumpMapping::Bump(_))
     }
 
     /// Whether its shading frame is another than that of the surface.
@@ -76,13 +81,13 @@ impl Material {
     #[inline(never)]
     pub(crate) fn bent_row<B: MaterialRow>(
         &self,
-        textures: &Textures,
+        relief: Relief<'_>,
         geometry: &ShadingGeometry,
         point: &TexturePoint,
         context: ShadingContext<'_>,
     ) -> Option<(B, [[f32; 3]; 3])> {
-        let mut frame = self.frame(textures, geometry, point);
-        let mut evaluator = Evaluator::new(&[], textures, point, context);
+        let mut frame = self.frame(relief, geometry, point);
+        let mut evaluator = Evaluator::new(&[], relief.textures, point, context);
         let row = B::in_frame(&mut evaluator, &self.kind, geometry, &mut frame)?;
         Some((row, frame.axes()))
     }
@@ -146,7 +151,7 @@ macro_rules! material_row {
 }
 
 material_row!(Diffuse, Diffuse { reflectance } => diffuse);
-material_row!(Conductor, Conductor { metal, roughness } => conductor);
-material_row!(Dielectric, Dielectric { eta, roughness } => dielectric);
+material_row!(Conductor, Conductor { metal, roughness, energy } => conductor);
+material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
 material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);

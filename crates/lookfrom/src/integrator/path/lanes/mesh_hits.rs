@@ -155,7 +155,7 @@ impl PathTracer {
                 material.row(&world.textures, point, context)
             } else if material.bends_frames() {
                 let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
-                material.bent_row(&world.textures, &geometry, point, context).map(|(row, axes)| {
+                material.bent_row(world.relief(), &geometry, point, context).map(|(row, axes)| {
                     surfaces.set_frame(lane, axes);
                     row
                 })

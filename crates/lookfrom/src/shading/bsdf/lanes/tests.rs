@@ -10,7 +10,7 @@ use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::layered::CoatLayer;
 use crate::shading::bsdf::principled::Parameters;
 use crate::shading::bsdf::principled::film::Film;
-use lookfrom_scene::material::CoatEstimate;
+use lookfrom_scene::material::{CoatEstimate, Energy};
 
 /// Two directions and three numbers.
 #[derive(Clone, Copy, Debug)]
@@ -112,6 +112,10 @@ fn roughness(seed: u64, index: u64) -> TrowbridgeReitz {
 
 fn spectrum(seed: u64, index: u64) -> Spectrum {
     Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 4).min(1.0)))
+}
+
+fn energy(index: u64) -> Energy {
+    if hash::pair(75, index).is_multiple_of(2) { Energy::Conserved } else { Energy::SingleScattering }
 }
 
 fn coat(index: u64) -> CoatLayer {
@@ -225,7 +229,7 @@ fn diffuse_in_lanes() {
 fn conductors_in_lanes() {
     compare::<Conductor>(|index| {
         let lanes = |seed| Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 20)));
-        Bsdf::conductor(lanes(60), lanes(64), roughness(68, index))
+        Bsdf::conductor(lanes(60), lanes(64), roughness(68, index)).with_energy(energy(index))
     });
 }
 
@@ -233,7 +237,7 @@ fn conductors_in_lanes() {
 fn dielectrics_in_lanes() {
     compare::<Dielectric>(|index| {
         let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
-        Bsdf::dielectric(eta, roughness(71, index))
+        Bsdf::dielectric(eta, roughness(71, index)).with_energy(energy(index))
     });
 }
 

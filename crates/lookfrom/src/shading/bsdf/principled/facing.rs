@@ -2,8 +2,9 @@
 
 use lookfrom_simd::{Mask, Real};
 
-use super::view::{View, across, is_below};
+use super::view::{View, is_below};
 use crate::core::vector::Vector;
+use crate::shading::bsdf::across;
 use crate::shading::bsdf::dielectric::refraction_jacobian;
 
 /// A facet that scatters `wo` to some direction.

@@ -2,10 +2,10 @@
 
 use super::facing::Facing;
 use super::scattering::LocalScattering;
-use super::view::{across, is_below};
+use super::view::is_below;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::bsdf::{MicrofacetFactors, is_grazing};
+use crate::shading::bsdf::{MicrofacetFactors, across, is_grazing};
 
 impl LocalScattering {
     /// The part of [`crate::shading::bsdf::Bsdf::f`] that the diffuse body and sheen have.
@@ -43,6 +43,7 @@ impl LocalScattering {
             part: Spectrum::BLACK,
             eta: 1.0,
             weight: below_coat * below_sheen,
+            multiple_scattering: None,
         };
 
         let mut all = Vec::new();

@@ -2,7 +2,6 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::albedo;
 use super::look::Look;
 use super::sheen::Sheen;
 use crate::core::math::schlick;
@@ -11,6 +10,7 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::bsdf::MicrofacetFactors;
+use crate::shading::bsdf::albedo;
 use crate::shading::bsdf::conductor::half_vector;
 use crate::shading::bsdf::is_grazing;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -185,6 +185,7 @@ impl Coat<f32> {
             part: fresnel,
             eta: 1.0,
             weight: self.amount,
+            multiple_scattering: None,
         })
     }
 }

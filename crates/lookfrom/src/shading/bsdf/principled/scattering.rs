@@ -7,7 +7,7 @@ use super::facing::{Facing, Facings};
 use super::look::Look;
 use super::sheen;
 use super::surface::Facet;
-use super::view::{View, across, is_below};
+use super::view::{View, is_below};
 use crate::core::optics;
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::spectrum::Spectrum;
@@ -16,7 +16,7 @@ use crate::core::warp;
 use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::diffuse::cosine_direction;
 use crate::shading::bsdf::lanes::LaneBsdf;
-use crate::shading::bsdf::{BsdfSample, DirectionSample, Lobes, Mode, is_grazing};
+use crate::shading::bsdf::{BsdfSample, DirectionSample, Lobes, Mode, across, is_grazing};
 
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///

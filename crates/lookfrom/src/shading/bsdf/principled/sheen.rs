@@ -21,7 +21,7 @@ pub(super) const PDF: f32 = 0.5 * FRAC_1_PI;
 
 /// Sheen of a given roughness.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sheen<R = f32> {
+pub(in super::super) struct Sheen<R = f32> {
     alpha: R,
     /// Coefficients of the fit of ln Λ.
     fit: [R; 5],
@@ -30,7 +30,7 @@ pub(super) struct Sheen<R = f32> {
 impl<R: Real> Sheen<R> {
     /// By glTF's roughness, whose square is α.
     #[inline(always)]
-    pub(super) fn new(roughness: R) -> Self {
+    pub(in super::super) fn new(roughness: R) -> Self {
         let roughness = Float::clamp(roughness, SMOOTHEST, 1.0);
         let alpha = roughness * roughness;
         let t = (alpha.like(1.0) - alpha) * (alpha.like(1.0) - alpha);
@@ -67,7 +67,7 @@ impl<R: Real> Sheen<R> {
 
     /// `f` of white fibres, for two directions above the surface.
     #[inline(always)]
-    pub(super) fn f(&self, wo: impl Into<Vector<R>>, wi: impl Into<Vector<R>>) -> R {
+    pub(in super::super) fn f(&self, wo: impl Into<Vector<R>>, wi: impl Into<Vector<R>>) -> R {
         self.f_by(wo.into(), wi.into())
     }
 
@@ -99,7 +99,7 @@ fn coefficient<R: Real>(t: R, k: usize) -> R {
 }
 
 /// The directional albedo of white sheen, for an outgoing direction of the given cosine.
-pub(super) fn integrated(cos: f32, roughness: f32) -> f32 {
+pub(in super::super) fn integrated(cos: f32, roughness: f32) -> f32 {
     const STEPS: [usize; 2] = [10, 24];
     let sheen = Sheen::new(roughness);
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);

@@ -2,12 +2,12 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::albedo::{self, Split};
 use super::film::Film;
 use super::look::Look;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::shading::bsdf::albedo::{self, Split};
 use crate::shading::bsdf::fresnel;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
@@ -48,31 +48,6 @@ pub(super) struct Facet<R> {
     pub(super) passed: Spectrum<R>,
 }
 
-/// The energy of multiple scattering between facets, by the mean Fresnel reflectance and the mean albedo of one
-/// bounce.
-#[inline(always)]
-pub(super) fn multiple<R: Real>(fresnel: R, mean: R) -> R {
-    let one = fresnel.like(1.0);
-    fresnel * fresnel * mean / (one - fresnel * (one - mean))
-}
-
-/// True for rough surfaces with two roughnesses; `alpha` is 0 for smooth ones.
-#[inline(always)]
-fn has_grain<R: Real>(roughness: &TrowbridgeReitz<R>, alpha: R) -> R::Mask {
-    alpha.gt(alpha.like(0.0)) & !Float::eq(roughness.alpha_x, roughness.alpha_y)
-}
-
-/// The mean specular albedo for a Fresnel term of 1.
-#[inline(always)]
-fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>, alpha: R) -> Split<R> {
-    let isotropic = albedo::mirror_mean(alpha);
-    let has_grain = has_grain(&roughness, alpha);
-    if !has_grain.any() {
-        return isotropic;
-    }
-    Split::select(has_grain, albedo::anisotropic::mirror_mean(roughness), isotropic)
-}
-
 /// Between a reflectance at normal and one at grazing incidence.
 #[inline(always)]
 fn toward<R: Real>(f0: Spectrum<R>, f90: R, s: R) -> Spectrum<R> {
@@ -85,8 +60,7 @@ impl<R: Real> Surface<R> {
         let roughness = look.roughness;
         let (zero, one) = (look.eta.like(0.0), look.eta.like(1.0));
         let black = Spectrum::splat(zero);
-        let alpha = Float::min(Float::sqrt(roughness.alpha_x * roughness.alpha_y), one);
-        let alpha = R::select(roughness.is_smooth(), zero, alpha);
+        let alpha = albedo::even_alpha(roughness);
         let body = one - look.metallic;
         let mut surface = Self {
             base: look.base_color,
@@ -103,7 +77,7 @@ impl<R: Real> Surface<R> {
             eta: look.eta,
             is_solid: look.is_solid,
             film: look.iridescence.gt(zero).any().then_some((look.iridescence, look.film)),
-            mean: mirror_mean(roughness, alpha),
+            mean: albedo::reflector_mean(roughness, alpha),
             filmed: black,
             mean_left: black,
         };
@@ -120,12 +94,7 @@ impl<R: Real> Surface<R> {
     /// The specular albedo for a Fresnel term, along a direction above the surface.
     #[inline(always)]
     pub(super) fn mirror(&self, up: Vector<R>) -> Split<R> {
-        let isotropic = albedo::mirror(Float::min(up.z, up.z.like(1.0)), self.alpha);
-        let has_grain = has_grain(&self.roughness, self.alpha);
-        if !has_grain.any() {
-            return isotropic;
-        }
-        Split::select(has_grain, albedo::anisotropic::mirror(up, self.roughness), isotropic)
+        albedo::reflector(up, self.roughness, self.alpha)
     }
 
     /// The reflectance with the film, for the reflectance `f0` at normal incidence and `plain`
@@ -144,7 +113,7 @@ impl<R: Real> Surface<R> {
         let (zero, one) = (cos.like(0.0), cos.like(1.0));
         let hidden = one - split.all();
         let mean = self.mean.all();
-        let again = multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
+        let again = albedo::multiple(self.f0_greatest + (self.f90 - self.f0_greatest) / 21.0, mean);
         let plain = Float::max(one - split.of(self.f0_greatest, self.f90) - again * hidden, zero);
         let Some((amount, film)) = &self.film else { return Spectrum::splat(plain) };
         let is_mean = Float::eq(cos, cos.like(MEAN_COSINE)).all();
@@ -152,7 +121,9 @@ impl<R: Real> Surface<R> {
         let filmed = here.zip(
             self.filmed,
             #[inline(always)]
-            |here, around| Float::max(one - here * split.all() - multiple(around, mean) * hidden, zero),
+            |here, around| {
+                Float::max(one - here * split.all() - albedo::multiple(around, mean) * hidden, zero)
+            },
         );
         filmed * *amount + Spectrum::splat(plain * (one - *amount))
     }

@@ -6,15 +6,15 @@ use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::albedo::Split;
 use super::facing::{Facing, Facings};
 use super::layers::{Coat, Fibres};
 use super::look::Look;
-use super::surface::{MEAN_COSINE, Surface, multiple};
+use super::surface::{MEAN_COSINE, Surface};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::bsdf::Mode;
+use crate::shading::bsdf::albedo::{self, Split};
 use crate::shading::bsdf::dielectric::radiance_scale;
+use crate::shading::bsdf::{Mode, across};
 
 /// A surface with the terms that depend on `wo` alone.
 pub(super) struct View<R: Real> {
@@ -30,12 +30,6 @@ pub(super) struct View<R: Real> {
     pub(super) sheen: Option<Fibres<R>>,
     pub(super) coat: Option<Coat<R>>,
     lane_weights: Spectrum<R>,
-}
-
-/// The direction mirrored at the surface.
-#[inline(always)]
-pub(super) fn across<R: Real>(w: Vector<R>) -> Vector<R> {
-    Vector { x: w.x, y: w.y, z: -w.z }
 }
 
 /// The direction above the surface: mirrored at it where it is below.
@@ -113,7 +107,7 @@ impl<R: Real> View<R> {
         let plain = f0 + (Spectrum::splat(f90) - f0) / f90.like(21.0);
         self.surface.under_film(f90.like(MEAN_COSINE), f0, plain).map(
             #[inline(always)]
-            |fresnel| multiple(fresnel, mean),
+            |fresnel| albedo::multiple(fresnel, mean),
         )
     }
 

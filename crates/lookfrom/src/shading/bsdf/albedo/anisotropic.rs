@@ -77,7 +77,7 @@ fn entry(columns: [usize; 2], turn: usize, row: usize) -> Split {
 ///
 /// Not inlined, as the next one, since it is needed in several places.
 #[inline(never)]
-pub(in super::super) fn mirror<R: Real>(wo: Vector<R>, roughness: TrowbridgeReitz<R>) -> Split<R> {
+pub(super) fn mirror<R: Real>(wo: Vector<R>, roughness: TrowbridgeReitz<R>) -> Split<R> {
     wo.z.at_level(
         #[inline(always)]
         || interpolated(&REFLECTORS.albedo, wo, roughness),
@@ -86,7 +86,7 @@ pub(in super::super) fn mirror<R: Real>(wo: Vector<R>, roughness: TrowbridgeReit
 
 /// The cosine-weighted mean of [`mirror`] over all directions.
 #[inline(never)]
-pub(in super::super) fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>) -> Split<R> {
+pub(super) fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>) -> Split<R> {
     roughness.alpha_x.at_level(
         #[inline(always)]
         || {

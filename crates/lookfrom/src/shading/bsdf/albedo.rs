@@ -8,7 +8,7 @@
 //! split sum of Karis 2013). With F = 1 their sum is the albedo of single scattering; the rest is multiple
 //! scattering (Kulla & Conty 2017).
 
-pub(super) mod anisotropic;
+mod anisotropic;
 
 use std::f32::consts::PI;
 use std::sync::LazyLock;
@@ -16,9 +16,10 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::sheen;
+use super::microfacet::TrowbridgeReitz;
+use super::principled::sheen;
 use crate::core::math::{self, schlick};
-use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::core::vector::Vector;
 
 /// Number of rows, by the square root of the cosine.
 const COSINES: usize = 32;
@@ -132,6 +133,51 @@ fn place<R: Real>(value: R, count: usize) -> (R, R) {
 #[inline(always)]
 fn index<R: Real>(row: R, column: R) -> R::Bits {
     (column * COSINES as f32 + row).to_integer()
+}
+
+/// The energy of multiple scattering between facets, by the mean Fresnel reflectance and the mean albedo of one
+/// bounce.
+#[inline(always)]
+pub(super) fn multiple<R: Real>(fresnel: R, mean: R) -> R {
+    let one = fresnel.like(1.0);
+    fresnel * fresnel * mean / (one - fresnel * (one - mean))
+}
+
+/// α of an isotropic reflector that stands for a roughness, √(α_x α_y) ≤ 1; 0 where it is smooth.
+#[inline(always)]
+pub(super) fn even_alpha<R: Real>(roughness: TrowbridgeReitz<R>) -> R {
+    let (zero, one) = (roughness.alpha_x.like(0.0), roughness.alpha_x.like(1.0));
+    let alpha = Float::min(Float::sqrt(roughness.alpha_x * roughness.alpha_y), one);
+    R::select(roughness.is_smooth(), zero, alpha)
+}
+
+/// True for rough surfaces with two roughnesses, by their [`even_alpha`].
+#[inline(always)]
+fn has_grain<R: Real>(roughness: &TrowbridgeReitz<R>, alpha: R) -> R::Mask {
+    alpha.gt(alpha.like(0.0)) & !Float::eq(roughness.alpha_x, roughness.alpha_y)
+}
+
+/// The directional albedo of a reflector for an outgoing direction `up` of unit length above the surface, by its roughness and
+/// its [`even_alpha`].
+#[inline(always)]
+pub(super) fn reflector<R: Real>(up: Vector<R>, roughness: TrowbridgeReitz<R>, alpha: R) -> Split<R> {
+    let isotropic = mirror(Float::min(up.z, up.z.like(1.0)), alpha);
+    let has_grain = has_grain(&roughness, alpha);
+    if !has_grain.any() {
+        return isotropic;
+    }
+    Split::select(has_grain, anisotropic::mirror(up, roughness), isotropic)
+}
+
+/// The cosine-weighted mean of [`reflector`] over all directions.
+#[inline(always)]
+pub(super) fn reflector_mean<R: Real>(roughness: TrowbridgeReitz<R>, alpha: R) -> Split<R> {
+    let isotropic = mirror_mean(alpha);
+    let has_grain = has_grain(&roughness, alpha);
+    if !has_grain.any() {
+        return isotropic;
+    }
+    Split::select(has_grain, anisotropic::mirror_mean(roughness), isotropic)
 }
 
 /// The directional albedo of a rough reflector with α, for an outgoing direction of the given cosine.
@@ -260,3 +306,6 @@ fn mean(rows: &[Split]) -> Split {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,70 @@
+//! The footprint of a camera's pixels: the smallest difference between the rays of neighbours.
+
+use glam::{DMat3, DVec3};
+
+use crate::core::warp;
+use crate::shading::footprint::PixelFootprint;
+use crate::view::camera::Camera;
+
+/// Number of pixels that are looked at, along the picture's diagonal.
+const PIXELS: usize = 512;
+
+/// That of the narrowest pixels, in x and in y, along the picture's diagonal.
+pub(super) fn of_pixels(camera: &Camera) -> PixelFootprint {
+    let world_from_camera = DMat3::from_mat4(camera.r3);
+    let camera_from_world = world_from_camera.inverse();
+    let ray = |pixel: [f64; 2]| {
+        let ray = camera.ray(pixel, [0.5; 2]);
+        [ray.a_from_eye, ray.direction].map(|v| camera_from_world * v)
+    };
+    let [width, height] = camera.size.map(f64::from);
+    let mut origins = [DVec3::INFINITY; 2];
+    let mut directions = [DVec3::INFINITY; 2];
+    for index in 0..PIXELS {
+        let along = index as f64 / (PIXELS - 1) as f64;
+        let at = [along * width, along * height];
+        let [origin, direction] = ray(at);
+        let z = direction.normalize();
+        let (x, y) = warp::basis_about::<f64>(z.into());
+        let [x, y] = [x, y].map(DVec3::from);
+        let local = |v: DVec3| DVec3::new(v.dot(x), v.dot(y), v.dot(z));
+        for (axis, next) in [[at[0] + 1.0, at[1]], [at[0], at[1] + 1.0]].into_iter().enumerate() {
+            let [next_origin, next_direction] = ray(next);
+            let moved = [local(next_origin - origin), local(next_direction.normalize() - z)];
+            for (least, moved) in [&mut origins, &mut directions].into_iter().zip(moved) {
+                if moved.length() < least[axis].length() {
+                    least[axis] = moved;
+                }
+            }
+        }
+    }
+    PixelFootprint { eye: camera.lookfrom(), world_from_camera, origins, directions }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lookfrom_scene::camera::{Camera as Written, Projection, View};
+
+    fn footprint(projection: Projection) -> PixelFootprint {
+        let view = View::Look { lookfrom: DVec3::new(1.0, 2.0, 3.0), lookat: DVec3::ZERO, up: DVec3::Y };
+        of_pixels(&Camera::new(&Written { view, projection, ..Written::default() }, 200, 100).unwrap())
+    }
+
+    #[test]
+    fn pixels_of_a_pinhole_differ_in_direction_and_parallel_ones_in_origin() {
+        let PixelFootprint { origins, directions, eye, .. } =
+            footprint(Projection::Perspective { fov: 10.0 });
+        assert_eq!((eye, origins), (DVec3::new(1.0, 2.0, 3.0), [DVec3::ZERO; 2]));
+        // Narrowest in the corner, where they are seen from the side: by at most cos² of the angle to it.
+        let pixel = 2.0 * libm::tan(5_f64.to_radians()) / 100.0;
+        for direction in directions {
+            assert!((0.95..1.0).contains(&(direction.length() / pixel)), "{direction} {pixel}");
+        }
+        let PixelFootprint { origins, directions, .. } = footprint(Projection::Orthographic { height: 5.0 });
+        assert_eq!(directions, [DVec3::ZERO; 2]);
+        for origin in origins {
+            assert!((origin.length() - 0.05).abs() < 1e-12, "{origin}");
+        }
+    }
+}
