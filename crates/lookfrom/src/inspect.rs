@@ -34,11 +34,13 @@ pub use lights::{LightPlace, lights};
 pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
-    AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
-    DevelopmentReport, Factor, Inspection, LightReport, MatrixStep, MetReport, RayReport, SensorReport,
-    ShadowReport, SphereMapping, WavelengthsReport,
+    AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport, Departure,
+    DevelopmentReport, Factor, Inspection, LiftReport, LightReport, MatrixStep, MetReport, RayReport,
+    SensorReport, ShadowReport, SphereMapping, WavelengthsReport,
 };
-pub use scatter::{BounceReport, FoundReport, LightSampleReport, SampledDirectionReport, ScatteringReport};
+pub use scatter::{
+    BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,
+};
 pub use svg::{SvgView, svg};
 pub use text::{Excerpt, Part, Selection};
 

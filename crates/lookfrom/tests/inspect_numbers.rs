@@ -146,8 +146,22 @@ fn derivation(of: &Derivation, arrives: &[f32], pdf: f32, what: &str) {
     };
     let one = |name: &str| operand(name)[0];
     let pi = std::f64::consts::PI;
+    // Those of environments and pictures are in `inspect_lights.rs`.
+    if !["L = I · fall-off", "pdf = P d²", "pdf = P / Ω", "pdf = 1 / (2π (1 − cos"]
+        .iter()
+        .any(|known| of.formula.starts_with(known))
+    {
+        return;
+    }
     if of.formula.starts_with("L = I") {
-        let mut share = one("fall-off");
+        let distance = one("d");
+        let law = of.formula.split("fall-off = ").nth(1).expect("a law").split(';').next();
+        let mut share = match law {
+            Some("1 / d²") => 1.0 / (distance * distance),
+            Some("1 / d") => 1.0 / distance,
+            _ => 1.0,
+        };
+        single(one("fall-off") as f32, share, what);
         if of.formula.contains("· S") {
             let bounds = operand("cos outer, inner");
             let x = ((one("cos to the axis") - bounds[0]) / (bounds[1] - bounds[0])).clamp(0.0, 1.0);
@@ -158,7 +172,7 @@ fn derivation(of: &Derivation, arrives: &[f32], pdf: f32, what: &str) {
             single(*arrives, intensity * share, what);
         }
     } else {
-        let expected = match of.formula {
+        let expected = match of.formula.as_str() {
             formula if formula.starts_with("pdf = P d²") => {
                 one("P") * one("d").powi(2) / (one("A") * one("cos at the light"))
             }
@@ -177,8 +191,8 @@ fn derivation(of: &Derivation, arrives: &[f32], pdf: f32, what: &str) {
 fn choice(of: &Derivation, probability: f32, what: &str) {
     let all = |name: &'static str| of.numbers.iter().filter(move |(known, _)| *known == name);
     let one = |name: &'static str| all(name).next().map(|(_, values)| values[0]);
-    let expected = match (one("share"), one("listed"), one("trees")) {
-        (Some(share), ..) => share,
+    let expected = match (one("power"), one("listed"), one("trees")) {
+        (Some(power), ..) => power / one("sum").expect("the sum of all powers"),
         (_, Some(listed), Some(trees)) if of.formula.starts_with("P = 1") => 1.0 / (listed + trees),
         (_, Some(listed), Some(trees)) => {
             all("importances")
@@ -351,7 +365,7 @@ fn light(light: &LightReport, ray: &RayReport, what: &str) {
     let n_dot_l = light.n_dot_l.expect("shown");
     single(n_dot_l, n.dot(wi), what);
     single(light.n_dot_h.expect("shown"), n.dot(h), what);
-    if let Some(of) = &light.derivation {
+    for of in &light.derivations {
         derivation(of, &light.arrives.lanes, light.pdf.expect("shown"), what);
     }
     let share = ray.throughput_there.as_ref().unwrap_or(&ray.throughput);
@@ -429,8 +443,10 @@ fn every_number_follows_from_what_is_printed() {
                 let of = sampled.choice.as_ref().unwrap_or_else(|| panic!("{what}: {sampled:?}"));
                 choice(of, sampled.probability, &what);
                 told.insert("choice".to_owned());
-                if let Some(sample) = &sampled.sample
-                    && let Some(of) = &sample.derivation
+                for (sample, of) in sampled
+                    .sample
+                    .iter()
+                    .flat_map(|sample| sample.derivations.iter().map(move |of| (sample, of)))
                 {
                     derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);
                     told.insert(of.formula[..9].to_owned());
@@ -528,16 +544,19 @@ fn so_do_those_of_ribbons_spots_and_solid_angles() {
             let Some(sampled) = &ray.light_sample else { continue };
             choice(sampled.choice.as_ref().expect("a derivation"), sampled.probability, &what);
             let Some(sample) = &sampled.sample else { continue };
-            let Some(of) = &sample.derivation else { continue };
-            derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);
-            told.insert(of.formula.chars().take(22).collect());
+            for of in &sample.derivations {
+                derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);
+                told.insert(of.formula.chars().take(22).collect());
+                let is_spot = of.formula.contains("· S;");
+                told.extend(is_spot.then(|| "spot".to_owned()));
+            }
         }
     }
     for expected in [
         "ribbon true",
         "ribbon false",
-        "L = I · fall-off(d)",
-        "L = I · fall-off(d) · ",
+        "L = I · fall-off(d); f",
+        "spot",
         "pdf = P / Ω: a directi",
         "pdf = 1 / (2π (1 − cos",
     ] {

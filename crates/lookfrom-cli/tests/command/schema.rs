@@ -45,8 +45,30 @@ AttributeBegin
 AttributeEnd
 "#;
 
+/// A coarse mesh that stands for a smooth surface, as itself and as an instance.
+const SMOOTH: &str = r#"
+[camera]
+lookfrom = [0, 1.5, -6]
+lookat = [0, 0.5, 0]
+fov = 40
+[image]
+width = 16
+height = 10
+[[light]]
+type = "point"
+position = [0, 5, -3]
+[[mesh]]
+file = "roof.obj"
+translate = [1.3, 0, 0]
+[[instance]]
+object = "one"
+transform = [{ rotate = [0, 30, 0] }, { translate = [-1.3, 0, 0] }]
+[[objects.one.mesh]]
+file = "roof.obj"
+"#;
+
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 25] = [
+const INSPECTED: [&str; 27] = [
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
@@ -70,6 +92,8 @@ const INSPECTED: [&str; 25] = [
     "docs/guide/scenes/material-gltf-volume.toml 20 15 --width 40 --integrator path",
     "scenes/star.pbrt 20 20 --width 40 --height 30 --samples 4 --sample 2",
     "model.obj 5 5 --size 10",
+    "smooth.toml 5 5",
+    "smooth.toml 10 5",
     "around.toml 5 5",
     "metal.toml 8 8 --samples 4",
 ];
@@ -118,6 +142,12 @@ fn every_report_is_of_the_schema() {
     stage.write(
         "metal.toml",
         "image = { width = 16, height = 16 }\ncamera = { lookfrom = [0, 0, 3], lookat = [0, 0, 0] }\nsphere = [{ material = \"gold\" }]\n[materials.gold]\ntype = \"conductor\"\nmetal = \"gold\"\nroughness = 0.8",
+    );
+    stage.write("smooth.toml", SMOOTH);
+    stage.write(
+        "roof.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvn -0.3 -0.3 -1\nvn 0.3 -0.3 -1\nvn 0.3 0.3 -1\nvn -0.3 0.3 -1\n\
+         f 1//1 4//4 3//3 2//2\n",
     );
     stage.write("odd.pbrt", ODD);
     for (name, width) in [("t.png", 2), ("square.png", 1)] {

@@ -7,7 +7,7 @@
 mod piecewise;
 mod window;
 
-pub use piecewise::Piecewise2D;
+pub use piecewise::{Cell, Piecewise2D};
 pub use window::{Window, Windowed2D};
 
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, prelude::*};
@@ -84,6 +84,14 @@ impl Discrete {
     #[inline(always)]
     fn goals<S: Simd>(&self, u: f32x8<S>) -> f64x8<S> {
         Real::widen(Float::clamp(u, 0.0, ONE_MINUS_EPSILON)) * self.sums[self.sums.len() - 1]
+    }
+
+    /// The weight of an entry, and the sum of all.
+    ///
+    /// # Panics
+    /// If there is no such entry.
+    pub fn weight(&self, index: usize) -> [f64; 2] {
+        [self.sums[index + 1] - self.sums[index], self.sums[self.sums.len() - 1]]
     }
 
     /// The probability of an entry; 0 for one of weight 0 or an index out of range.

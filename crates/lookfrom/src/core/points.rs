@@ -83,10 +83,16 @@ impl<R: Real> Points<R> {
     /// The ways out of the error bounds, along the unit normals and against them.
     #[inline(always)]
     pub(crate) fn exits<'a>(&self, unit_normal: Vector<R::Double>) -> Exits<'a, R> {
+        let step = unit_normal * self.clearance(unit_normal);
+        Exits { position: self.position, normal: unit_normal, step, lift: None }
+    }
+
+    /// The length of the way along the unit normals that leads out of the error bounds.
+    #[inline(always)]
+    pub(crate) fn clearance(&self, unit_normal: Vector<R::Double>) -> R::Double {
         let Self { position, error } = *self;
         let reach = unit_normal.abs().times(error + position.abs() * position.x.like(4.0 * UNIT));
-        let step = (reach.x + reach.y + reach.z) * (1.0 + 1e-6);
-        Exits { position, normal: unit_normal, step: unit_normal * step, lift: None }
+        (reach.x + reach.y + reach.z) * (1.0 + 1e-6)
     }
 }
 

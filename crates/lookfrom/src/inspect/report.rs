@@ -10,7 +10,7 @@ use super::expression::Contribution;
 
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
-pub use ray::{AbsorptionReport, CoefficientsReport, MetReport, RayReport};
+pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.
 pub type Factor = Vec<f32>;

@@ -47,10 +47,26 @@ pub struct FoundReport {
     /// q: the density of the direction in light sampling, the choice of the light included; 0 if light sampling cannot
     /// find it. (p is the ray's `pdf`.)
     pub light_pdf: f32,
+    /// How `light_pdf` comes about: the probability of the light at the surface before, and the density of the direction, whose
+    /// product it is; `None` where the direction was the only one possible, or light sampling cannot find the light.
+    pub sampling: Option<FoundSampling>,
     /// w: the MIS weight, `p² / (p² + q²)` where both techniques can find the light.
     pub weight: f32,
     /// The contribution to the sample.
     pub added: Amount,
+}
+
+/// How light sampling finds the light that a path hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct FoundSampling {
+    /// The probability of choosing the light at the surface before.
+    pub probability: f32,
+    /// How it comes about.
+    pub choice: Derivation,
+    /// The density of the direction for this light.
+    pub density: f32,
+    /// How it, and the radiance, come about, as far as there is a formula.
+    pub derivations: Vec<Derivation>,
 }
 
 /// The light that was sampled at a surface (next-event estimation): `β f cos L w / p` is added, if it is unoccluded.
@@ -83,8 +99,8 @@ pub struct SampledDirectionReport {
     pub pdf: f32,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
-    /// How `arrives` of a point light, or `light_pdf` of an area light, comes about.
-    pub derivation: Option<Derivation>,
+    /// How `arrives` and `light_pdf` come about, as far as there is a formula.
+    pub derivations: Vec<Derivation>,
     /// Whether the light has only one direction here (a point, a distant light): then p is a probability, not a density.
     pub is_delta: bool,
     /// L: the unoccluded incident radiance.

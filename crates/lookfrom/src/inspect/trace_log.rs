@@ -15,8 +15,9 @@ use super::microfacets::MicrofacetReport;
 use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
 use super::scatter::FoundReport;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Branch, Cut, Event, Term};
+use crate::integrator::{Branch, Cut, Event, Path, Term};
 use crate::render::Renderer;
+use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -37,6 +38,8 @@ pub(super) struct TraceLogBuilder<'a> {
     additions: Vec<Addition>,
     /// The BSDF at the hit of each ray of a path, and the direction to the viewer.
     shadings: BTreeMap<u64, (Shading, Vec3)>,
+    /// Each ray, and the surface that it hit.
+    hits: BTreeMap<u64, (Path, Option<SurfaceInteraction>)>,
 }
 
 /// The finished trace log.
@@ -66,6 +69,7 @@ impl<'a> TraceLogBuilder<'a> {
             sum: Spectrum::BLACK,
             additions: Vec::new(),
             shadings: BTreeMap::new(),
+            hits: BTreeMap::new(),
         }
     }
 
@@ -73,8 +77,10 @@ impl<'a> TraceLogBuilder<'a> {
     pub(super) fn record(&mut self, event: &Event) {
         match event {
             Event::Hit { path, hit } => {
-                let ray = self.ray(path, hit);
+                let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
+                let ray = self.ray(path, hit, surface.as_ref());
                 self.rays.insert(path.address, ray);
+                self.hits.insert(path.address, (*path, surface));
             }
             Event::Absorbed { address, interior, length, transmittance, beta } => {
                 let Some((sigma, scale)) = self.world.absorption(*interior, &self.lanes) else { return };
@@ -113,6 +119,7 @@ impl<'a> TraceLogBuilder<'a> {
                     light: self.world.names.lights[*light as usize].clone(),
                     radiance: self.amount(*radiance),
                     light_pdf: *light_pdf,
+                    sampling: self.found_sampling(*address, *light, *radiance, *light_pdf),
                     weight: *weight,
                     added: self.amount(Spectrum::BLACK),
                 };
@@ -193,6 +200,7 @@ impl<'a> TraceLogBuilder<'a> {
             }
             let own = self.amount(self.added.get(&address).copied().unwrap_or_default());
             let subtree = self.amount(subtree);
+            let departure = self.hits.get(&address).and_then(|(path, _)| self.departure(parent, &path.ray));
             // What no branch leads to has passed its parent's surface.
             let has_branch = self
                 .rays
@@ -203,6 +211,7 @@ impl<'a> TraceLogBuilder<'a> {
                     ray.kind = "straight on";
                 }
                 ray.parent = has_parent.then_some(parent);
+                ray.departure = departure;
                 ray.added = own;
                 ray.subtree = subtree;
             });

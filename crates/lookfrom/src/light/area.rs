@@ -82,11 +82,13 @@ pub struct LightPoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum AreaDensity {
     /// Uniform over an area.
-    Area { area: f64, probability: f64 },
+    Area { area: f64, probability: f64, corners: Option<[DVec3; 3]> },
     /// Uniform over a solid angle.
-    SolidAngle { solid_angle: f64, probability: f64 },
+    SolidAngle { solid_angle: f64, probability: f64, corners: [DVec3; 3] },
     /// Uniform over the directions to a sphere, by its radius and the distance of its centre.
     Cone { radius: f64, distance: f64 },
+    /// On a bilinear patch, by its area element at the four corners, at the place and there.
+    Patch { probability: f64, place: [f64; 2], corners: [f64; 4], here: f64 },
 }
 
 /// Points of area lights as seen from other points, at any width: as [`LightPoint`].
@@ -293,11 +295,17 @@ impl AreaLight {
         match &self.shape {
             LightShape::Quadric(light) => match light.cone(from) {
                 Some((radius, distance)) => AreaDensity::Cone { radius, distance },
-                None => AreaDensity::Area { area: 1.0 / light.pdf_by_area(point), probability: 1.0 },
+                None => AreaDensity::Area {
+                    area: 1.0 / light.pdf_by_area(point),
+                    probability: 1.0,
+                    corners: None,
+                },
             },
-            LightShape::Disk(light) => AreaDensity::Area { area: light.area(), probability: 1.0 },
+            LightShape::Disk(light) => {
+                AreaDensity::Area { area: light.area(), probability: 1.0, corners: None }
+            }
             LightShape::Mesh(light) => light.density(from, point),
-            LightShape::Patches(light) => AreaDensity::Area { area: light.area(), probability: 1.0 },
+            LightShape::Patches(light) => light.density(from, point),
         }
     }
 

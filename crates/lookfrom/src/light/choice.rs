@@ -161,9 +161,12 @@ impl LightChoice {
     /// How the probability of a light at a point comes about.
     pub(crate) fn derivation(&self, at: &LightSampleContext, light: u32) -> Derivation {
         let place = self.places.get(light as usize).copied().flatten();
-        let of_power = |place: u32| self.weights.as_ref().map(|weights| weights.pdf(place as usize));
-        if let Some(power) = place.and_then(of_power) {
-            return Derivation::new("P = power / sum of all powers", vec![("share", vec![f64::from(power)])]);
+        let of_power = |place: u32| self.weights.as_ref().map(|weights| weights.weight(place as usize));
+        if let Some([power, sum]) = place.and_then(of_power) {
+            return Derivation::new(
+                "P = power / sum of all powers, of which the greatest is 1",
+                vec![("power", vec![power]), ("sum", vec![sum])],
+            );
         }
         let (list, has_tree) = (self.listed.len() as f64, !self.tree.is_empty());
         let others = vec![("listed", vec![list]), ("trees", vec![f64::from(u8::from(has_tree))])];

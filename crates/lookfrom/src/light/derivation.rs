@@ -1,11 +1,17 @@
 //! Where the numbers of a light sample come from: formulas of its radiance, its density and its choice, with their operands,
 //! for people who compute them anew.
+//!
+//! Those of lights that project pictures are in `pictures`; environments and portals have theirs beside them.
 
-use glam::DVec3;
+mod pictures;
+
+use glam::{DVec3, Mat3, Vec3};
+use lookfrom_scene::image::Image;
+use lookfrom_scene::light::Falloff;
 use serde::Serialize;
 
-use super::area::AreaDensity;
-use super::{Light, LightSample, Target, fade, smooth_step, toward};
+use super::area::{AreaDensity, AreaLight};
+use super::{IncompletePdf, Light, LightSample, LightSampleContext, Target, fade, smooth_step, toward};
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, Textures};
 
@@ -13,80 +19,196 @@ use crate::shading::texture::{SpectralMode, Textures};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Derivation {
     /// The formula.
-    pub formula: &'static str,
+    pub formula: String,
     /// The operands.
     pub numbers: Vec<(&'static str, Vec<f64>)>,
 }
 
 impl Derivation {
-    pub(super) fn new(formula: &'static str, numbers: Vec<(&'static str, Vec<f64>)>) -> Self {
-        Self { formula, numbers }
+    pub(super) fn new(formula: impl Into<String>, numbers: Vec<(&'static str, Vec<f64>)>) -> Self {
+        Self { formula: formula.into(), numbers }
     }
 }
 
+/// How an environment map's texel, or that of a picture, is found in an equal-area octahedral square.
+pub(super) const OCTAHEDRAL: &str = "i = ⌊½ (1 ± U) columns⌋, j = ⌊½ (1 ± V) rows⌋ with the signs of x and y; \
+    R = √(1 − |z|), Q = R atan2(|y|, |x|) 2 / π; (U, V) = (R − Q, Q) where z ≥ 0, else (1 − Q, 1 − R + Q)";
+
 impl Light {
-    /// How the sample's radiance (of point lights: the light that arrives) or its density follows from the light; `from` is
-    /// the point that is lit. `None` where there is no short formula.
-    pub(crate) fn derivation(
+    /// How the sample's radiance (of point lights: the light that arrives) and its density follow from the light; `at` is the
+    /// point that is lit. Nothing where there is nothing to compute, as of distant lights.
+    pub(crate) fn derivations(
         &self,
         textures: &Textures,
-        from: DVec3,
+        at: &LightSampleContext,
         sample: &LightSample,
         mode: &SpectralMode,
-    ) -> Option<Derivation> {
-        let lanes = |light: Spectrum| -> Vec<f64> {
-            let used = if matches!(mode, SpectralMode::Rgb) { 3 } else { 4 };
-            light.0[..used].iter().map(|lane| f64::from(*lane)).collect()
-        };
-        match self {
-            Self::Point { position, intensity, falloff } => {
-                let (_, distance) = toward(from, *position)?;
-                let numbers = vec![
-                    ("I", lanes(intensity.even(textures, mode))),
-                    ("d", vec![distance]),
-                    ("fall-off", vec![f64::from(fade::<f32>(*falloff, distance))]),
-                ];
-                Some(Derivation::new("L = I · fall-off(d)", numbers))
-            }
+        incomplete_pdf: IncompletePdf,
+    ) -> Vec<Derivation> {
+        let from = at.point;
+        let of_light = match self {
+            Self::Point { position, intensity, falloff } => toward(from, *position).map(|(_, distance)| {
+                let [law, faded] = fall_off(*falloff, distance);
+                let numbers = vec![("I", lanes(intensity.even(textures, mode), mode)), law, faded];
+                Derivation::new(format!("L = I · fall-off(d); fall-off = {}", law_of(*falloff)), numbers)
+            }),
             Self::Spot { position, axis, intensity, cos_outer, cos_inner, falloff } => {
-                let (wi, distance) = toward(from, *position)?;
-                let cos = axis.dot(-wi);
-                let [cos_outer, cos_inner] = [*cos_outer, *cos_inner];
-                let cone = smooth_step(cos_outer, cos_inner, cos);
-                let numbers = vec![
-                    ("I", lanes(intensity.even(textures, mode))),
-                    ("d", vec![distance]),
-                    ("fall-off", vec![f64::from(fade::<f32>(*falloff, distance))]),
-                    ("cos to the axis", vec![f64::from(cos)]),
-                    ("cos outer, inner", vec![f64::from(cos_outer), f64::from(cos_inner)]),
-                    ("S", vec![f64::from(cone)]),
-                ];
-                Some(Derivation::new(
-                    "L = I · fall-off(d) · S; S = x² (3 − 2x), x = (cos − outer) / (inner − outer), from 0 to 1",
-                    numbers,
-                ))
-            }
-            Self::Area(light) => {
-                let Target::Surface(point, normal) = sample.target else { return None };
-                let to = DVec3::from_array(point.position) - from;
-                let cos = normal.dot(sample.wi.as_dvec3()).abs();
-                let of_area = [("d", vec![to.length()]), ("cos at the light", vec![cos])];
-                Some(match light.density(from, point.position.into()) {
-                    AreaDensity::Area { area, probability } => Derivation::new(
-                        "pdf = P d² / (A cos): a point of the area A",
-                        [("P", vec![probability]), ("A", vec![area])].into_iter().chain(of_area).collect(),
-                    ),
-                    AreaDensity::SolidAngle { solid_angle, probability } => Derivation::new(
-                        "pdf = P / Ω: a direction of a triangle's solid angle",
-                        vec![("P", vec![probability]), ("Ω", vec![solid_angle])],
-                    ),
-                    AreaDensity::Cone { radius, distance } => Derivation::new(
-                        "pdf = 1 / (2π (1 − cos θ)), sin θ = R / D: a direction of the cone around a sphere",
-                        vec![("R", vec![radius]), ("D", vec![distance])],
-                    ),
+                toward(from, *position).map(|(wi, distance)| {
+                    let cos = axis.dot(-wi);
+                    let [law, faded] = fall_off(*falloff, distance);
+                    let numbers = vec![
+                        ("I", lanes(intensity.even(textures, mode), mode)),
+                        law,
+                        faded,
+                        ("axis", vector(*axis)),
+                        ("cos to the axis", vec![f64::from(cos)]),
+                        ("cos outer, inner", vec![f64::from(*cos_outer), f64::from(*cos_inner)]),
+                        ("S", vec![f64::from(smooth_step(*cos_outer, *cos_inner, cos))]),
+                    ];
+                    let formula = format!(
+                        "L = I · fall-off(d) · S; fall-off = {}; S = x² (3 − 2x), x = (cos − outer) / (inner − outer), \
+                         from 0 to 1",
+                        law_of(*falloff)
+                    );
+                    Derivation::new(formula, numbers)
                 })
             }
-            Self::Distant { .. } | Self::Projection(_) | Self::Goniometric(_) | Self::Environment(_) => None,
-        }
+            Self::Area(light) => of_area(light, from, sample),
+            Self::Projection(light) => return light.derivations(textures, from, mode),
+            Self::Goniometric(light) => return light.derivations(textures, from, mode),
+            Self::Environment(light) => return light.derivations(textures, at, sample, mode, incomplete_pdf),
+            Self::Distant { .. } => None,
+        };
+        of_light.into_iter().collect()
     }
+}
+
+/// The density of a point of an area light.
+fn of_area(light: &AreaLight, from: DVec3, sample: &LightSample) -> Option<Derivation> {
+    let Target::Surface(point, normal) = sample.target else { return None };
+    let to = DVec3::from_array(point.position) - from;
+    let cos = normal.dot(sample.wi.as_dvec3()).abs();
+    let of_place = [
+        ("d", vec![to.length()]),
+        ("n at the light", normal.to_array().to_vec()),
+        ("cos at the light", vec![cos]),
+    ];
+    /// Corners relative to the point that is lit.
+    const CORNERS: [&str; 3] = ["a − p", "b − p", "c − p"];
+    let seen = |corners: [DVec3; 3]| {
+        CORNERS.into_iter().zip(corners.map(|corner| (corner - from).to_array().to_vec()))
+    };
+    Some(match light.density(from, point.position.into()) {
+        AreaDensity::Area { area, probability, corners } => Derivation::new(
+            match corners {
+                Some(_) => {
+                    "pdf = P d² / (A cos): a point of a triangle a b c of the area A = |(b − a) × (c − a)| / 2"
+                }
+                None => "pdf = P d² / (A cos): a point of the area A",
+            },
+            [("P", vec![probability]), ("A", vec![area])]
+                .into_iter()
+                .chain(of_place)
+                .chain(corners.into_iter().flat_map(seen))
+                .collect(),
+        ),
+        AreaDensity::SolidAngle { solid_angle, probability, corners } => Derivation::new(
+            "pdf = P / Ω: a direction of a triangle's solid angle; \
+             tan(Ω/2) = |A·(B×C)| / (1 + A·B + B·C + C·A), with A B C the unit vectors of a − p, b − p, c − p",
+            [("P", vec![probability]), ("Ω", vec![solid_angle])].into_iter().chain(seen(corners)).collect(),
+        ),
+        AreaDensity::Cone { radius, distance } => Derivation::new(
+            "pdf = 1 / (2π (1 − cos θ)), sin θ = R / D: a direction of the cone around a sphere",
+            vec![("R", vec![radius]), ("D", vec![distance])],
+        ),
+        AreaDensity::Patch { probability, place, corners, here } => Derivation::new(
+            "pdf = P s d² / (J cos): a point of a bilinear patch, whose area element is J; \
+             s = 4 ((1−u)(1−v) J00 + u(1−v) J10 + (1−u)v J01 + uv J11) / (J00 + J10 + J01 + J11)",
+            [
+                ("P", vec![probability]),
+                ("u, v", place.to_vec()),
+                ("J", vec![here]),
+                ("J00, J10, J01, J11", corners.to_vec()),
+            ]
+            .into_iter()
+            .chain(of_place)
+            .collect(),
+        ),
+    })
+}
+
+/// The law of a fall-off.
+fn law_of(falloff: Falloff) -> &'static str {
+    match falloff {
+        Falloff::None => "1",
+        Falloff::Linear => "1 / d",
+        Falloff::Quadratic => "1 / d²",
+    }
+}
+
+/// The distance and the fall-off there.
+fn fall_off(falloff: Falloff, distance: f64) -> [(&'static str, Vec<f64>); 2] {
+    [("d", vec![distance]), ("fall-off", vec![f64::from(fade::<f32>(falloff, distance))])]
+}
+
+/// The lanes that are in use.
+pub(super) fn lanes(light: Spectrum, mode: &SpectralMode) -> Vec<f64> {
+    let used = if matches!(mode, SpectralMode::Rgb) { 3 } else { 4 };
+    light.0[..used].iter().map(|lane| f64::from(*lane)).collect()
+}
+
+/// What is done with a colour where light has wavelengths.
+pub(super) fn as_spectrum(mode: &SpectralMode) -> &'static str {
+    if matches!(mode, SpectralMode::Rgb) { "" } else { ", made a spectrum of the light's white" }
+}
+
+pub(super) fn vector(v: impl Into<[f32; 3]>) -> Vec<f64> {
+    v.into().map(f64::from).to_vec()
+}
+
+/// A direction in a light's space, and the rows of the matrix `M` that leads there.
+pub(super) fn in_space(m: &Mat3, direction: Vec3) -> Vec<(&'static str, Vec<f64>)> {
+    let [x, y, z] = m.transpose().to_cols_array_2d();
+    vec![
+        ("M, row 1", vector(x)),
+        ("M, row 2", vector(y)),
+        ("M, row 3", vector(z)),
+        ("(x, y, z)", vector(direction)),
+    ]
+}
+
+/// The size of a picture, and a texel of it.
+pub(super) fn place(image: &Image, [column, row]: [usize; 2]) -> [(&'static str, Vec<f64>); 2] {
+    let pair = |pair: [f64; 2]| pair.to_vec();
+    [
+        ("columns, rows", pair([image.width, image.height].map(f64::from))),
+        ("i, j", pair([column, row].map(|index| index as f64))),
+    ]
+}
+
+/// The texel of a picture that contains a point, from its first row down.
+pub(super) fn texel_at(image: &Image, [s, t]: [f32; 2]) -> [usize; 2] {
+    let index = |x: f32, size: u32| ((x * size as f32).max(0.0) as usize).min(size as usize - 1);
+    [index(s, image.width), index(t, image.height)]
+}
+
+/// The colour of a texel.
+pub(super) fn color_of(image: &Image, [column, row]: [usize; 2]) -> [f32; 3] {
+    image.texel(row * image.width as usize + column)
+}
+
+/// The cell that was sampled, near one by a rounded direction: that whose density is the sample's. `size` is that of the grid.
+pub(super) fn cell_of_density(
+    [column, row]: [usize; 2],
+    [columns, rows]: [usize; 2],
+    pdf: f32,
+    density: impl Fn([usize; 2]) -> f64,
+) -> [usize; 2] {
+    let near = |cell: [usize; 2]| (density(cell) / f64::from(pdf) - 1.0).abs() < 1e-4;
+    let around = [0, 1, columns.saturating_sub(1)];
+    let cells = [row, row + 1, row.saturating_sub(1)]
+        .into_iter()
+        .filter(|row| *row < rows)
+        .flat_map(|row| around.map(|step| [(column + step) % columns, row]));
+    cells.into_iter().find(|cell| near(*cell)).unwrap_or([column, row])
 }

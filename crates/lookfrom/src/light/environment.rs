@@ -1,13 +1,15 @@
 //! Environment lights: a constant, a gradient or an environment map, optionally with a portal.
 //!
-//! `lanes`: environment maps for eight paths at once.
+//! `lanes`: environment maps for eight paths at once; `derivation`: for the inspector.
 
+mod derivation;
 mod lanes;
 
 use std::f32::consts::PI;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
+use lookfrom_scene::image::Image;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Real};
 
@@ -66,6 +68,10 @@ pub struct SkyImage {
     /// MIS-compensated distribution (Karlík et al. 2019), by the excess of each texel over the mean: where BSDFs are
     /// sampled too, dim directions need no light samples.
     pub compensated: Arc<Piecewise2D>,
+    /// The mean brightness over solid angle, that of `compensated`.
+    pub mean: f32,
+    /// The sums of the weights of both distributions, without and with compensation.
+    pub sums: [f64; 2],
 }
 
 /// Parametrisation of the sphere of directions in a picture.
@@ -312,6 +318,19 @@ impl SkyImage {
         let [x, y, z] = self.world_from_light.to_cols_array_2d();
         [Vector::splat(like, x), Vector::splat(like, y), Vector::splat(like, z)]
     }
+}
+
+/// The brightest channel that a look-up in a texel may give: where it interpolates with neighbours, that of the texels around, so
+/// that no visible light has density 0.
+pub(crate) fn brightest_around(image: &Image, layout: Layout, [x, y]: [usize; 2]) -> f32 {
+    let (width, height) = (image.width as usize, image.height as usize);
+    let brightness = |x: usize, y: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
+    if layout == Layout::Octahedral {
+        return brightness(x, y);
+    }
+    let around = [x + width - 1, x, x + 1].map(|x| x % width);
+    let rows = y.saturating_sub(1)..(y + 2).min(height);
+    rows.flat_map(|y| around.map(|x| brightness(x, y))).fold(0.0, f32::max)
 }
 
 /// The density over solid angle of a uniform one over an octahedral square.

@@ -3,7 +3,9 @@
 //! With two angles about the sides of the rectangle as coordinates (*rectified*), the part of the environment that is
 //! visible through it from any point is a rectangle too, a window of the square. Environment maps are resampled into
 //! that square once; from each point, directions are sampled within its window. As in pbrt-v4 light enters from one
-//! side, and the environment is invisible elsewhere than through the portal.
+//! side, and the environment is invisible elsewhere than through the portal. `derivation` is for the inspector.
+
+mod derivation;
 
 use std::f64::consts::PI;
 
@@ -160,17 +162,20 @@ fn slope(place: f64) -> f64 {
 /// The solid angle of each cell of the square, row by row.
 fn solid_angles(width: usize, height: usize) -> impl Iterator<Item = f64> {
     let edges = move |cells: usize| (0..=cells).map(move |cell| slope(cell as f64 / cells as f64));
-    // Solid angle from a distance of 1 of a rectangle with one corner on the axis and the opposite one at (x, y).
-    let until = |x: f64, y: f64| libm::atan2(x * y, (1.0 + x * x + y * y).sqrt());
     let columns: Vec<f64> = edges(width).collect();
     let rows: Vec<f64> = edges(height).collect();
     (0..width * height).map(move |index| {
-        let ([left, right], [top, bottom]) =
-            ([0, 1].map(|i| columns[index % width + i]), [0, 1].map(|i| rows[index / width + i]));
-        let angle = until(right, bottom) - until(left, bottom) - until(right, top) + until(left, top);
-        // rounding must not leave a cell without solid angle
-        angle.max(f64::MIN_POSITIVE)
+        cell_solid_angle([0, 1].map(|i| columns[index % width + i]), [0, 1].map(|i| rows[index / width + i]))
     })
+}
+
+/// The solid angle of a cell between the tangents of its sides.
+fn cell_solid_angle([left, right]: [f64; 2], [top, bottom]: [f64; 2]) -> f64 {
+    // Solid angle from a distance of 1 of a rectangle with one corner on the axis and the opposite one at (x, y).
+    let until = |x: f64, y: f64| libm::atan2(x * y, (1.0 + x * x + y * y).sqrt());
+    let angle = until(right, bottom) - until(left, bottom) - until(right, top) + until(left, top);
+    // rounding must not leave a cell without solid angle
+    angle.max(f64::MIN_POSITIVE)
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::core::math;
 use crate::core::warp;
 use crate::light::{
     EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
+    brightest_around,
 };
 use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
@@ -229,13 +230,16 @@ impl<'a> Lights<'a> {
         let choice = |light: &dyn Fn(f32) -> f32| {
             // A portal samples within the part that is visible through it.
             if has_portal {
-                return Piecewise2D::new(&[], 0, 0);
+                return (Piecewise2D::new(&[], 0, 0), 0.0);
             }
             let weights: Vec<f32> =
                 weights.iter().map(|&(brightness, area)| light(brightness) * area).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
-            Piecewise2D::new(&weights, width, height)
+            let sum = weights.iter().map(|&weight| f64::from(weight)).sum();
+            (Piecewise2D::new(&weights, width, height), sum)
         };
+        let (complete, sum) = choice(&|brightness| brightness);
+        let (compensated, excess) = choice(&|brightness| (brightness - average as f32).max(0.0));
         let scale = scale.map(|c| c * factor);
         let brightness = average as f32 * scale.into_iter().fold(0.0, f32::max);
         let sky = SkyImage {
@@ -243,8 +247,10 @@ impl<'a> Lights<'a> {
             scale,
             layout,
             world_from_light: Mat3::from_mat4(world_from_light.as_mat4()),
-            complete: Arc::new(choice(&|brightness| brightness)),
-            compensated: Arc::new(choice(&|brightness| (brightness - average as f32).max(0.0))),
+            complete: Arc::new(complete),
+            compensated: Arc::new(compensated),
+            mean: average as f32,
+            sums: [sum, excess],
         };
         (Sky::Image(Box::new(sky)), brightness)
     }
@@ -274,23 +280,17 @@ fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
     (sum / f64::from(width * height)) as f32
 }
 
-/// Upper bound of the brightness of each texel of an environment map, and its relative solid angle. Where a look-up
-/// interpolates with neighbours, it is the brightest of the texels around, so that no visible light has density 0.
+/// Upper bound of the brightness of each texel of an environment map, and its relative solid angle.
 fn weights(image: &Image, layout: Layout) -> Vec<(f32, f32)> {
     let (width, height) = (image.width as usize, image.height as usize);
-    let brightness = |x: usize, y: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
     if layout == Layout::Octahedral {
-        return (0..width * height).map(|index| (brightness(index % width, index / width), 1.0)).collect();
+        let texels = (0..width * height).map(|index| [index % width, index / width]);
+        return texels.map(|texel| (brightest_around(image, layout, texel), 1.0)).collect();
     }
     let mut weights = Vec::with_capacity(width * height);
     for y in 0..height {
         let sin_theta = libm::sinf(PI * (y as f32 + 0.5) / height as f32);
-        let rows = y.saturating_sub(1)..(y + 2).min(height);
-        for x in 0..width {
-            let around = [x + width - 1, x, x + 1].map(|x| x % width);
-            let brightest = rows.clone().flat_map(|y| around.map(|x| brightness(x, y))).fold(0.0, f32::max);
-            weights.push((brightest, sin_theta));
-        }
+        weights.extend((0..width).map(|x| (brightest_around(image, layout, [x, y]), sin_theta)));
     }
     weights
 }

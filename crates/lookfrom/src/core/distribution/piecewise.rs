@@ -22,6 +22,15 @@ pub struct Piecewise2D {
     per_unit: Vec<f32>,
 }
 
+/// The probabilities of a cell, of which its density follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Of its row.
+    pub row: f64,
+    /// Of the cell, within its row.
+    pub column: f64,
+}
+
 /// The probability 1 in fixed point.
 const ONE: u32 = 1 << 31;
 
@@ -92,6 +101,20 @@ impl Piecewise2D {
         let (column, row) = (cell(uv[0], self.width), cell(uv[1], self.height));
         let ends = &self.row(row)[column..column + 2];
         (ends[1] - ends[0]) as f32 * self.per_unit[row]
+    }
+
+    /// Its columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The probabilities of a cell.
+    ///
+    /// # Panics
+    /// If it is not in the grid.
+    pub fn cell(&self, [column, row]: [usize; 2]) -> Cell {
+        let share = |sums: &[u32], index: usize| f64::from(sums[index + 1] - sums[index]) / f64::from(ONE);
+        Cell { row: share(&self.rows, row), column: share(self.row(row), column) }
     }
 
     #[inline]

@@ -91,8 +91,21 @@ impl Windowed2D {
         rounded(weight / total * (self.width * self.height) as f64)
     }
 
+    /// Its columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// The weight of a cell.
+    ///
+    /// # Panics
+    /// If it is not in the grid.
+    pub fn weight(&self, [column, row]: [usize; 2]) -> f64 {
+        f64::from(self.weights[row * self.width + column])
+    }
+
     /// The sum of the weights in a window; cells on its border count by the covered fraction.
-    fn total(&self, window: &Window) -> f64 {
+    pub fn total(&self, window: &Window) -> f64 {
         let [[left, right], y] = self.in_cells(window);
         let until = |x| between(|column| self.above(column, y), self.width, x);
         until(right) - until(left)

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Amount, Factor};
+use super::{Amount, Departure, Factor};
 use crate::inspect::candidate::TraversalReport;
 use crate::light::derivation::Derivation;
 
@@ -27,8 +27,8 @@ pub struct LightReport {
     pub pdf: Option<f32>,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
-    /// How `arrives` of a point light, or `pdf` of an area light, comes about.
-    pub derivation: Option<Derivation>,
+    /// How `arrives` and `pdf` come about, as far as there is a formula.
+    pub derivations: Vec<Derivation>,
     /// `I_j` of Whitted's formula: the unoccluded light.
     pub intensity: Amount,
     /// `k_d (N·L)`.
@@ -46,6 +46,8 @@ pub struct LightReport {
 pub struct ShadowReport {
     /// Its origin.
     pub from: [f64; 3],
+    /// How it follows from the point that is lit.
+    pub departure: Option<Departure>,
     /// Its target (if it has no end: one length of its direction away).
     pub to: [f64; 3],
     /// Whether it has no end.

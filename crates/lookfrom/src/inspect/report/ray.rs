@@ -25,6 +25,8 @@ pub struct RayReport {
     pub origin: [f32; 3],
     /// Its direction, not necessarily of unit length.
     pub direction: [f32; 3],
+    /// How its origin follows from the point that it leaves; `None` for camera rays.
+    pub departure: Option<Departure>,
     /// β: the throughput, the factor of light along it in the sample.
     pub throughput: Factor,
     /// The solid angle density of its direction, for MIS weights; `None` for camera rays, after specular bounces and in
@@ -66,6 +68,33 @@ pub struct RayReport {
     pub subtree: Amount,
 }
 
+/// The way from a point of a triangle to the smooth surface that its vertex normals describe (Hanika 2021):
+/// `lift = Σ w_k max(0, −(p − P_k)·n_k) n_k`, with `p = Σ w_k P_k`.
+#[derive(Clone, Debug, Serialize)]
+pub struct LiftReport {
+    /// P_k: the corners, relative to the render origin, or in the space of the object where there is one.
+    pub corners: [[f32; 3]; 3],
+    /// n_k: their normals, unit length, in the same space.
+    pub normals: [[f32; 3]; 3],
+    /// w_k: the weights of the corners at the point.
+    pub weights: [f32; 3],
+    /// In an instance the rows of the matrix that leads from the object to the world; the lift is multiplied by it.
+    pub from_object: Option<[[f64; 3]; 3]>,
+    /// The lift, in the world.
+    pub lift: [f32; 3],
+}
+
+/// How the origin of a ray follows from the point that it leaves: `a = point + lift + step · ng`, rounded to f32, relative to the
+/// render origin, away from the surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct Departure {
+    /// The lift, where the ray leaves to the outside of a smooth surface: to the side of its normal.
+    pub lift: Option<[f32; 3]>,
+    /// Along the outward normal, beyond the error bound: `±Σ |ng| (error + 2⁻⁵¹ |point|)`, the point relative to the render
+    /// origin.
+    pub step: f64,
+}
+
 /// Absorption by a medium (Beer's law): `T = exp(−σ · scale · length)`.
 #[derive(Clone, Debug, Serialize)]
 pub struct AbsorptionReport {
@@ -98,6 +127,8 @@ pub struct MetReport {
     pub point: [f64; 3],
     /// Error bound of the point, per component, by which the next ray's origin is moved off the surface.
     pub error: [f64; 3],
+    /// The way to the smooth surface that the triangle stands for, where rays start that leave to its outside.
+    pub lift: Option<LiftReport>,
     /// Outward geometric normal.
     pub ng: [f64; 3],
     /// Shading normal on the side of the viewer.

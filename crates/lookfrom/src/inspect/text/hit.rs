@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 
 use super::candidates::work;
 use super::{exact, full, full64, lanes, vector, vector32};
-use crate::inspect::{AbsorptionReport, MetReport, RayReport, ShadowReport};
+use crate::inspect::{AbsorptionReport, Departure, LiftReport, MetReport, RayReport, ShadowReport};
 use crate::light::derivation::Derivation;
 
 pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Result {
@@ -13,6 +13,7 @@ pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Resu
     writeln!(f, "{pad}  meets {} at t = {} from {side}{instance}", met.shape, met.t)?;
     writeln!(f, "{pad}    point = {}", vector(&met.point))?;
     writeln!(f, "{pad}      off the surface by at most {}, per component", vector(&met.error))?;
+    write_lift(f, met.lift.as_ref(), &format!("{pad}    "))?;
     writeln!(f, "{pad}    ng = {}   n = {}", vector(&met.ng), vector32(&met.n))?;
     writeln!(f, "{pad}    uv = {}   cos θ to the viewer = {}", vector32(&met.uv), full(met.cos_viewer))?;
     if let Some(alpha) = met.alpha {
@@ -44,9 +45,39 @@ pub(super) fn write_absorption(f: &mut String, ray: &RayReport, pad: &str) -> fm
     writeln!(f, "{pad}    throughput there = {}", lanes(throughput))
 }
 
+/// Writes where a ray starts that leaves a smooth surface from above the triangle that stands for it.
+pub(super) fn write_departure(f: &mut String, departure: Option<&Departure>, pad: &str) -> fmt::Result {
+    let Some(Departure { lift: Some(_), step }) = departure else { return Ok(()) };
+    writeln!(f, "{pad}starts at point + lift + s ng, rounded outward to f32: s = {}", full64(*step))
+}
+
+/// Writes the way to the smooth surface that a triangle stands for.
+fn write_lift(f: &mut String, lift: Option<&LiftReport>, pad: &str) -> fmt::Result {
+    let Some(LiftReport { corners, normals, weights, from_object, lift }) = lift else { return Ok(()) };
+    let row = |row: &[f32; 3]| exact(&row.map(f64::from));
+    writeln!(
+        f,
+        "{pad}lift = {}: rays to the outside of the smooth surface start at point + lift",
+        row(lift)
+    )?;
+    let matrix = if from_object.is_some() { "M " } else { "" };
+    writeln!(f, "{pad}  lift = {matrix}Σ w_k max(0, −(p − P_k)·n_k) n_k, p = Σ w_k P_k")?;
+    let named = |letter: &str, k: usize, of: &[f32; 3]| format!("{letter}{k} = {}", row(of));
+    let all = [("P", corners), ("n", normals)];
+    for (letter, rows) in all {
+        let rows: Vec<String> = rows.iter().enumerate().map(|(k, of)| named(letter, k, of)).collect();
+        writeln!(f, "{pad}  {}", rows.join("   "))?;
+    }
+    writeln!(f, "{pad}  w = {}", row(weights))?;
+    for (number, of) in from_object.iter().flatten().enumerate() {
+        writeln!(f, "{pad}  M, row {} = {}", number + 1, exact(of))?;
+    }
+    Ok(())
+}
+
 /// Writes a formula with its operands.
-pub(super) fn write_derivation(f: &mut String, derivation: Option<&Derivation>, pad: &str) -> fmt::Result {
-    let Some(Derivation { formula, numbers }) = derivation else { return Ok(()) };
+pub(super) fn write_derivation(f: &mut String, derivation: &Derivation, pad: &str) -> fmt::Result {
+    let Derivation { formula, numbers } = derivation;
     let numbers = numbers.iter().map(|(name, values)| match values.as_slice() {
         [value] => format!("{name} = {}", full64(*value)),
         values => format!("{name} = {}", exact(values)),
@@ -67,6 +98,7 @@ pub(super) fn write_shadow(
         return writeln!(f, "{pad}    no shadow ray: its contribution would be 0");
     };
     writeln!(f, "{pad}    shadow ray: {}", work(&shadow.traversal, ""))?;
+    write_departure(f, shadow.departure.as_ref(), &format!("{pad}    shadow ray: "))?;
     for blocker in &shadow.blockers {
         let (name, t, passed) = (&blocker.shape, full(blocker.t), &blocker.passed);
         match passed.iter().all(|lane| *lane == 0.0) {

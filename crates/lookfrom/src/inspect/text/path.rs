@@ -5,11 +5,13 @@ use std::fmt::{self, Write};
 use lookfrom_scene::plural::counted;
 
 use super::candidates::{write_candidates, write_traced};
-use super::hit::{write_absorption, write_derivation, write_met, write_shadow};
+use super::hit::{write_absorption, write_departure, write_derivation, write_met, write_shadow};
 use super::microfacets::write_microfacets;
 use super::{Excerpt, Part, RayReport};
 use super::{amount, full, lanes, vector, vector32};
-use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
+use crate::inspect::scatter::{
+    BounceReport, FoundReport, FoundSampling, LightSampleReport, ScatteringReport,
+};
 
 /// Number of candidates that are shown besides the hit of a ray.
 const OTHERS_ALONG_PATH: usize = 0;
@@ -92,6 +94,7 @@ impl Excerpt<'_> {
         )?;
         if self.has(Part::Tests) {
             writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
+            write_departure(f, ray.departure.as_ref(), &format!("{pad}  "))?;
             write_traced(f, ray, pad)?;
             write_candidates(f, ray, OTHERS_ALONG_PATH, pad)?;
         }
@@ -156,6 +159,7 @@ impl Excerpt<'_> {
                     full(p)
                 )?;
                 writeln!(f, "      q = {q}: pdf of this direction in light sampling there")?;
+                write_found_sampling(f, found.sampling.as_ref())?;
                 writeln!(f, "      w = p² / (p² + q²) = {w}")?;
             }
             (Some(_), "simple_path") if found.light_pdf > 0.0 => {
@@ -174,7 +178,7 @@ impl Excerpt<'_> {
             report.light,
             full(report.probability)
         )?;
-        write_derivation(f, report.choice.as_ref(), "      ")?;
+        report.choice.iter().try_for_each(|choice| write_derivation(f, choice, "      "))?;
         let Some(sample) = &report.sample else {
             return writeln!(
                 f,
@@ -195,7 +199,7 @@ impl Excerpt<'_> {
         if let Some(point) = sample.point {
             writeln!(f, "      from the point {}", vector(&point))?;
         }
-        write_derivation(f, sample.derivation.as_ref(), "      ")?;
+        sample.derivations.iter().try_for_each(|derivation| write_derivation(f, derivation, "      "))?;
         let (p, pdf, probability) = (full(sample.pdf), full(sample.light_pdf), full(report.probability));
         match sample.is_delta {
             true => writeln!(f, "      p = {p}: the probability of choosing it; it has only this direction")?,
@@ -279,6 +283,15 @@ impl Excerpt<'_> {
             }
         }
     }
+}
+
+/// How light sampling at the surface before finds a light.
+fn write_found_sampling(f: &mut String, sampling: Option<&FoundSampling>) -> fmt::Result {
+    let Some(FoundSampling { probability, choice, density, derivations }) = sampling else { return Ok(()) };
+    let (probability, density) = (full(*probability), full(*density));
+    writeln!(f, "        = P × pdf = {probability} × {density}: its choice there, and the direction")?;
+    write_derivation(f, choice, "        ")?;
+    derivations.iter().try_for_each(|derivation| write_derivation(f, derivation, "        "))
 }
 
 fn write_scattering(f: &mut String, scattering: &ScatteringReport) -> fmt::Result {

@@ -2,15 +2,16 @@
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Hit;
+use lookfrom_scene::settings::Integrator;
 
 use super::TraceLogBuilder;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate::{self, TraversalReport};
 use crate::inspect::report::{Blocker, LightReport, ShadowReport};
-use crate::inspect::scatter::{LightSampleReport, SampledDirectionReport};
+use crate::inspect::scatter::{FoundSampling, LightSampleReport, SampledDirectionReport};
 use crate::integrator::{Shadow, Term};
 use crate::light::derivation::Derivation;
-use crate::light::{LightSample, LightSampleContext, Target};
+use crate::light::{IncompletePdf, Light, LightSample, LightSampleContext, Target};
 use crate::world::World;
 
 impl TraceLogBuilder<'_> {
@@ -36,7 +37,7 @@ impl TraceLogBuilder<'_> {
             arrives: self.amount(sample.map(|sample| sample.li).unwrap_or_default()),
             pdf: sample.map(|sample| sample.pdf),
             point: sample.and_then(|sample| target(self.world, sample)),
-            derivation: sample.and_then(|sample| self.derivation(address, index, sample)),
+            derivations: sample.map(|sample| self.derivations(address, index, sample)).unwrap_or_default(),
             intensity: self.amount(intensity.unwrap_or_default()),
             diffuse: self.factor(terms[0]),
             specular: self.factor(terms[1]),
@@ -46,10 +47,62 @@ impl TraceLogBuilder<'_> {
     }
 
     /// How a light's sample comes about at the hit of a ray.
-    fn derivation(&self, address: u64, light: u32, sample: &LightSample) -> Option<Derivation> {
-        let met = self.rays.get(&address)?.met.as_ref()?;
-        let from = DVec3::from_array(met.point) - self.world.origin;
-        self.world.lights[light as usize].derivation(&self.world.textures, from, sample, &self.lanes)
+    fn derivations(&self, address: u64, light: u32, sample: &LightSample) -> Vec<Derivation> {
+        let Some((_, Some(surface))) = self.hits.get(&address) else { return Vec::new() };
+        let point = DVec3::from_array(surface.point.position);
+        // Along paths light is sampled by the frame of the BSDF, and BSDF sampling finds what light sampling leaves out.
+        let (n, incomplete_pdf) = match self.shadings.get(&address) {
+            Some((shading, _)) => (shading.n(), IncompletePdf::Allowed),
+            None => (surface.ns_facing(), IncompletePdf::Forbidden),
+        };
+        self.derivations_at(&LightSampleContext { point, n }, light, sample, incomplete_pdf)
+    }
+
+    fn derivations_at(
+        &self,
+        at: &LightSampleContext,
+        light: u32,
+        sample: &LightSample,
+        incomplete_pdf: IncompletePdf,
+    ) -> Vec<Derivation> {
+        let light = &self.world.lights[light as usize];
+        light.derivations(&self.world.textures, at, sample, &self.lanes, incomplete_pdf)
+    }
+
+    /// How light sampling at the surface before finds the light that a ray hit.
+    pub(super) fn found_sampling(
+        &self,
+        address: u64,
+        light: u32,
+        radiance: Spectrum,
+        light_pdf: f32,
+    ) -> Option<FoundSampling> {
+        let (path, surface) = self.hits.get(&address)?;
+        let samples_lights =
+            matches!(self.renderer.settings().integrator, Integrator::Path | Integrator::SimplePath);
+        let of_light = &self.world.lights[light as usize];
+        let is_left_out = light_pdf == 0.0 && !matches!(of_light, Light::Environment(_));
+        if !samples_lights || path.previous.pdf.is_infinite() || is_left_out {
+            return None;
+        }
+        let at = path.light_context();
+        let surface = surface.as_ref();
+        let wi =
+            surface.map_or_else(|| Vec3::from_array(path.ray.direction).normalize(), |surface| -surface.wo);
+        let choice = self.world.light_choice();
+        let probability = choice.probability(&at, light);
+        if probability == 0.0 {
+            return None;
+        }
+        let density = of_light.pdf(&at, wi, surface, IncompletePdf::Allowed);
+        let target = surface.map_or(Target::Infinity, |surface| Target::Surface(surface.point, surface.ng));
+        let sample = LightSample { wi, li: radiance, pdf: density, target };
+        Some(FoundSampling {
+            probability,
+            choice: choice.derivation(&at, light),
+            density,
+            derivations: self.derivations_at(&at, light, &sample, IncompletePdf::Allowed),
+        })
     }
 
     /// How the probability of a light comes about at the hit of a ray.
@@ -74,7 +127,7 @@ impl TraceLogBuilder<'_> {
             light_pdf: sample.pdf,
             pdf: probability * sample.pdf,
             point: target(self.world, sample),
-            derivation: self.derivation(address, light, sample),
+            derivations: self.derivations(address, light, sample),
             is_delta: self.world.lights[light as usize].is_delta(),
             arrives: self.amount(sample.li),
             f_cos: self.factor(f_cos),
@@ -111,6 +164,7 @@ impl TraceLogBuilder<'_> {
         });
         // A ray of a probe stops at a first surface that blocks it: only one that reaches the light has a rest.
         let rest = (!hit.is_hit()).then(|| self.factor(passed));
+        let departure = self.departure(shadow.address, &shadow.ray);
         let traversal = match self.with_tests {
             true => candidate::of_shadow(world, &shadow.ray),
             false => TraversalReport::default(),
@@ -134,6 +188,7 @@ impl TraceLogBuilder<'_> {
         let [from, to] = [origin, origin + direction * length].map(|point| (world.origin + point).to_array());
         let report = report.get_or_insert(ShadowReport {
             from,
+            departure,
             to,
             is_endless,
             blockers: Vec::new(),

@@ -1,21 +1,23 @@
 //! Events of rays: hits, surfaces, bounces.
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, NONE};
+use lookfrom_bvh::{Hit, NONE, Point, Ray};
 
 use super::TraceLogBuilder;
+use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
-use crate::inspect::report::{Amount, CoefficientsReport, MetReport, RayReport};
+use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 use crate::inspect::scatter::{self, BounceReport};
 use crate::integrator::{Bounce, Path};
+use crate::primitive::Primitives;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, Shading};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 impl TraceLogBuilder<'_> {
-    pub(super) fn ray(&self, path: &Path, hit: &Hit) -> RayReport {
+    pub(super) fn ray(&self, path: &Path, hit: &Hit, surface: Option<&SurfaceInteraction>) -> RayReport {
         let kind = match (path.address, path.address & 1) {
             (Path::ROOT, _) => "camera",
             (_, 0) => "reflected",
@@ -26,7 +28,6 @@ impl TraceLogBuilder<'_> {
             false => Default::default(),
         };
         let pdf = path.previous.pdf;
-        let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
         RayReport {
             address: path.address,
             parent: None,
@@ -35,12 +36,13 @@ impl TraceLogBuilder<'_> {
             a: in_world(self.world, path.ray.origin),
             origin: path.ray.origin,
             direction: path.ray.direction,
+            departure: None,
             throughput: self.factor(path.beta),
             // Infinite stands for a specular bounce or a camera ray.
             pdf: (pdf != f32::INFINITY).then_some(pdf),
             traversal,
             candidates,
-            met: surface.map(|surface| met_report(self.world, hit, &surface)),
+            met: surface.map(|surface| met_report(self.world, hit, surface)),
             absorption: None,
             eta_scale: path.previous.eta_scale,
             throughput_there: None,
@@ -56,6 +58,21 @@ impl TraceLogBuilder<'_> {
             added: Amount::default(),
             subtree: Amount::default(),
         }
+    }
+
+    /// How the origin of a ray follows from the hit of another.
+    pub(super) fn departure(&self, address: u64, ray: &Ray) -> Option<Departure> {
+        let (_, Some(surface)) = self.hits.get(&address)? else { return None };
+        let direction = Vec3::from_array(ray.direction);
+        if surface.origin(direction) != ray.origin {
+            return None;
+        }
+        let lift = surface.lift().filter(|lift| lift.is_above(direction.into()));
+        let is_behind = lift.is_none() && surface.ng.dot(direction.as_dvec3()) < 0.0;
+        let Point { position, error } = surface.point;
+        let points = Points::<f32> { position: position.into(), error: error.into() };
+        let step = points.clearance(surface.ng.into());
+        Some(Departure { lift: lift.map(|lift| lift.way.into()), step: if is_behind { -step } else { step } })
     }
 
     pub(super) fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
@@ -121,6 +138,7 @@ fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetRepo
         t: hit.t,
         point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
         error: surface.point.error,
+        lift: lift_report(world, hit, surface),
         ng: surface.ng.to_array(),
         n: surface.ns_facing().to_array(),
         uv: surface.uv.to_array(),
@@ -131,6 +149,24 @@ fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetRepo
         material: world.names.materials[surface.material as usize].clone(),
         coefficients: None,
     }
+}
+
+/// The way to the smooth surface that a triangle stands for, and its operands.
+fn lift_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> Option<LiftReport> {
+    let lift = surface.lift()?.way.into();
+    let (Primitives::Mesh(mesh), placed) = world.primitives(hit) else { return None };
+    let triangle = mesh.triangle(hit.primitive as usize);
+    let from_object = placed.map(|placed| {
+        let [x, y, z, _] = placed.render_from_object().transpose().to_cols_array_2d();
+        [x, y, z].map(|[a, b, c, _]| [a, b, c])
+    });
+    Some(LiftReport {
+        corners: triangle.positions.map(<[f32; 3]>::from),
+        normals: triangle.normals.map(<[f32; 3]>::from),
+        weights: [1.0 - hit.u - hit.v, hit.u, hit.v],
+        from_object,
+        lift,
+    })
 }
 
 fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {

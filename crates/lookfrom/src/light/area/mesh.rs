@@ -244,9 +244,10 @@ impl MeshLight {
         let (rank, _) = nearest.unwrap_or_default();
         let triangle = &self.triangles[rank];
         let probability = f64::from(self.choice.pdf(rank));
+        let corners = [triangle.p0, triangle.p0 + triangle.e1, triangle.p0 + triangle.e2];
         match triangle.worth_direction(from) {
-            Some((_, solid_angle)) => AreaDensity::SolidAngle { solid_angle, probability },
-            None => AreaDensity::Area { area: triangle.area, probability },
+            Some((_, solid_angle)) => AreaDensity::SolidAngle { solid_angle, probability, corners },
+            None => AreaDensity::Area { area: triangle.area, probability, corners: Some(corners) },
         }
     }
 

@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 
-use super::{Cone, LightPoint, seen};
+use lookfrom_bvh::{Procedural, Ray};
+
+use super::{AreaDensity, Cone, LightPoint, seen};
 use crate::core::distribution::Discrete;
 use crate::primitive::Patches;
 
@@ -69,6 +71,27 @@ impl PatchLight {
         let high = w01 + u * (w11 - w01);
         let density = 4.0 * (low + v * (high - low)) / (w00 + w10 + w01 + w11);
         f64::from(self.choice.pdf(index)) * density / self.patches.area_vector(index, u, v).length()
+    }
+
+    /// The operands of the density at a point of the patches, seen from another: those of the nearest patch on the way there.
+    pub(super) fn density(&self, from: DVec3, point: DVec3) -> AreaDensity {
+        let (origin, direction) = (from.as_vec3().to_array(), (point - from).as_vec3().to_array());
+        // A ray may meet a patch twice.
+        let ray = Ray { t_min: 0.999, ..Ray::new(origin, direction).with_t_max(1.001) };
+        let hits = (0..self.patches.patches.len()).filter_map(|index| {
+            let hit = self.patches.intersect(index as u32, &ray)?;
+            Some((index, hit))
+        });
+        let off = |t: f32| (t - 1.0).abs();
+        let nearest = hits.min_by(|(_, a), (_, b)| off(a.t).total_cmp(&off(b.t)));
+        let (index, [u, v]) = nearest.map_or((0, [0.5; 2]), |(index, hit)| (index, [hit.u, hit.v]));
+        let place = [u, v].map(f64::from);
+        AreaDensity::Patch {
+            probability: f64::from(self.choice.pdf(index)),
+            place,
+            corners: self.stretches(index),
+            here: self.patches.area_vector(index, place[0], place[1]).length(),
+        }
     }
 
     /// The area element `|∂p/∂u × ∂p/∂v|` at the corners.

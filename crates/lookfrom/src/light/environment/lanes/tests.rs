@@ -43,6 +43,8 @@ fn eight_at_once_are_eight_one_by_one() {
         world_from_light: Mat3::from_rotation_x(0.7) * Mat3::from_rotation_y(2.0),
         complete: choice.clone(),
         compensated: choice,
+        mean: 0.0,
+        sums: [0.0; 2],
     };
     let environment = Environment { sky: Sky::Image(Box::new(sky.clone())), portal: None, illuminates: true };
     let light = Light::Environment(environment.clone());

@@ -1,0 +1,79 @@
+//! Derivations of lights that project pictures: the direction in the light's space, its texel, the intensity.
+
+use glam::{DVec3, Vec3};
+
+use super::{Derivation, OCTAHEDRAL, as_spectrum, color_of, in_space, lanes, place, texel_at, vector};
+use crate::core::warp;
+use crate::light::picture::{Goniometric, Projection};
+use crate::light::toward;
+use crate::shading::texture::{SpectralMode, Textures};
+
+/// How a direction from a light is found in its space.
+const FROM_LIGHT: &str = "(x, y, z) = M (−wi), of unit length: the direction from the light, in its space";
+
+impl Projection {
+    /// How the light at a point comes about.
+    pub(in crate::light) fn derivations(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        mode: &SpectralMode,
+    ) -> Vec<Derivation> {
+        let Some((wi, distance)) = toward(from, self.position) else { return Vec::new() };
+        let w = (self.light_from_render * -wi).normalize_or_zero();
+        let image = textures.image(self.image);
+        let [half_x, half_y] = self.half_size;
+        let st = [0.5 + 0.5 * w.x / (w.z * half_x), 0.5 - 0.5 * w.y / (w.z * half_y)];
+        let texel = texel_at(image, st);
+        let [size, index] = place(image, texel);
+        let numbers = vec![
+            ("half size at z = 1", vec![f64::from(half_x), f64::from(half_y)]),
+            size,
+            index,
+            ("texel", vector(color_of(image, texel))),
+            ("scale", vec![f64::from(self.scale)]),
+            ("d", vec![distance]),
+        ];
+        vec![
+            Derivation::new(FROM_LIGHT, in_space(&self.light_from_render, w)),
+            Derivation::new(
+                format!(
+                    "L = I / d², I = scale · texel (i, j) of the picture{}; \
+                     i = ⌊½ (1 + x / (half_x z)) columns⌋, j = ⌊½ (1 − y / (half_y z)) rows⌋",
+                    as_spectrum(mode)
+                ),
+                numbers,
+            ),
+        ]
+    }
+}
+
+impl Goniometric {
+    /// How the light at a point comes about.
+    pub(in crate::light) fn derivations(
+        &self,
+        textures: &Textures,
+        from: DVec3,
+        mode: &SpectralMode,
+    ) -> Vec<Derivation> {
+        let Some((wi, distance)) = toward(from, self.position) else { return Vec::new() };
+        let w: Vec3 = (self.light_from_render * -wi).normalize_or_zero();
+        let image = textures.image(self.image);
+        let texel = texel_at(image, warp::octahedral_square(w));
+        let [size, index] = place(image, texel);
+        let numbers = vec![
+            size,
+            index,
+            ("texel", vector(color_of(image, texel))),
+            ("I₀", lanes(self.intensity.even(textures, mode), mode)),
+            ("d", vec![distance]),
+        ];
+        vec![
+            Derivation::new(FROM_LIGHT, in_space(&self.light_from_render, w)),
+            Derivation::new(
+                format!("L = I / d², I = I₀ · (red + green + blue) / 3 of texel (i, j); {OCTAHEDRAL}"),
+                numbers,
+            ),
+        ]
+    }
+}
