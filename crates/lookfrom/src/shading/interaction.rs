@@ -119,6 +119,17 @@ impl SurfaceInteraction {
         (self.front && self.lift != Vec3::ZERO).then(|| Lift { way: self.lift.into(), ns: self.ns.into() })
     }
 
+    /// The way from the point to [`Self::origin`], before it is rounded: the lift, if the ray starts there, and the step along
+    /// `ng` out of the error bound.
+    pub(crate) fn way_out(&self, direction: Vec3) -> (Option<Vec3>, f64) {
+        let lift = self.lift().filter(|lift| lift.is_above(direction.into()));
+        let is_behind = lift.is_none() && self.ng.dot(direction.as_dvec3()) < 0.0;
+        let Point { position, error } = self.point;
+        let points = Points::<f32> { position: position.into(), error: error.into() };
+        let step = points.clearance(self.ng.into());
+        (lift.map(|lift| lift.way.into()), if is_behind { -step } else { step })
+    }
+
     /// Origin of a ray into `direction`: beyond the error bound, on the side to which the ray leaves.
     pub fn origin(&self, direction: Vec3) -> [f32; 3] {
         let Point { position, error } = self.point;

@@ -1,10 +1,9 @@
 //! Events of rays: hits, surfaces, bounces.
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, NONE, Point, Ray};
+use lookfrom_bvh::{Hit, NONE, Ray};
 
 use super::TraceLogBuilder;
-use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
 use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
@@ -67,12 +66,8 @@ impl TraceLogBuilder<'_> {
         if surface.origin(direction) != ray.origin {
             return None;
         }
-        let lift = surface.lift().filter(|lift| lift.is_above(direction.into()));
-        let is_behind = lift.is_none() && surface.ng.dot(direction.as_dvec3()) < 0.0;
-        let Point { position, error } = surface.point;
-        let points = Points::<f32> { position: position.into(), error: error.into() };
-        let step = points.clearance(surface.ng.into());
-        Some(Departure { lift: lift.map(|lift| lift.way.into()), step: if is_behind { -step } else { step } })
+        let (lift, step) = surface.way_out(direction);
+        Some(Departure { lift: lift.map(|lift| lift.to_array()), step })
     }
 
     pub(super) fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
