@@ -57,6 +57,7 @@ height = 10
 [[light]]
 type = "point"
 position = [0, 5, -3]
+intensity = 1
 [[mesh]]
 file = "roof.obj"
 translate = [1.3, 0, 0]
@@ -73,6 +74,7 @@ const INSPECTED: [&str; 27] = [
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
     "scenes/hero.toml 20 15 --width 40 --samples 8 --sample 3..4",
+    "scenes/hero.toml 330 300 --integrator path --sample 4",
     "scenes/hero.toml 22 20 --width 40 --integrator simple_path --ray 1",
     "scenes/hero.toml 22 20 --width 40 --integrator random_walk --bounce 1",
     "scenes/hero.toml 22 20 --width 40 --integrator ambient_occlusion --only lights",
