@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lookfrom::film::Picture;
-use lookfrom::session::{Developed, Development, FilmFile, Fireflies};
+use lookfrom::session::{Developed, Development, FilmFile, FilmParts, Fireflies};
 use lookfrom_scene::image::{self, Channels};
 use lookfrom_scene::settings::{Background, Tonemap};
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
@@ -41,13 +41,27 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
     let files = inputs.record(&Disk, path.display().to_string());
     let mut context = LoadContext::within(&arguments.memory.budget(), &files);
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
+    let mut film = None;
     let developed = if is_exr {
         let bytes = context.read(path)?;
-        match FilmFile::is_film(&bytes) {
-            true => of_film(&FilmFile::read(&bytes, path, &context.budget)?, path, arguments)?,
-            false => {
-                of_picture(picture_of_exr(image::read_exr(path, &mut context)?, path)?, path, arguments)?
+        if FilmFile::is_film(&bytes) {
+            drop(bytes);
+            let mut parts = FilmParts::new(&files, &context.budget);
+            parts.add(path, |_| ()).map_err(exit::in_scene(path))?;
+            let development = of_film(&parts, path, arguments)?;
+            if target.format().has_layers() || parts.need_all(&development) {
+                let file = FilmFile::read(&context.read(path)?, path, &context.budget)?;
+                let developed = file.develop(&development);
+                film = Some(file.film);
+                developed
+            } else {
+                let pixels =
+                    parts.whole().map_or(0, |whole| whole.film.width() as u64 * whole.film.height() as u64);
+                context.keep(pixels * DEVELOPED, "the developed picture", &Location::file(path))?;
+                parts.develop(&development)?
             }
+        } else {
+            of_picture(picture_of_exr(image::read_exr(path, &mut context)?, path)?, path, arguments)?
         }
     } else {
         let image = image::read(path, &mut context)?;
@@ -59,12 +73,13 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
         of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
     };
     target.format().check_background(developed.development.background).map_err(exit::in_scene(path))?;
-    let bytes = developed.encode(target.format());
-    target.write(&bytes.map_err(|error| target.cannot_encode(&error))?, &inputs)
+    target.write_by(&inputs, &|mut out| developed.write(film.as_ref(), target.format(), &mut out))
 }
 
-fn of_film(file: &FilmFile, path: &Path, arguments: &DevelopArguments) -> Result<Developed, Failure> {
-    let mut development = file.provenance.development;
+/// The development of a film that is asked for.
+fn of_film(parts: &FilmParts<'_>, path: &Path, arguments: &DevelopArguments) -> Result<Development, Failure> {
+    let own = parts.whole().map(|whole| whole.provenance.development);
+    let mut development = own.ok_or_else(|| Failure::Usage(format!("{} is no film", path.display())))?;
     let has_alpha = development.background != Background::Environment;
     change(&mut development, arguments, has_alpha, path)?;
     if let Some(denoise) = arguments.denoise {
@@ -73,7 +88,7 @@ fn of_film(file: &FilmFile, path: &Path, arguments: &DevelopArguments) -> Result
     if let Some(fireflies) = arguments.fireflies {
         development.fireflies = fireflies;
     }
-    Ok(file.develop(&development))
+    Ok(development)
 }
 
 /// A picture, its other channels and the texts of its header.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Args, Command};
 use lookfrom::film::Film;
-use lookfrom::session::{Developed, FilmFile, Finished, Provenance};
+use lookfrom::session::{Developed, FilmFile, FilmParts, Finished, Provenance};
 use lookfrom_scene::{Budget, Disk, ErrorKind, Files, Inputs, LoadContext, Result as SceneResult};
 
 use crate::args::Overrides;
@@ -169,6 +169,14 @@ pub(crate) fn write_file(
 ) -> Result<(), Failure> {
     let provenance = of_any_folder(&film.provenance, &film.film);
     rescued(target, inputs, |file| provenance.write(&film.film, developed, file))
+}
+
+/// Writes films of parts as one, with its picture.
+///
+/// # Errors
+/// `Output` where that fails, also where a part cannot be read any more.
+pub(crate) fn write_parts(target: &Target, parts: &FilmParts<'_>, inputs: &Inputs) -> Result<(), Failure> {
+    write_by(target, inputs, |file| parts.write(of_any_folder, file))
 }
 
 fn write_by(

@@ -1,8 +1,9 @@
 //! Output files and their formats. Targets are checked before anything is rendered; files are replaced atomically, and input
 //! files are never overwritten.
 
+use std::cell::RefCell;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, Cursor, ErrorKind, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
@@ -11,6 +12,11 @@ use lookfrom::session::{Format, Series};
 use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
+
+/// What pictures are written to.
+pub(crate) trait Out: Write + Seek {}
+
+impl<T: Write + Seek> Out for T {}
 
 /// Target of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -133,6 +139,39 @@ impl Target {
         written.or_else(|failure| {
             rescue(self, failure, |file| file.write_all(bytes).map_err(|error| error.to_string()))
         })
+    }
+
+    /// Writes a picture by a function: a finished one is kept elsewhere where it cannot be written, as [`write_finished`](Self::write_finished)
+    /// does.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write), and where the format cannot hold the picture.
+    pub(crate) fn write_by(
+        &self,
+        inputs: &Inputs,
+        write: &dyn Fn(&mut dyn Out) -> lookfrom_scene::Result<()>,
+    ) -> Result<(), Failure> {
+        let Self::File(path, _) = self else {
+            let mut bytes = Cursor::new(Vec::new());
+            write(&mut bytes).map_err(|error| self.cannot_encode(&error))?;
+            return self.write_finished(bytes.get_ref(), inputs);
+        };
+        let refusal = RefCell::new(None);
+        let write = |file: &mut BufWriter<File>| {
+            write(file).map_err(|error| {
+                let message = error.message.clone();
+                if error.kind != lookfrom_scene::ErrorKind::Io {
+                    refusal.replace(Some(error));
+                }
+                message
+            })
+        };
+        let written = replace_file_by(path, inputs, "-o", write);
+        match (written, refusal.take()) {
+            (Ok(()), _) => Ok(()),
+            (Err(_), Some(error)) => Err(self.cannot_encode(&error)),
+            (Err(failure), None) => rescue(self, failure, write),
+        }
     }
 
     /// Checks, as far as possible, that the picture can be written. Missing folders are created only when there is a picture.

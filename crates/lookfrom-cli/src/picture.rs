@@ -92,8 +92,7 @@ pub(crate) fn render(
             (Some(provenance), _) => film::write(target, provenance, &finished, inputs)?,
             (None, Outlet::Gathered(gather)) => gather(&finished)?,
             (None, Outlet::Target) => {
-                let bytes = finished.encode(target.format());
-                target.write_finished(&bytes.map_err(|error| target.cannot_encode(&error))?, inputs)?;
+                target.write_by(inputs, &|mut out| finished.write(target.format(), &mut out))?;
             }
         }
     }

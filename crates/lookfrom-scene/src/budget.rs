@@ -150,6 +150,12 @@ impl<T> From<T> for Reserved<T> {
     }
 }
 
+impl AsRef<[u8]> for Reserved<Vec<u8>> {
+    fn as_ref(&self) -> &[u8] {
+        &self.value
+    }
+}
+
 impl<T> Deref for Reserved<T> {
     type Target = T;
 

@@ -17,11 +17,13 @@ mod write;
 pub use self::animation::{Animation, AnimationFormat};
 pub use self::encoding::Encoding;
 pub use self::metadata::Metadata;
-pub use self::openexr::{Channels, ExrChannel, ExrHeader, ExrRows, encode_exr, read_exr, write_exr};
+pub use self::openexr::{
+    Channels, ExrChannel, ExrFill, ExrHeader, ExrRowStream, ExrRows, encode_exr, read_exr, write_exr,
+};
 pub use self::read::{By, Reading, decode, read, read_as, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::{Image, Quad};
 pub use self::write::{
     Pixels, encode_hdr, encode_jpeg, encode_pfm, encode_png, encode_png_of, encode_png_with_alpha,
-    encode_ppm, encode_webp, without_alpha,
+    encode_ppm, encode_webp, without_alpha, write_jpeg, write_png, write_webp,
 };

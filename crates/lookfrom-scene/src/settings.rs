@@ -4,6 +4,9 @@ use crate::error::Location;
 use crate::image::srgb_from_linear;
 use crate::spectrum::CameraSensor;
 
+/// Maximum number of pixels of a picture: 2³⁰.
+pub const MOST_PIXELS: u64 = 1 << 30;
+
 /// Resolution, filter, sensor and tone mapping of the image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageSettings {

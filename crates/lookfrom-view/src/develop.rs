@@ -1,5 +1,7 @@
 //! From a film to the pictures of a window: light, or a layer in false colours, or a comparison.
 
+use std::io::Cursor;
+
 use lookfrom::film::Film;
 use lookfrom::session::{Development, Format, Session};
 use lookfrom_scene::Result;
@@ -140,7 +142,7 @@ impl Shown<'_> {
             return Ok(vec![encode_png(width, height, &self.layer(layer))?]);
         }
         if let (Some(wish), Some(reference)) = (self.wish.compare, &self.loaded.reference) {
-            let developed = self.session.develop(self.film, &self.development()?, false);
+            let developed = self.session.develop(self.film, &self.development()?);
             return compare::pictures(&developed, self.film, reference, wish.mode);
         }
         Ok(vec![self.file(Format::Png)?])
@@ -151,7 +153,10 @@ impl Shown<'_> {
     /// # Errors
     /// As those of encoding.
     pub(crate) fn file(&self, format: Format) -> Result<Vec<u8>> {
-        self.session.develop(self.film, &self.development()?, format.has_layers()).encode(format)
+        let mut bytes = Cursor::new(Vec::new());
+        let developed = self.session.develop(self.film, &self.development()?);
+        developed.write(Some(self.film), format, &mut bytes)?;
+        Ok(bytes.into_inner())
     }
 
     /// Bytes of a layer, three per pixel.

@@ -7,7 +7,8 @@
 //! `channels`; noise estimates in `noise`; firefly suppression in `fireflies`; which samples it holds, in `ledger`; its
 //! numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
-//! A pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled.
+//! In a tile, which a thread fills, a pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled. The
+//! film keeps them packed, in `plane`: in about half of that.
 
 pub mod allocation;
 pub mod aov;
@@ -18,26 +19,34 @@ mod ledger;
 mod light_paths;
 mod noise;
 mod pixel;
+mod plane;
 mod stored;
 mod sums;
 mod tile;
 
+use self::aov::{AovSums, LayerSums};
 pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
 pub use self::fireflies::Firefly;
 pub(crate) use self::first_hits::{AovColumns, FirstHitSums};
 pub use self::ledger::{Overlap, SampleLedger};
+use self::light_paths::LightPathSums;
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
+use self::plane::Plane;
+pub(crate) use self::stored::StoredRows;
+use self::stored::{Stored, for_each_plane};
 pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
+use self::tile::Kinds;
 
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use std::cmp::Ordering;
+use std::ops::Range;
 
-/// Maximum number of pixels of a film: 2²⁸, which take 28 GiB.
-pub const MOST_PIXELS: u64 = 1 << 28;
+/// Maximum number of pixels of a picture: 2³⁰.
+pub const MOST_PIXELS: u64 = lookfrom_scene::settings::MOST_PIXELS;
 
 /// Light is clamped to this, 2⁴⁰, in either direction. So the sums hold at least 2²³ samples of the brightest, and far
 /// more of any other.
@@ -48,7 +57,20 @@ pub const BRIGHTEST: f32 = 1_099_511_627_776.0;
 pub struct Film {
     width: u32,
     height: u32,
-    tile: FilmTile,
+    area: PixelBounds,
+    pixels: Plane<Pixel>,
+    layers: Plane<LayerSums>,
+    channels: Plane<ChannelSums>,
+    features: Plane<AovSums>,
+    /// For each layer of light-path expressions.
+    light_paths: Vec<Plane<LightPathSums>>,
+    /// Sums of alpha, in multiples of 2⁻⁶⁴.
+    alphas: Plane<i128>,
+    /// Sums of their squares, in multiples of 2⁻⁴⁸.
+    alpha_squares: Plane<u128>,
+    dropped: u64,
+    first_dropped: Option<SampleId>,
+    ledger: SampleLedger,
 }
 
 /// Identifies a sample of a pixel. The order is by row, column, sample.
@@ -109,8 +131,7 @@ impl Picture {
     /// The picture composited by its alpha over a background of linear light; one without alpha stays the same.
     pub fn before(mut self, background: [f32; 3]) -> Self {
         for (pixel, alpha) in self.pixels.iter_mut().zip(std::mem::take(&mut self.alpha)) {
-            let share = 1.0 - alpha.clamp(0.0, 1.0);
-            *pixel = std::array::from_fn(|c| pixel[c] + share * background[c]);
+            *pixel = composited(*pixel, alpha, background);
         }
         self
     }
@@ -143,30 +164,78 @@ impl Film {
         }
         let whole = PixelBounds { x0: 0, y0: 0, x1: width, y1: height };
         let area = common(whole, crop.unwrap_or(whole));
-        Ok(Self { width, height, tile: FilmTile::for_image(area, image)? })
+        let kinds = FilmTile::for_image(PixelBounds { x1: area.x0, ..area }, image)?.kinds;
+        Self::with_kinds(width, height, area, kinds)
+    }
+
+    fn with_kinds(width: u32, height: u32, area: PixelBounds, kinds: Kinds) -> Result<Self> {
+        fn plane<T: Stored + Copy + Default + PartialEq>(
+            has: bool,
+            [width, height]: [u32; 2],
+        ) -> Result<Plane<T>> {
+            if has { Plane::new(width, height) } else { Ok(Plane::none()) }
+        }
+        let size = [width, height];
+        Ok(Self {
+            width,
+            height,
+            area,
+            pixels: plane(true, size)?,
+            layers: plane(kinds.layers, size)?,
+            channels: plane(kinds.channels, size)?,
+            features: plane(kinds.features, size)?,
+            light_paths: (0..kinds.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
+            alphas: plane(kinds.alphas, size)?,
+            alpha_squares: plane(kinds.alpha_squares, size)?,
+            dropped: 0,
+            first_dropped: None,
+            ledger: SampleLedger::default(),
+        })
+    }
+
+    /// The kinds of its sums.
+    fn kinds(&self) -> Kinds {
+        Kinds {
+            layers: !self.layers.is_empty(),
+            channels: !self.channels.is_empty(),
+            features: !self.features.is_empty(),
+            light_paths: self.light_paths.len(),
+            alphas: !self.alphas.is_empty(),
+            alpha_squares: !self.alpha_squares.is_empty(),
+        }
+    }
+
+    /// A black tile with the same kinds of sums.
+    fn tile(&self, area: PixelBounds) -> Result<FilmTile> {
+        FilmTile::of_kinds(area, self.kinds())
     }
 
     /// The bytes of a film for these settings, with those that are needed at the same time to develop and encode its picture:
-    /// an estimate, from the sums of a pixel and from what was measured for the rest (docs/benchmarks/memory.md).
+    /// an estimate, by what was measured (docs/benchmarks/memory.md).
     pub fn memory(image: &ImageSettings) -> u64 {
-        const DEVELOPED: usize = 32;
-        const LAYERS_DEVELOPED: usize = 80;
-        const DENOISER: usize = 180;
+        /// Of a pixel of the film's area.
+        const LIGHT: u64 = 60;
+        const LAYERS: u64 = 150;
+        const FEATURES: u64 = 65;
+        const DENOISER: u64 = 10;
+        const ALPHA: u64 = 20;
+        const LIGHT_PATHS: u64 = 30;
+        /// Of a pixel of the picture, in which a crop has its place.
+        const DEVELOPED: u64 = 30;
+        const OPACITY: u64 = 6;
         let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
         let PixelBounds { x0, y0, x1, y1 } = common(whole, image.crop.unwrap_or(whole));
         let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
-        let mut bytes = size_of::<Pixel>() + DEVELOPED;
-        if image.layers != Layers::None {
-            bytes += size_of::<aov::LayerSums>() + LAYERS_DEVELOPED;
-        }
-        if image.denoise {
-            bytes += size_of::<aov::AovSums>() + DENOISER;
-        }
-        if image.background != Background::Environment {
-            bytes += 2 * size_of::<u128>() + size_of::<f32>();
-        }
-        bytes += image.light_paths.len() * 2 * size_of::<light_paths::LightPathSums>();
-        pixels.saturating_mul(bytes as u64)
+        let if_any = |has: bool, bytes: u64| if has { bytes } else { 0 };
+        let has_alpha = image.background != Background::Environment;
+        let summed = LIGHT
+            + if_any(image.layers != Layers::None, LAYERS)
+            + if_any(image.denoise, FEATURES + DENOISER)
+            + if_any(has_alpha, ALPHA)
+            + image.light_paths.len() as u64 * LIGHT_PATHS;
+        let developed = DEVELOPED + if_any(has_alpha, OPACITY);
+        let picture = u64::from(image.width) * u64::from(image.height);
+        pixels.saturating_mul(summed).saturating_add(picture.saturating_mul(developed))
     }
 
     /// Columns of the picture.
@@ -181,7 +250,7 @@ impl Film {
 
     /// The part of the picture that is held.
     pub fn area(&self) -> PixelBounds {
-        self.tile.area
+        self.area
     }
 
     /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does; it is not recorded in the ledger.
@@ -189,7 +258,12 @@ impl Film {
     /// # Panics
     /// If the pixel is outside of [`Film::area`].
     pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
-        self.tile.add(x, y, sample, rgb);
+        let area = PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+        let mut tile = FilmTile::of_kinds(area, self.kinds()).expect("memory for a pixel");
+        tile.add(x, y, sample, rgb);
+        if let Err(error) = self.add_tile(&tile) {
+            panic!("{error}");
+        }
     }
 
     /// Adds the sums of a tile, which is within [`Film::area`].
@@ -197,7 +271,62 @@ impl Film {
     /// # Errors
     /// As [`Film::merge`].
     pub fn add_tile(&mut self, tile: &FilmTile) -> Result<()> {
-        self.tile.merge(tile)
+        let area = tile.area;
+        self.check_same(area, tile.kinds)?;
+        self.ledger.merge(&tile.ledger).map_err(|overlap| twice(&overlap))?;
+        let columns = area.x1.saturating_sub(area.x0) as usize;
+        let index = |x: u32, y: u32| (y - area.y0) as usize * columns + (x - area.x0) as usize;
+        self.pixels.change(area, |x, y, sums| sums.merge(&tile.pixels[index(x, y)]));
+        self.alphas.change(area, |x, y, sum| *sum = sum.wrapping_add(tile.alphas[index(x, y)]));
+        self.alpha_squares
+            .change(area, |x, y, sum| *sum = sum.saturating_add(tile.alpha_squares[index(x, y)]));
+        self.layers.change(area, |x, y, sums| sums.merge(&tile.layers[index(x, y)]));
+        self.channels.change(area, |x, y, sums| sums.merge(&tile.channels[index(x, y)]));
+        self.features.change(area, |x, y, sums| sums.merge(&tile.features[index(x, y)]));
+        for (mine, theirs) in self.light_paths.iter_mut().zip(&tile.light_paths) {
+            mine.change(area, |x, y, sums| sums.merge(&theirs[index(x, y)]));
+        }
+        self.drop_samples(tile.dropped, tile.first_dropped);
+        Ok(())
+    }
+
+    /// Whether sums of an area can be added.
+    fn check_same(&self, area: PixelBounds, kinds: Kinds) -> Result<()> {
+        let PixelBounds { x0, y0, x1, y1 } = area;
+        if x0 >= x1 || y0 >= y1 {
+            return Ok(());
+        }
+        if common(self.area, area) != area {
+            let mine = self.area;
+            return Err(invalid(format!(
+                "pixels {x0},{y0},{x1},{y1} cannot be added to a film of the pixels {},{},{},{}",
+                mine.x0, mine.y0, mine.x1, mine.y1
+            )));
+        }
+        match kinds == self.kinds() {
+            true => Ok(()),
+            false => Err(invalid(format!("a film of {kinds} cannot be added to one of {}", self.kinds()))),
+        }
+    }
+
+    /// Image settings for which [`Film::memory`] tells that of this film.
+    pub(crate) fn settings(&self) -> ImageSettings {
+        let kinds = self.kinds();
+        ImageSettings {
+            width: self.width,
+            height: self.height,
+            crop: Some(self.area),
+            layers: if kinds.layers { Layers::Geometry } else { Layers::None },
+            denoise: kinds.features,
+            light_paths: vec![LightPathLayer::default(); kinds.light_paths],
+            background: if kinds.alphas { Background::Transparent } else { Background::Environment },
+            ..ImageSettings::default()
+        }
+    }
+
+    fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {
+        self.dropped = self.dropped.saturating_add(count);
+        self.first_dropped = self.first_dropped.into_iter().chain(first).min();
     }
 
     /// Adds the sums of another film of the same picture: other samples, or other pixels.
@@ -214,29 +343,39 @@ impl Film {
             return Err(Error::invalid(&Location::default(), message)
                 .hint("merge only renders of the same scene at the same size"));
         }
-        self.add_tile(&other.tile)
+        self.check_same(other.area, other.kinds())?;
+        self.ledger.merge(&other.ledger).map_err(|overlap| twice(&overlap))?;
+        self.pixels.merge(&other.pixels, Pixel::merge);
+        self.alphas.merge(&other.alphas, |sum, add| *sum = sum.wrapping_add(*add));
+        self.alpha_squares.merge(&other.alpha_squares, |sum, add| *sum = sum.saturating_add(*add));
+        self.layers.merge(&other.layers, LayerSums::merge);
+        self.channels.merge(&other.channels, ChannelSums::merge);
+        self.features.merge(&other.features, AovSums::merge);
+        for (mine, theirs) in self.light_paths.iter_mut().zip(&other.light_paths) {
+            mine.merge(theirs, LightPathSums::merge);
+        }
+        self.drop_samples(other.dropped, other.first_dropped);
+        Ok(())
     }
 
     /// Which samples of which pixels it holds.
     pub fn ledger(&self) -> &SampleLedger {
-        &self.tile.ledger
+        &self.ledger
     }
 
     pub(crate) fn set_dropped(&mut self, count: u64, first: Option<SampleId>) {
-        (self.tile.dropped, self.tile.first_dropped) = (count, first);
+        (self.dropped, self.first_dropped) = (count, first);
     }
 
-    /// Makes room for all pixels of an area, which contains its own.
-    ///
-    /// # Errors
-    /// `Limit` if there is no memory for it; then nothing has changed.
-    pub fn enlarge(&mut self, area: PixelBounds) -> Result<()> {
-        if area != self.area() {
-            let mut enlarged = self.tile.empty_like(area)?;
-            enlarged.merge(&self.tile)?;
-            self.tile = enlarged;
-        }
-        Ok(())
+    /// Makes an area, which contains its own and is within the picture, that of the film.
+    pub fn enlarge(&mut self, area: PixelBounds) {
+        self.area =
+            union(self.area, common(area, PixelBounds { x0: 0, y0: 0, x1: self.width, y1: self.height }));
+    }
+
+    /// Forgets the sums of rows, of which nothing is wanted any more, as far as whole blocks end within them.
+    pub(crate) fn forget(&mut self, rows: &Range<u32>) {
+        for_each_plane!([&mut] self, plane, _prefix => plane.forget(rows));
     }
 
     /// Whether it is as [`Film::for_image`] makes it: of these pixels, with these kinds of sums.
@@ -250,13 +389,19 @@ impl Film {
     }
 
     pub(crate) fn ledger_mut(&mut self) -> &mut SampleLedger {
-        &mut self.tile.ledger
+        &mut self.ledger
     }
 
     /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.
     /// Black where there are none, and outside of [`Film::area`].
     pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
-        self.tile.pixel(x, y).map_or([0.0; 3], Pixel::mean)
+        self.pixel(x, y).map_or([0.0; 3], |pixel| pixel.mean())
+    }
+
+    /// The mean of a pixel composited by its alpha over a background, as [`Picture::before`] does.
+    pub fn mean_before(&self, x: u32, y: u32, background: [f32; 3]) -> [f32; 3] {
+        let mean = self.mean(x, y);
+        self.alpha(x, y).map_or(mean, |alpha| composited(mean, alpha, background))
     }
 
     /// The unbiased estimate of the variance of *one* sample of a pixel in X, Y and Z (CIE 1931, see [`xyz`]; the
@@ -264,51 +409,47 @@ impl Film {
     /// that of stratified ones is less. Infinite with fewer than two samples, and outside of [`Film::area`]. The sum of
     /// squares saturates at 2⁸⁰.
     pub fn variance(&self, x: u32, y: u32) -> [f32; 3] {
-        self.tile
-            .pixel(x, y)
-            .map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
+        self.pixel(x, y).map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
     }
 
     /// The variance of *one* sample of a pixel in the channels of the sensor, estimated like [`Film::variance`]; `None`
     /// where the film has no memory for it (no AOVs, or a sensor that measures X, Y and Z), and outside of
     /// [`Film::area`].
     pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
-        self.tile.channels.get(self.tile.index(x, y)?).map(ChannelSums::variance)
+        self.sums_of(&self.channels, x, y).map(|sums| sums.variance())
     }
 
     /// The mean AOVs of a pixel: the albedo over all samples (a miss is black), all others over the samples with a hit.
     /// `None` where the film has no memory for them, where no sample hit anything, and outside of [`Film::area`].
     pub fn aovs(&self, x: u32, y: u32) -> Option<Aovs> {
-        self.tile.layers.get(self.tile.index(x, y)?)?.mean()
+        self.sums_of(&self.layers, x, y)?.mean()
     }
 
     /// The mean light of a pixel in each layer of light-path expressions; black outside of [`Film::area`].
     pub fn light_paths(&self, x: u32, y: u32) -> impl Iterator<Item = [f32; 3]> {
-        let (index, samples) = (self.tile.index(x, y), self.samples(x, y));
-        self.tile
-            .light_paths
+        let samples = self.samples(x, y);
+        self.light_paths
             .iter()
-            .map(move |layer| index.map_or([0.0; 3], |index| layer[index].mean(samples)))
+            .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
     }
 
     /// Whether the film has AOVs.
     pub fn has_layers(&self) -> bool {
-        self.tile.has_layers()
+        !self.layers.is_empty()
     }
 
     /// The denoiser features of a pixel; `None` where the film has no memory for them or no samples, and outside of
     /// [`Film::area`].
     pub fn denoiser_features(&self, x: u32, y: u32) -> Option<DenoiserFeatures> {
-        self.tile.features.get(self.tile.index(x, y)?)?.features()
+        self.sums_of(&self.features, x, y)?.features()
     }
 
     /// The variance of the alpha of *one* sample of a pixel, estimated like [`Film::variance`]. 0 where the film has no
     /// alpha or is not made for the denoiser, and outside of [`Film::area`].
     pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
-        let FilmTile { pixels, alphas, alpha_squares, .. } = &self.tile;
-        let Some(index) = self.tile.index(x, y) else { return 0.0 };
-        let (Some(&sum), Some(&squares)) = (alphas.get(index), alpha_squares.get(index)) else { return 0.0 };
-        let samples = pixels[index].samples;
+        let sums = self.sums_of(&self.alphas, x, y).zip(self.sums_of(&self.alpha_squares, x, y));
+        let Some((sum, squares)) = sums else { return 0.0 };
+        let samples = self.samples(x, y);
         if samples < 2 {
             return f32::INFINITY;
         }
@@ -318,17 +459,17 @@ impl Film {
 
     /// Number of samples of a pixel, without those that were dropped.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
-        self.tile.pixel(x, y).map_or(0, |pixel| pixel.samples)
+        self.pixel(x, y).map_or(0, |pixel| pixel.samples)
     }
 
     /// Number of samples that were dropped because they were not finite.
     pub fn dropped(&self) -> u64 {
-        self.tile.dropped
+        self.dropped
     }
 
     /// The least id of a dropped sample, which replays it: the same whatever the order of the work.
     pub fn first_dropped(&self) -> Option<SampleId> {
-        self.tile.first_dropped
+        self.first_dropped
     }
 
     /// The means of all pixels, black outside of [`Film::area`].
@@ -340,30 +481,55 @@ impl Film {
     pub fn picture_of(&self, part: PixelBounds) -> Picture {
         let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
         let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
-        let PixelBounds { x0, y0, x1, y1 } = common(part, self.tile.area);
+        let PixelBounds { x0, y0, x1, y1 } = common(part, self.area);
         for y in y0..y1 {
             let start = (y - part.y0) as usize * width as usize;
             let row = &mut pixels[start + (x0 - part.x0) as usize..start + (x1 - part.x0) as usize];
-            for (mean, pixel) in row.iter_mut().zip(&self.tile.pixels[self.tile.row(y, x0, x1)]) {
-                *mean = pixel.mean();
-            }
+            let mut means = row.iter_mut();
+            self.pixels.row(y, x0, x1, |pixel| {
+                if let Some(mean) = means.next() {
+                    *mean = pixel.mean();
+                }
+            });
         }
-        Picture { width, height, pixels, alpha: self.alpha(part) }
+        Picture { width, height, pixels, alpha: self.alpha_of(part) }
     }
 
     /// Alpha of the pixels of a rectangle; empty where the film has none.
-    fn alpha(&self, part: PixelBounds) -> Vec<f32> {
-        let FilmTile { pixels, alphas, .. } = &self.tile;
-        if alphas.is_empty() {
+    fn alpha_of(&self, part: PixelBounds) -> Vec<f32> {
+        if self.alphas.is_empty() {
             return Vec::new();
         }
-        let mean = |index: usize| match pixels[index].samples {
-            0 => 0.0,
-            samples => (alphas[index] as f64 / (samples as f64 * TWO_TO_64)) as f32,
-        };
         let rows = (part.y0..part.y1).flat_map(|y| (part.x0..part.x1).map(move |x| (x, y)));
-        rows.map(|(x, y)| self.tile.index(x, y).map_or(0.0, mean)).collect()
+        rows.filter_map(|(x, y)| self.alpha(x, y)).collect()
     }
+
+    /// The mean alpha of a pixel, 0 without samples; `None` if the film has no alpha.
+    pub(crate) fn alpha(&self, x: u32, y: u32) -> Option<f32> {
+        let mean = match (self.samples(x, y), self.sums_of(&self.alphas, x, y)) {
+            (0, _) | (_, None) => 0.0,
+            (samples, Some(sum)) => (sum as f64 / (samples as f64 * TWO_TO_64)) as f32,
+        };
+        (!self.alphas.is_empty()).then_some(mean)
+    }
+
+    /// The sums of a pixel; `None` outside of [`Film::area`].
+    fn pixel(&self, x: u32, y: u32) -> Option<Pixel> {
+        self.sums_of(&self.pixels, x, y)
+    }
+
+    /// Sums of a kind of a pixel; `None` where there are none, and outside of [`Film::area`].
+    fn sums_of<T: Stored + Copy + Default + PartialEq>(&self, plane: &Plane<T>, x: u32, y: u32) -> Option<T> {
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
+        let is_inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
+        if is_inside { plane.get(x, y) } else { None }
+    }
+}
+
+/// Light, premultiplied by alpha, over a background.
+pub(crate) fn composited(light: [f32; 3], alpha: f32, background: [f32; 3]) -> [f32; 3] {
+    let share = 1.0 - alpha.clamp(0.0, 1.0);
+    std::array::from_fn(|c| light[c] + share * background[c])
 }
 
 /// The intersection of two rectangles; if it is empty, the empty rectangle at the origin.
@@ -382,9 +548,23 @@ pub(crate) fn union(a: PixelBounds, b: PixelBounds) -> PixelBounds {
     PixelBounds { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) }
 }
 
+fn invalid(message: String) -> Error {
+    Error::invalid(&Location::default(), message)
+        .hint("merge only renders of the same scene, of the same size and with the same layers")
+}
+
+fn twice(Overlap { pixel: [x, y], samples }: &Overlap) -> Error {
+    let Range { start, end } = samples;
+    Error::invalid(
+        &Location::default(),
+        format!("samples {start}..{end} of pixel {x} {y} would be there twice"),
+    )
+    .hint("merge every part once")
+}
+
 fn too_large(message: String) -> Error {
     Error::new(ErrorKind::Limit, &Location::default(), message)
-        .hint("make the picture smaller, or render it in several crops of a smaller one")
+        .hint("make the picture smaller, or render it in several crops, which `lookfrom merge` adds up")
 }
 
 #[cfg(test)]

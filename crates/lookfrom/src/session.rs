@@ -16,6 +16,7 @@
 mod encode;
 mod exposure;
 mod film_file;
+mod film_parts;
 mod finish;
 mod header;
 mod identity;
@@ -58,6 +59,7 @@ use crate::world::World;
 pub use encode::Format;
 pub use exposure::Exposure;
 pub use film_file::FilmFile;
+pub use film_parts::FilmParts;
 pub use finish::{Developed, Development, Finished};
 use identity::Identity;
 pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
@@ -466,7 +468,8 @@ impl Session {
     pub fn encode_preview(&self, picture: &Picture, mean_samples: u64, format: Format) -> Result<Vec<u8>> {
         let (samples, mean) = (self.settings().samples.to_string(), mean_samples.to_string());
         let header = header::with_samples(&header::header(self), samples, Some(mean));
-        encode::encode(format, picture, &[], &self.development(), &header)
+        let (layers, development) = (layers::Layers::Given(&[]), self.development());
+        encode::bytes(|out| encode::write(format, picture, &layers, &development, &header, out))
     }
 
     /// Whether the picture's format, if it is known, can hold AOVs.

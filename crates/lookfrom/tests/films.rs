@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lookfrom::film::Film;
 use lookfrom::render::{Progress, StopCriteria, TileDone};
-use lookfrom::session::{Exposure, FilmFile, Finished, Fireflies, Format, Options, Session};
+use lookfrom::session::{Exposure, FilmFile, FilmParts, Finished, Fireflies, Format, Options, Session};
 use lookfrom_scene::settings::{
     Allocation, Background, ColorMode, Integrator, Layers, LightPathLayer, PixelBounds,
 };
-use lookfrom_scene::{Budget, ErrorKind, Location};
+use lookfrom_scene::{Budget, ErrorKind, Location, Memory};
 
 const SCENE: &[u8] = br#"
 [camera]
@@ -69,6 +69,51 @@ fn rendered(options: &Options, threads: usize) -> Vec<u8> {
 
 fn read(bytes: &[u8]) -> FilmFile {
     FilmFile::read(bytes, Path::new("film.exr"), &Budget::default()).expect("a film")
+}
+
+#[test]
+fn crops_are_merged_in_bands_of_rows_to_the_film_of_one_render() {
+    const WIDTH: u32 = 23;
+    const HEIGHT: u32 = 1500;
+    for layers in [Layers::None, Layers::Geometry] {
+        let options = Options {
+            width: Some(WIDTH),
+            height: Some(HEIGHT),
+            samples: Some(2),
+            layers: Some(layers),
+            background: Some(if layers == Layers::None {
+                Background::Environment
+            } else {
+                Background::Transparent
+            }),
+            denoise: Some(false),
+            ..Options::default()
+        };
+        let whole = rendered(&options, 2);
+        // Rows, of which some are of two crops; blocks of 32 rows have pixels of several parts.
+        let crops = [(0, 0, WIDTH, 419), (0, 419, 9, 911), (9, 419, WIDTH, 911), (0, 911, WIDTH, HEIGHT)];
+        let crops = crops.map(|(x0, y0, x1, y1)| PixelBounds { x0, y0, x1, y1 });
+        let films = crops.map(|crop| rendered(&Options { crop: Some(crop), ..options.clone() }, 1));
+        let paths = ["0.exr", "1.exr", "2.exr", "3.exr"].map(Path::new);
+        let files = Memory(paths.into_iter().map(Path::to_owned).zip(films.iter().cloned()).collect());
+        let budget = Budget::new(500 << 20);
+        let mut parts = FilmParts::new(&files, &budget);
+        for path in [3, 1, 0, 2].map(|index| paths[index]) {
+            parts.add(path, |_| ()).expect("of the same picture");
+        }
+        assert!(parts.are_bands(), "{layers:?}");
+        let mut out = Cursor::new(Vec::new());
+        parts.write(|provenance, _| provenance.clone(), &mut out).expect("memory");
+        assert!(out.get_ref() == &merged(&films.each_ref().map(Vec::as_slice)), "{layers:?}");
+        let (of_one, of_parts) = (read(&whole), read(out.get_ref()));
+        assert!(of_one.film == of_parts.film, "{layers:?}");
+        let development = of_one.provenance.development;
+        let developed = parts.develop(&development).expect("a plain picture");
+        assert_eq!(developed.picture, of_one.develop(&development).picture);
+        // The same pixels twice.
+        let error = parts.add(paths[1], |_| ()).expect_err("samples that are there");
+        assert!(error.message.contains("samples 0..2 of pixel 0 419"), "{error}");
+    }
 }
 
 /// The file of the sum of films, in this order.

@@ -17,8 +17,8 @@ fn a_film_that_does_not_fit_is_refused_before_it_is_allocated() {
         ],
     );
     assert!(!run.stderr.contains("damaged"), "{}", run.stderr);
-    let run = stage.run("render scene.toml -q -o a.png --size 20000 --samples 1");
-    run.fails(2, &["at most 268435456 pixels", "window"]);
+    let run = stage.run("render scene.toml -q -o a.png --size 40000 --samples 1");
+    run.fails(2, &["at most 1073741824 pixels", "window"]);
     stage.done("render scene.toml -q -o a.png --size 400 --samples 1 --memory 200MB");
 }
 

@@ -25,8 +25,8 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 
 pub(super) use colors::decode_rgb;
-pub use rows::ExrRows;
-pub use write::{ExrChannel, ExrHeader, encode_exr, write_exr};
+pub use rows::{ExrRowStream, ExrRows};
+pub use write::{ExrChannel, ExrFill, ExrHeader, encode_exr, write_exr};
 
 /// The signature of an OpenEXR file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];

@@ -1,6 +1,6 @@
 //! Image writers: PNG, JPEG, WebP and PPM for display, and HDR and PFM for linear light. EXR is in `openexr`.
 
-use std::io::Cursor;
+use std::io::Write;
 
 use ::image::codecs::hdr::HdrEncoder;
 use ::image::codecs::jpeg::JpegEncoder;
@@ -83,14 +83,26 @@ pub fn encode_png_with_alpha(width: u32, height: u32, rgba: &[u8]) -> Result<Vec
 /// # Errors
 /// `Invalid` if there are not as many pixels as `size` (width and height) says.
 pub fn encode_png_of(size: [u32; 2], pixels: Pixels, metadata: Option<&Metadata>) -> Result<Vec<u8>> {
-    let mut bytes = Cursor::new(Vec::new());
+    let mut bytes = Vec::new();
+    write_png(size, pixels, metadata, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Writes the PNG that [`encode_png_of`] makes.
+///
+/// # Errors
+/// As [`encode_png_of`], and `Io` where `out` fails.
+pub fn write_png(
+    size: [u32; 2],
+    pixels: Pixels,
+    metadata: Option<&Metadata>,
+    out: &mut impl Write,
+) -> Result<()> {
     pixels.encode(size, |samples, color| {
-        let mut encoder =
-            PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
+        let mut encoder = PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive);
         Metadata::tell(metadata, &mut encoder)?;
         encoder.write_image(samples, size[0], size[1], color)
-    })?;
-    Ok(bytes.into_inner())
+    })
 }
 
 /// The bytes of a JPEG (baseline, colours at full resolution) of a quality of 1 (small) to 100, and what is told of it. The same
@@ -104,14 +116,28 @@ pub fn encode_jpeg(
     quality: u8,
     metadata: Option<&Metadata>,
 ) -> Result<Vec<u8>> {
-    check_side("JPEG", width.max(height), 65_535)?;
     let mut bytes = Vec::new();
+    write_jpeg([width, height], rgb, quality, metadata, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Writes the JPEG that [`encode_jpeg`] makes.
+///
+/// # Errors
+/// As [`encode_jpeg`], and `Io` where `out` fails.
+pub fn write_jpeg(
+    [width, height]: [u32; 2],
+    rgb: &[u8],
+    quality: u8,
+    metadata: Option<&Metadata>,
+    out: &mut impl Write,
+) -> Result<()> {
+    check_side("JPEG", width.max(height), 65_535)?;
     Pixels::Rgb8(rgb).encode([width, height], |samples, color| {
-        let mut encoder = JpegEncoder::new_with_quality(&mut bytes, quality.clamp(1, 100));
+        let mut encoder = JpegEncoder::new_with_quality(out, quality.clamp(1, 100));
         Metadata::tell(metadata, &mut encoder)?;
         encoder.write_image(samples, width, height, color)
-    })?;
-    Ok(bytes)
+    })
 }
 
 /// The bytes of a WebP without loss, of 8 bits a channel, and what is told of it. The same input gives the same bytes.
@@ -120,14 +146,27 @@ pub fn encode_jpeg(
 /// `Invalid` if there are not as many pixels as `size` (width and height) says, or a side is longer than the 16,384 pixels that the format
 /// has.
 pub fn encode_webp(size: [u32; 2], pixels: Pixels, metadata: Option<&Metadata>) -> Result<Vec<u8>> {
-    check_side("WebP", size[0].max(size[1]), 16_384)?;
     let mut bytes = Vec::new();
+    write_webp(size, pixels, metadata, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Writes the WebP that [`encode_webp`] makes.
+///
+/// # Errors
+/// As [`encode_webp`], and `Io` where `out` fails.
+pub fn write_webp(
+    size: [u32; 2],
+    pixels: Pixels,
+    metadata: Option<&Metadata>,
+    out: &mut impl Write,
+) -> Result<()> {
+    check_side("WebP", size[0].max(size[1]), 16_384)?;
     pixels.encode(size, |samples, color| {
-        let mut encoder = WebPEncoder::new_lossless(&mut bytes);
+        let mut encoder = WebPEncoder::new_lossless(out);
         Metadata::tell(metadata, &mut encoder)?;
         encoder.write_image(samples, size[0], size[1], color)
-    })?;
-    Ok(bytes)
+    })
 }
 
 /// The bytes of a binary PPM (P6) of 8-bit sRGB colours, row 0 on top.

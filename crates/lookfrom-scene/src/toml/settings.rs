@@ -5,7 +5,7 @@ use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
     Allocation, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
-    PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
+    MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -42,9 +42,6 @@ pub(super) const RENDER: &[&str] = &[
     "regularize",
     "occlusion_distance",
 ];
-
-/// Maximum number of pixels of an image.
-const MOST_PIXELS: u64 = 1 << 28;
 
 /// Resolution, filter, sensor and tone mapping.
 pub(super) fn image(table: &Table<'_>) -> ImageSettings {

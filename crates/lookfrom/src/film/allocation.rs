@@ -59,8 +59,11 @@ impl Film {
         let area = self.area();
         let (width, height) = ((area.x1 - area.x0) as usize, (area.y1 - area.y0) as usize);
         let own = parallel::collect(height, |row| {
-            let pixels = &self.tile.pixels[row * width..][..width];
-            pixels.iter().map(Pixel::variance_and_luminance).collect::<Vec<_>>()
+            let mut of_row = Vec::with_capacity(width);
+            self.pixels.row(area.y0 + row as u32, area.x0, area.x1, |pixel| {
+                of_row.push(pixel.variance_and_luminance());
+            });
+            of_row
         });
         let floor = SHARE_OF_MEAN * self.mean_luminance().abs();
         let near = |at: usize, end: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(end);

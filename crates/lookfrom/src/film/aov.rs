@@ -2,8 +2,8 @@
 //!
 //! One accumulator for two readers. The AOVs of a picture are means over all samples; the denoiser compares means over
 //! the first [`FEATURE_SAMPLES`], so that its result does not depend on whether AOVs are written. Sums of fixed-point
-//! numbers, as those of light, do not depend on the order of the samples. The denoiser's take 96 bytes per pixel, those
-//! of AOVs 208.
+//! numbers, as those of light, do not depend on the order of the samples. In a tile the denoiser's take 96 bytes per pixel,
+//! those of AOVs 208.
 
 use super::pixel::{TWO_TO_64, fixed_point};
 use super::stored::{Named, Stored, channels_of, store_fields};
@@ -93,6 +93,24 @@ impl Stored for LayerSums {
 
     fn load(take: &mut impl FnMut() -> u32) -> Self {
         Self { shared: Stored::load(take), ng: Stored::load(take), places: Stored::load(take) }
+    }
+
+    const NUMBERS: usize = AovSums::NUMBERS + <[i64; 3]>::NUMBERS + <[i128; 5]>::NUMBERS;
+
+    #[inline(always)]
+    fn put_numbers(&self, put: &mut impl FnMut(i128)) {
+        self.shared.put_numbers(put);
+        self.ng.put_numbers(put);
+        self.places.put_numbers(put);
+    }
+
+    #[inline(always)]
+    fn take_numbers(take: &mut impl FnMut() -> i128) -> Self {
+        Self {
+            shared: Stored::take_numbers(take),
+            ng: Stored::take_numbers(take),
+            places: Stored::take_numbers(take),
+        }
     }
 }
 

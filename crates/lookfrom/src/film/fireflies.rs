@@ -10,6 +10,8 @@
 //! known better is half as bright: edges, lamps and highlights have such neighbours. Thus nothing is taken for a firefly
 //! in a picture that converges. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
+use std::collections::VecDeque;
+
 use super::{Film, Picture};
 use lookfrom_scene::settings::PixelBounds;
 
@@ -59,9 +61,12 @@ impl Film {
         let mut picture = self.picture();
         let area = self.area();
         let width = self.width as usize;
-        let mut spread = vec![[0.0_f64; 3]; picture.pixels.len()];
-        for y in area.y0..area.y1 {
-            for x in area.x0..area.x1 {
+        // The light that rows get, from row `y - RADIUS` on.
+        let mut spread: VecDeque<Vec<[f64; 3]>> = VecDeque::new();
+        for y in area.y0..area.y1 + RADIUS {
+            let first = y.saturating_sub(RADIUS);
+            spread.resize((y + RADIUS + 1 - first) as usize, vec![[0.0; 3]; width]);
+            for x in if y < area.y1 { area.x0..area.x1 } else { 0..0 } {
                 let kept = self.kept(x, y);
                 if kept >= 1.0 {
                     continue;
@@ -73,17 +78,23 @@ impl Film {
                 let share = 1.0 / (f64::from(around.x1 - around.x0) * f64::from(around.y1 - around.y0));
                 for y in around.y0..around.y1 {
                     for x in around.x0..around.x1 {
-                        let sums = &mut spread[y as usize * width + x as usize];
+                        let sums = &mut spread[(y - first) as usize][x as usize];
                         for (sum, excess) in sums.iter_mut().zip(excess) {
                             *sum += excess * share;
                         }
                     }
                 }
             }
-        }
-        for (light, spread) in picture.pixels.iter_mut().zip(spread) {
-            for (light, spread) in light.iter_mut().zip(spread) {
-                *light = (f64::from(*light) + spread) as f32;
+            // No later row reaches the first one.
+            if y >= RADIUS
+                && let Some(spread) = spread.pop_front()
+            {
+                let row = &mut picture.pixels[first as usize * width..][..width];
+                for (light, spread) in row.iter_mut().zip(spread) {
+                    for (light, spread) in light.iter_mut().zip(spread) {
+                        *light = (f64::from(*light) + spread) as f32;
+                    }
+                }
             }
         }
         picture
@@ -96,7 +107,7 @@ impl Film {
 
     /// The luminance of a firefly, and the median of its neighbours; `None` for other pixels.
     fn outlier(&self, x: u32, y: u32) -> Option<[f64; 2]> {
-        let at = |x, y| self.tile.pixel(x, y).map(|pixel| (pixel.luminance(), pixel.standard_error()));
+        let at = |x, y| self.pixel(x, y).map(|pixel| (pixel.luminance(), pixel.standard_error()));
         let (own, own_error) = at(x, y)?;
         // Few pixels are carried by few samples: only these are compared with others.
         if !(own > 0.0 && own_error > CARRIED_BY_FEW * own) {

@@ -13,24 +13,28 @@ pub(super) const SHARE_OF_MEAN: f64 = 0.1;
 impl Film {
     /// The mean luminance over [`Film::area`]; 0 for an empty one.
     pub fn mean_luminance(&self) -> f64 {
-        let pixels = &self.tile.pixels;
-        let sum: f64 = pixels.iter().map(Pixel::luminance).sum();
-        if pixels.is_empty() { 0.0 } else { sum / pixels.len() as f64 }
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
+        let mut sum = 0.0;
+        for y in y0..y1 {
+            self.pixels.row(y, x0, x1, |pixel| sum += pixel.luminance());
+        }
+        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        if pixels == 0 { 0.0 } else { sum / pixels as f64 }
     }
 
     /// The relative error of a part of the picture (pixels outside of [`Film::area`] are left out), where the mean
     /// luminance of the whole is `mean`: see the head of this file. Infinite if a pixel has fewer than two samples, 0
     /// for an empty area or a black picture.
     pub fn relative_error(&self, area: PixelBounds, mean: f64) -> f64 {
-        let PixelBounds { x0, y0, x1, y1 } = super::common(self.tile.area, area);
+        let PixelBounds { x0, y0, x1, y1 } = super::common(self.area, area);
         let mut sum = 0.0;
         for y in y0..y1 {
-            for pixel in &self.tile.pixels[self.tile.row(y, x0, x1)] {
+            self.pixels.row(y, x0, x1, |pixel| {
                 let error = pixel.standard_error();
                 if error > 0.0 {
                     sum += error / (pixel.luminance().abs() + SHARE_OF_MEAN * mean.abs());
                 }
-            }
+            });
         }
         let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
         if pixels == 0 { 0.0 } else { sum / pixels as f64 }

@@ -4,9 +4,11 @@
 //! `film.sum.R.3` the highest, in two's complement. The names of all channels are in [`Film::stored_channels`]; what the
 //! numbers mean is said at the fields of the sums.
 
+use lookfrom_scene::Result;
 use lookfrom_scene::settings::PixelBounds;
 
-use super::{Film, Pixel};
+use super::plane::{Plane, SIDE};
+use super::{Film, FilmTile, Pixel};
 
 /// A number, or several, that are stored as words, the lowest first.
 pub(super) trait Stored: Sized {
@@ -18,10 +20,19 @@ pub(super) trait Stored: Sized {
 
     /// The inverse of [`Stored::store`].
     fn load(take: &mut impl FnMut() -> u32) -> Self;
+
+    /// Number of numbers.
+    const NUMBERS: usize;
+
+    /// Passes the numbers on, each as one whose upper bits repeat its highest.
+    fn put_numbers(&self, put: &mut impl FnMut(i128));
+
+    /// The inverse of [`Stored::put_numbers`].
+    fn take_numbers(take: &mut impl FnMut() -> i128) -> Self;
 }
 
 macro_rules! store_integers {
-    ($($integer:ty),*) => {$(
+    ($($integer:ty: $signed:ty),*) => {$(
         impl Stored for $integer {
             const WORDS: usize = size_of::<$integer>() / 4;
 
@@ -34,11 +45,23 @@ macro_rules! store_integers {
                 bytes.chunks_exact_mut(4).for_each(|word| word.copy_from_slice(&take().to_le_bytes()));
                 Self::from_le_bytes(bytes)
             }
+
+            const NUMBERS: usize = 1;
+
+            #[inline(always)]
+            fn put_numbers(&self, put: &mut impl FnMut(i128)) {
+                put(*self as $signed as i128);
+            }
+
+            #[inline(always)]
+            fn take_numbers(take: &mut impl FnMut() -> i128) -> Self {
+                take() as $integer
+            }
         }
     )*};
 }
 
-store_integers!(u32, u64, i64, u128, i128);
+store_integers!(u32: i32, u64: i64, i64: i64, u128: i128, i128: i128);
 
 impl<T: Stored, const N: usize> Stored for [T; N] {
     const WORDS: usize = N * T::WORDS;
@@ -49,6 +72,18 @@ impl<T: Stored, const N: usize> Stored for [T; N] {
 
     fn load(take: &mut impl FnMut() -> u32) -> Self {
         std::array::from_fn(|_| T::load(take))
+    }
+
+    const NUMBERS: usize = N * T::NUMBERS;
+
+    #[inline(always)]
+    fn put_numbers(&self, put: &mut impl FnMut(i128)) {
+        self.iter().for_each(|number| number.put_numbers(put));
+    }
+
+    #[inline(always)]
+    fn take_numbers(take: &mut impl FnMut() -> i128) -> Self {
+        std::array::from_fn(|_| T::take_numbers(take))
     }
 }
 
@@ -64,6 +99,18 @@ macro_rules! store_fields {
 
             fn load(take: &mut impl FnMut() -> u32) -> Self {
                 Self { $($field: <$kind>::load(take)),* }
+            }
+
+            const NUMBERS: usize = 0 $(+ <$kind>::NUMBERS)*;
+
+            #[inline(always)]
+            fn put_numbers(&self, put: &mut impl FnMut(i128)) {
+                $(self.$field.put_numbers(put);)*
+            }
+
+            #[inline(always)]
+            fn take_numbers(take: &mut impl FnMut() -> i128) -> Self {
+                Self { $($field: <$kind>::take_numbers(take)),* }
             }
         }
 
@@ -96,8 +143,8 @@ store_fields!(Pixel {
     samples: u64 = ["samples"],
 });
 
-/// Evaluates an expression for each kind of sums that a tile may have: with its vector, borrowed by `&` or `&mut`, and
-/// the prefix of its channels.
+/// Evaluates an expression for each kind of sums that a film or tile may have: with all of that kind, borrowed by `&` or `&mut`,
+/// and the prefix of its channels.
 macro_rules! for_each_plane {
     ([$($borrow:tt)+] $tile:expr, $plane:ident, $prefix:ident => $body:expr) => {{
         { let ($plane, $prefix) = ($($borrow)+ $tile.pixels, "film"); $body }
@@ -112,6 +159,8 @@ macro_rules! for_each_plane {
         }
     }};
 }
+
+pub(super) use for_each_plane;
 
 impl Named for i128 {
     fn channels(prefix: &str) -> Vec<String> {
@@ -129,7 +178,7 @@ impl Film {
     /// The names of the channels that hold its sums exactly, each of 32-bit unsigned integers.
     pub fn stored_channels(&self) -> Vec<String> {
         let mut names = Vec::new();
-        for_each_plane!([&] self.tile, plane, prefix => {
+        for_each_plane!([&] self, plane, prefix => {
             if !plane.is_empty() {
                 names.extend(names_of(plane, prefix));
             }
@@ -140,26 +189,68 @@ impl Film {
     /// Writes a row of all channels: the bytes of `width` numbers of the first, in little endian, of the second … Pixels
     /// outside of [`Film::area`] are left as they are.
     pub(crate) fn store_row(&self, row: u32, bytes: &mut [u8]) {
-        let PixelBounds { x0, y0, x1, y1 } = self.tile.area;
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
         if !(y0..y1).contains(&row) {
             return;
         }
-        let pixels = self.tile.row(row, x0, x1);
-        let mut row = Row { bytes, width: self.width as usize, x0: x0 as usize, first: 0 };
-        for_each_plane!([&] self.tile, plane, _prefix => row.store(plane.get(pixels.clone())));
+        let mut to = Row { bytes, width: self.width as usize, first: 0 };
+        for_each_plane!([&] self, plane, _prefix => {
+            if !plane.is_empty() {
+                to.store(x0, |each| plane.row(row, x0, x1, each));
+            }
+        });
+    }
+}
+
+/// Rows of the numbers of a film's file, which are added to a film.
+#[derive(Debug)]
+pub(crate) struct StoredRows<'a> {
+    film: &'a mut Film,
+    /// The pixels of the file's film.
+    area: PixelBounds,
+    /// The rows of a band that have been read.
+    band: FilmTile,
+}
+
+impl<'a> StoredRows<'a> {
+    /// For a film of the same kinds of sums, which has these pixels.
+    ///
+    /// # Errors
+    /// `Limit` if there is no memory for it.
+    pub(crate) fn of(film: &'a mut Film, area: PixelBounds) -> Result<Self> {
+        let band = film.tile(PixelBounds { y1: area.y0, ..area })?;
+        Ok(Self { film, area, band })
     }
 
-    /// Reads what [`Film::store_row`] wrote: `numbers(k)` are those of channel `k`.
-    pub(crate) fn load_row<'a>(&mut self, row: u32, numbers: impl Fn(usize) -> &'a [u32]) {
-        let PixelBounds { x0, y0, x1, y1 } = self.tile.area;
+    /// Adds a row that [`Film::store_row`] wrote, once: `numbers(k)` are those of channel `k`.
+    ///
+    /// # Errors
+    /// `Limit` if there is no memory for it.
+    pub(crate) fn load<'b>(&mut self, row: u32, numbers: impl Fn(usize) -> &'b [u32]) -> Result<()> {
+        let area @ PixelBounds { x0, y0, x1, y1 } = self.area;
         if !(y0..y1).contains(&row) {
-            return;
+            return Ok(());
         }
-        let pixels = self.tile.row(row, x0, x1);
+        if !(self.band.area.y0..self.band.area.y1).contains(&row) {
+            self.flush()?;
+            let top = row / SIDE * SIDE;
+            let band = PixelBounds { y0: top.max(y0), y1: y1.min(top + SIDE), ..area };
+            self.band = self.film.tile(band)?;
+        }
+        let pixels = self.band.row(row, x0, x1);
         let mut first = 0;
-        for_each_plane!([&mut] self.tile, plane, _prefix => {
+        for_each_plane!([&mut] self.band, plane, _prefix => {
             load(plane.get_mut(pixels.clone()), x0 as usize, &mut first, &numbers);
         });
+        Ok(())
+    }
+
+    /// Moves the rows of the band to the film, after the last row and between bands.
+    ///
+    /// # Errors
+    /// None for sums of the same kinds.
+    pub(crate) fn flush(&mut self) -> Result<()> {
+        self.film.add_tile(&self.band)
     }
 }
 
@@ -167,23 +258,23 @@ impl Film {
 struct Row<'a> {
     bytes: &'a mut [u8],
     width: usize,
-    /// The column of the first pixel.
-    x0: usize,
     /// The first channel of the next plane.
     first: usize,
 }
 
 impl Row<'_> {
-    fn store<T: Stored>(&mut self, plane: Option<&[T]>) {
-        let Some(plane) = plane else { return };
-        let Self { bytes, width, x0, first } = self;
-        for (x, sums) in (*x0..).zip(plane) {
+    /// Stores sums, of pixels from column `x0` on, that are told one after the other.
+    fn store<T: Stored>(&mut self, x0: u32, tell: impl FnOnce(&mut dyn FnMut(T))) {
+        let Self { bytes, width, first } = self;
+        let mut x = x0 as usize;
+        tell(&mut |sums| {
             let mut at = (*first * *width + x) * 4;
             sums.store(&mut |word| {
                 bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
                 at += *width * 4;
             });
-        }
+            x += 1;
+        });
         *first += T::WORDS;
     }
 }
@@ -204,6 +295,6 @@ fn load<'a, T: Stored>(
     *first += T::WORDS;
 }
 
-fn names_of<T: Named>(_plane: &[T], prefix: &str) -> Vec<String> {
+fn names_of<T: Named>(_plane: &Plane<T>, prefix: &str) -> Vec<String> {
     T::channels(prefix)
 }

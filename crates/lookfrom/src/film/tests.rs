@@ -143,7 +143,7 @@ proptest! {
             }
         }
         let expected = Pixel { sums: [sum, 0, -sum], squares, samples: count };
-        prop_assert_eq!(film.tile.pixels[0], expected);
+        prop_assert_eq!(film.pixel(0, 0).unwrap(), expected);
         prop_assert_eq!(film.dropped() + count, lights.len() as u64);
         if count > 0 {
             prop_assert_eq!(film.mean(0, 0)[0], (sum as f64 / 2_f64.powi(64) / count as f64) as f32);
@@ -260,7 +260,7 @@ fn a_pixel_outside_of_the_tile_is_a_mistake_of_the_caller() {
 
 #[test]
 fn pixels_take_as_many_bytes_as_documented() {
-    assert_eq!([size_of::<Pixel>(), size_of::<aov::AovSums>(), size_of::<aov::LayerSums>()], [112, 96, 208]);
+    assert_eq!([size_of::<Pixel>(), size_of::<AovSums>(), size_of::<LayerSums>()], [112, 96, 208]);
 }
 
 #[test]
@@ -278,7 +278,7 @@ fn the_variance_of_little_and_of_much() {
     for sample in 0..100 {
         film.add(1, 0, sample, [BRIGHTEST, 1.0, -BRIGHTEST]);
     }
-    assert_eq!(film.tile.pixels[1].squares, [u128::MAX; 3]);
+    assert_eq!(film.pixel(1, 0).unwrap().squares, [u128::MAX; 3]);
     assert!(film.variance(1, 0).iter().all(|variance| variance.is_finite()));
 }
 
@@ -318,7 +318,9 @@ fn layers_are_means_whatever_the_order() {
             film.add_tile(&tile).unwrap();
         }
         // One more sample, whose position is NaN: it counts as a miss.
-        film.tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
+        let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+        tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
+        film.add_tile(&tile).unwrap();
     }
     assert!(films[0] == films[1]);
     let mean = films[0].aovs(0, 0).unwrap();

@@ -1,21 +1,34 @@
 //! Tiles of a film, each filled by one thread.
 
+use std::fmt;
 use std::ops::Range;
 
+use lookfrom_scene::Result;
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
-use lookfrom_scene::{Error, Location, Result};
 
 use super::aov::{AovSums, LayerSums};
 use super::channels::ChannelSums;
-use super::ledger::{Overlap, SampleLedger};
+use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
 use super::pixel::{Pixel, fixed_point, fixed_point_square};
-use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, common, too_large, xyz};
+use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
+
+/// The kinds of sums that a film or tile has besides light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Kinds {
+    pub(super) layers: bool,
+    pub(super) channels: bool,
+    pub(super) features: bool,
+    pub(super) light_paths: usize,
+    pub(super) alphas: bool,
+    pub(super) alpha_squares: bool,
+}
 
 /// The light of a rectangle of a film, for one thread to fill.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilmTile {
     pub(super) area: PixelBounds,
+    pub(super) kinds: Kinds,
     pub(super) pixels: Vec<Pixel>,
     /// One per pixel, or none.
     pub(super) layers: Vec<LayerSums>,
@@ -53,59 +66,39 @@ impl FilmTile {
     /// # Errors
     /// `Limit` as [`FilmTile::new`].
     pub fn for_image(area: PixelBounds, image: &ImageSettings) -> Result<Self> {
+        let has_layers = image.layers == Layers::Geometry;
+        let has_alpha = image.background != Background::Environment;
+        let kinds = Kinds {
+            layers: has_layers,
+            channels: has_layers && !image.sensor.measures_xyz(),
+            features: image.denoise,
+            light_paths: image.light_paths.len(),
+            alphas: has_alpha,
+            alpha_squares: has_alpha && image.denoise,
+        };
+        Self::of_kinds(area, kinds)
+    }
+
+    /// A black tile with sums of these kinds.
+    pub(super) fn of_kinds(area: PixelBounds, kinds: Kinds) -> Result<Self> {
         let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
         if count > MOST_PIXELS {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
         }
-        let pixels = empty(count)?;
-        let layers = match image.layers {
-            Layers::None => Vec::new(),
-            Layers::Geometry => empty(count)?,
-        };
-        let channels = match image.layers {
-            Layers::Geometry if !image.sensor.measures_xyz() => empty(count)?,
-            _ => Vec::new(),
-        };
-        let features = if image.denoise { empty(count)? } else { Vec::new() };
-        let (alphas, alpha_squares) = match image.background {
-            Background::Environment => (Vec::new(), Vec::new()),
-            Background::Color(_) | Background::Transparent => {
-                (empty(count)?, if image.denoise { empty(count)? } else { Vec::new() })
-            }
-        };
-        let light_paths = image.light_paths.iter().map(|_| empty(count)).collect::<Result<_>>()?;
-        let (dropped, first_dropped, ledger) = (0, None, SampleLedger::default());
+        let of = |has: bool| if has { count } else { 0 };
         Ok(Self {
             area,
-            pixels,
-            layers,
-            channels,
-            features,
-            light_paths,
-            alphas,
-            alpha_squares,
-            dropped,
-            first_dropped,
-            ledger,
-        })
-    }
-
-    /// An empty tile of other pixels, with sums of the same kinds.
-    pub(super) fn empty_like(&self, area: PixelBounds) -> Result<Self> {
-        let Self {
-            area: _, pixels: _, layers, channels, features, light_paths, alphas, alpha_squares, ..
-        } = self;
-        let plain = Self::new(area)?;
-        let count = plain.pixels.len() as u64;
-        let of = |is_empty: bool| if is_empty { 0 } else { count };
-        Ok(Self {
-            layers: empty(of(layers.is_empty()))?,
-            channels: empty(of(channels.is_empty()))?,
-            features: empty(of(features.is_empty()))?,
-            light_paths: light_paths.iter().map(|_| empty(count)).collect::<Result<_>>()?,
-            alphas: empty(of(alphas.is_empty()))?,
-            alpha_squares: empty(of(alpha_squares.is_empty()))?,
-            ..plain
+            kinds,
+            pixels: empty(count)?,
+            layers: empty(of(kinds.layers))?,
+            channels: empty(of(kinds.channels))?,
+            features: empty(of(kinds.features))?,
+            light_paths: (0..kinds.light_paths).map(|_| empty(count)).collect::<Result<_>>()?,
+            alphas: empty(of(kinds.alphas))?,
+            alpha_squares: empty(of(kinds.alpha_squares))?,
+            dropped: 0,
+            first_dropped: None,
+            ledger: SampleLedger::default(),
         })
     }
 
@@ -232,69 +225,9 @@ impl FilmTile {
         self.ledger.add(part, samples).map_err(|overlap| twice(&overlap))
     }
 
-    /// Adds the sums of another tile, whose pixels are all within this one.
-    ///
-    /// # Errors
-    /// `Invalid` for other pixels, other kinds of sums, or samples that both have; then nothing has changed.
-    pub(super) fn merge(&mut self, other: &Self) -> Result<()> {
-        let PixelBounds { x0, y0, x1, y1 } = other.area;
-        if x0 < x1 && y0 < y1 && common(self.area, other.area) != other.area {
-            let mine = self.area;
-            return Err(invalid(format!(
-                "pixels {x0},{y0},{x1},{y1} cannot be added to a film of the pixels {},{},{},{}",
-                mine.x0, mine.y0, mine.x1, mine.y1
-            )));
-        }
-        if x0 < x1 && y0 < y1 && !self.pixels.is_empty() && self.kinds() != other.kinds() {
-            return Err(invalid(format!(
-                "a film of {} cannot be added to one of {}",
-                other.kinds(),
-                self.kinds()
-            )));
-        }
-        self.ledger.merge(&other.ledger).map_err(|overlap| twice(&overlap))?;
-        for y in y0..y1 {
-            let rows = [self.row(y, x0, x1), other.row(y, x0, x1)];
-            merge_row(&mut self.pixels, &other.pixels, &rows, Pixel::merge);
-            merge_row(&mut self.alphas, &other.alphas, &rows, |sum, add| *sum = sum.wrapping_add(*add));
-            merge_row(&mut self.alpha_squares, &other.alpha_squares, &rows, |sum, add| {
-                *sum = sum.saturating_add(*add);
-            });
-            merge_row(&mut self.layers, &other.layers, &rows, LayerSums::merge);
-            merge_row(&mut self.channels, &other.channels, &rows, ChannelSums::merge);
-            merge_row(&mut self.features, &other.features, &rows, AovSums::merge);
-            for (mine, theirs) in self.light_paths.iter_mut().zip(&other.light_paths) {
-                merge_row(mine, theirs, &rows, LightPathSums::merge);
-            }
-        }
-        self.drop_samples(other.dropped, other.first_dropped);
-        Ok(())
-    }
-
-    /// The kinds of sums, for messages.
-    fn kinds(&self) -> String {
-        let kinds = [
-            ("alpha", !self.alphas.is_empty()),
-            ("AOVs", !self.layers.is_empty()),
-            ("variances in the sensor's channels", !self.channels.is_empty()),
-            ("denoiser features", !self.features.is_empty()),
-        ];
-        let kinds = kinds.iter().filter(|(_, has)| *has).map(|(kind, _)| format!(" and {kind}"));
-        let light_paths = match self.light_paths.len() {
-            0 => None,
-            1 => Some(" and 1 layer of light paths".to_owned()),
-            count => Some(format!(" and {count} layers of light paths")),
-        };
-        std::iter::once("light".to_owned()).chain(kinds).chain(light_paths).collect()
-    }
-
     pub(super) fn drop_samples(&mut self, count: u64, first: Option<SampleId>) {
         self.dropped = self.dropped.saturating_add(count);
         self.first_dropped = self.first_dropped.into_iter().chain(first).min();
-    }
-
-    pub(super) fn pixel(&self, x: u32, y: u32) -> Option<&Pixel> {
-        self.index(x, y).map(|index| &self.pixels[index])
     }
 
     pub(super) fn index(&self, x: u32, y: u32) -> Option<usize> {
@@ -316,33 +249,38 @@ impl FilmTile {
     }
 }
 
-fn invalid(message: String) -> Error {
-    Error::invalid(&Location::default(), message)
-        .hint("merge only renders of the same scene, of the same size and with the same layers")
-}
-
-fn twice(Overlap { pixel: [x, y], samples }: &Overlap) -> Error {
-    let Range { start, end } = samples;
-    Error::invalid(
-        &Location::default(),
-        format!("samples {start}..{end} of pixel {x} {y} would be there twice"),
-    )
-    .hint("merge every part once")
-}
-
-/// Adds a range of `theirs` to one of `mine`, where there are such sums.
-fn merge_row<T>(mine: &mut [T], theirs: &[T], [to, from]: &[Range<usize>; 2], add: impl Fn(&mut T, &T)) {
-    if let (Some(mine), Some(theirs)) = (mine.get_mut(to.clone()), theirs.get(from.clone())) {
-        mine.iter_mut().zip(theirs).for_each(|(mine, theirs)| add(mine, theirs));
+impl fmt::Display for Kinds {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = [
+            ("alpha", self.alphas),
+            ("AOVs", self.layers),
+            ("variances in the sensor's channels", self.channels),
+            ("denoiser features", self.features),
+        ];
+        formatter.write_str("light")?;
+        for (kind, _) in kinds.iter().filter(|(_, has)| *has) {
+            write!(formatter, " and {kind}")?;
+        }
+        match self.light_paths {
+            0 => Ok(()),
+            1 => formatter.write_str(" and 1 layer of light paths"),
+            count => write!(formatter, " and {count} layers of light paths"),
+        }
     }
 }
 
 /// `count` zeros; an error if there is no memory for them.
 fn empty<T: Clone + Default>(count: u64) -> Result<Vec<T>> {
-    let mut values = Vec::new();
-    if values.try_reserve_exact(count as usize).is_err() {
-        return Err(too_large(format!("no memory for {count} pixels of {} bytes", size_of::<T>())));
-    }
+    let mut values = room(count)?;
     values.resize(count as usize, T::default());
     Ok(values)
+}
+
+/// Memory for `count` values; an error if there is none.
+pub(super) fn room<T>(count: u64) -> Result<Vec<T>> {
+    let mut values = Vec::new();
+    match values.try_reserve_exact(count as usize) {
+        Ok(()) => Ok(values),
+        Err(_) => Err(too_large(format!("no memory for {count} times {} bytes", size_of::<T>()))),
+    }
 }

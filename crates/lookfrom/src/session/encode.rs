@@ -1,19 +1,21 @@
 //! Picture formats and their encoding.
 
 use std::borrow::Cow;
+use std::io::{Cursor, Seek, Write};
 use std::path::Path;
 
-use lookfrom_scene::Result;
 use lookfrom_scene::image::compare::CHANNELS_ATTRIBUTE;
 use lookfrom_scene::image::{
-    AnimationFormat, Metadata, Pixels, encode_exr, encode_hdr, encode_jpeg, encode_pfm, encode_png_of,
-    encode_ppm, encode_webp,
+    AnimationFormat, ExrChannel, ExrHeader, Metadata, Pixels, encode_hdr, encode_pfm, encode_ppm, write_exr,
+    write_jpeg, write_png, write_webp,
 };
 use lookfrom_scene::settings::Background;
+use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
+use super::layers::Layers;
 use super::options::unsuitable;
-use super::{Developed, Development, Shown};
-use crate::film::Picture;
+use super::{Developed, Development, Finished, Shown, header};
+use crate::film::{Film, Picture, composited};
 use crate::post::develop::{srgb8_before, srgb16_before, srgba8, srgba16};
 
 /// A picture format.
@@ -140,22 +142,68 @@ pub(super) fn behind(background: Background) -> [f32; 3] {
 }
 
 impl Developed {
-    /// The bytes of a file of the picture. AOVs and the header are for formats that can hold them.
+    /// The bytes of a file of the picture. Its layers and the header are for formats that can hold them.
     ///
     /// # Errors
     /// `Invalid`, `Limit` or `Request` where the format cannot hold the picture.
     pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
-        encode(format, &self.picture, &self.layers, &self.development, &self.header)
+        bytes(|out| self.write(None, format, out))
+    }
+
+    /// Writes a file of the picture; with the AOVs of its `film`, for formats that can hold them, if it is given.
+    ///
+    /// # Errors
+    /// As [`Developed::encode`], and `Io` where `out` fails.
+    pub fn write(&self, film: Option<&Film>, format: Format, out: &mut (impl Write + Seek)) -> Result<()> {
+        write(format, &self.picture, &self.layers_with(film), &self.development, &self.header, out)
+    }
+
+    /// Its own further channels, or those of its film.
+    pub(super) fn layers_with<'a>(&'a self, film: Option<&'a Film>) -> Layers<'a> {
+        match film {
+            None => Layers::Given(&self.layers),
+            Some(film) => Layers::OfFilm {
+                film,
+                light_paths: header::light_paths(&self.header).collect(),
+                noisy: self.denoised.then_some(self.development.background),
+            },
+        }
     }
 }
 
-pub(super) fn encode(
+impl Finished {
+    /// The bytes of a file of the picture. AOVs and the header are for formats that can hold them.
+    ///
+    /// # Errors
+    /// As [`Developed::encode`].
+    pub fn encode(&self, format: Format) -> Result<Vec<u8>> {
+        bytes(|out| self.write(format, out))
+    }
+
+    /// Writes a file of the picture, as [`Finished::encode`] makes it.
+    ///
+    /// # Errors
+    /// As [`Developed::write`].
+    pub fn write(&self, format: Format, out: &mut (impl Write + Seek)) -> Result<()> {
+        self.developed.write(Some(&self.rendered.film).filter(|_| self.has_layers), format, out)
+    }
+}
+
+/// What is written, in memory.
+pub(super) fn bytes(write: impl FnOnce(&mut Cursor<Vec<u8>>) -> Result<()>) -> Result<Vec<u8>> {
+    let mut out = Cursor::new(Vec::new());
+    write(&mut out)?;
+    Ok(out.into_inner())
+}
+
+pub(super) fn write(
     format: Format,
     picture: &Picture,
-    layers: &[(String, Vec<f32>)],
+    layers: &Layers<'_>,
     development: &Development,
     header: &[(String, String)],
-) -> Result<Vec<u8>> {
+    out: &mut (impl Write + Seek),
+) -> Result<()> {
     let (width, height) = (picture.width, picture.height);
     let &Development { exposure, tonemap, background, .. } = development;
     format.check_background(background)?;
@@ -167,31 +215,101 @@ pub(super) fn encode(
     let metadata = || metadata(header, development);
     match format {
         Format::Png if is_transparent => {
-            encode_png_of(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()))
+            write_png(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()), out)
         }
-        Format::Png => encode_png_of(size, Pixels::Rgb8(&developed()), Some(&metadata())),
+        Format::Png => write_png(size, Pixels::Rgb8(&developed()), Some(&metadata()), out),
         Format::Png16 if is_transparent => {
-            encode_png_of(size, Pixels::Rgba16(&srgba16(picture, exposure, tonemap)), Some(&metadata()))
+            write_png(size, Pixels::Rgba16(&srgba16(picture, exposure, tonemap)), Some(&metadata()), out)
         }
         Format::Png16 => {
             let developed = srgb16_before(picture, background, exposure, tonemap);
-            encode_png_of(size, Pixels::Rgb16(&developed), Some(&metadata()))
+            write_png(size, Pixels::Rgb16(&developed), Some(&metadata()), out)
         }
-        Format::Jpeg(quality) => encode_jpeg(size, &developed(), quality, Some(&metadata())),
+        Format::Jpeg(quality) => write_jpeg(size, &developed(), quality, Some(&metadata()), out),
         Format::WebP if is_transparent => {
-            encode_webp(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()))
+            write_webp(size, Pixels::Rgba8(&srgba8(picture, exposure, tonemap)), Some(&metadata()), out)
         }
-        Format::WebP => encode_webp(size, Pixels::Rgb8(&developed()), Some(&metadata())),
-        Format::Ppm => encode_ppm(width, height, &developed()),
-        Format::Hdr => encode_hdr(width, height, &linear()),
-        Format::Pfm => encode_pfm(width, height, &linear()),
-        Format::Gif | Format::Apng => Shown::new(picture, development).encode(format),
+        Format::WebP => write_webp(size, Pixels::Rgb8(&developed()), Some(&metadata()), out),
+        Format::Ppm => put(&encode_ppm(width, height, &developed())?, out),
+        Format::Hdr => put(&encode_hdr(width, height, &linear())?, out),
+        Format::Pfm => put(&encode_pfm(width, height, &linear())?, out),
+        Format::Gif | Format::Apng => put(&Shown::new(picture, development).encode(format)?, out),
         Format::Exr => {
-            let channels = channels(picture, layers, development.background);
-            let channels: Vec<_> =
-                channels.iter().map(|(name, values)| (name.clone(), values.as_ref())).collect();
-            encode_exr(width, height, &channels, header)
+            let rows = Rows { light: Light::Picture(picture), layers, background: development.background };
+            let channels = rows.channels().into_iter().map(|name| (name, ExrChannel::Float)).collect();
+            let attributes = header.to_vec();
+            let header = ExrHeader { width, height, channels, attributes, ..ExrHeader::default() };
+            write_exr(&header, &mut |row: u32, bytes: &mut [u8]| rows.fill(row, bytes), out)
         }
+    }
+}
+
+/// Writes bytes that are in memory.
+fn put(bytes: &[u8], out: &mut impl Write) -> Result<()> {
+    out.write_all(bytes).map_err(|error| Error::new(ErrorKind::Io, &Location::default(), error.to_string()))
+}
+
+/// The light of a picture.
+pub(super) enum Light<'a> {
+    Picture(&'a Picture),
+    /// As it was computed.
+    Film(&'a Film),
+}
+
+impl Light<'_> {
+    fn width(&self) -> u32 {
+        match self {
+            Self::Picture(picture) => picture.width,
+            Self::Film(film) => film.width(),
+        }
+    }
+
+    /// Light and, if there is one, alpha of a pixel.
+    fn at(&self, x: u32, y: u32) -> ([f32; 3], Option<f32>) {
+        match self {
+            Self::Picture(Picture { width, pixels, alpha, .. }) => {
+                let index = y as usize * *width as usize + x as usize;
+                (pixels[index], alpha.get(index).copied())
+            }
+            Self::Film(film) => (film.mean(x, y), film.alpha(x, y)),
+        }
+    }
+}
+
+/// The rows of a picture in an EXR: red, green and blue, alpha before a transparent background, and layers.
+pub(super) struct Rows<'a> {
+    pub(super) light: Light<'a>,
+    pub(super) layers: &'a Layers<'a>,
+    pub(super) background: Background,
+}
+
+impl Rows<'_> {
+    /// The names of the channels.
+    pub(super) fn channels(&self) -> Vec<String> {
+        let alpha = (self.background == Background::Transparent).then_some("A");
+        let light = ["R", "G", "B"].into_iter().chain(alpha).map(str::to_owned);
+        light.chain(self.layers.names()).collect()
+    }
+
+    /// Writes the numbers of a row in little endian: `width` of the first channel, `width` of the second …
+    pub(super) fn fill(&self, row: u32, bytes: &mut [u8]) {
+        let width = self.light.width();
+        let mut put = |channel: usize, x: u32, number: f32| {
+            let place = channel * width as usize + x as usize;
+            bytes[place * 4..][..4].copy_from_slice(&number.to_le_bytes());
+        };
+        let background = behind(self.background);
+        let is_transparent = self.background == Background::Transparent;
+        for x in 0..width {
+            let (light, alpha) = self.light.at(x, row);
+            let light = alpha.map_or(light, |alpha| composited(light, alpha, background));
+            (0..3).for_each(|channel| put(channel, x, light[channel]));
+            if is_transparent {
+                put(3, x, alpha.map_or(1.0, |alpha| alpha.clamp(0.0, 1.0)));
+            }
+        }
+        let first = if is_transparent { 4 } else { 3 };
+        self.layers.row(row, width, &mut |channel, x, number| put(first + channel, x, number));
     }
 }
 
@@ -213,24 +331,4 @@ fn metadata(header: &[(String, String)], development: &Development) -> Metadata 
     lines.push(format!("exposure: {}", development.exposure));
     lines.push(format!("tonemap: {}", development.tonemap.word()));
     Metadata::new(concat!("lookfrom ", env!("CARGO_PKG_VERSION")), &lines.join("\n"))
-}
-
-/// The channels of a picture in an EXR: red, green and blue, alpha before a transparent background, and layers.
-pub(super) fn channels<'a>(
-    picture: &Picture,
-    layers: &'a [(String, Vec<f32>)],
-    background: Background,
-) -> Vec<(String, Cow<'a, [f32]>)> {
-    let pixels = before(picture, behind(background));
-    let mut channels: Vec<(String, Cow<'a, [f32]>)> = ["R", "G", "B"]
-        .iter()
-        .enumerate()
-        .map(|(index, name)| ((*name).to_owned(), pixels.iter().map(|pixel| pixel[index]).collect()))
-        .collect();
-    if background == Background::Transparent {
-        let alpha = picture.alpha.iter().map(|alpha| alpha.clamp(0.0, 1.0));
-        channels.push(("A".to_owned(), alpha.collect()));
-    }
-    channels.extend(layers.iter().map(|(name, values)| (name.clone(), Cow::Borrowed(values.as_slice()))));
-    channels
 }

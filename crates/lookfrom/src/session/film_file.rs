@@ -10,13 +10,15 @@
 use std::io::{Seek, Write};
 use std::path::Path;
 
+use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::image::{ExrChannel, ExrHeader, ExrRows, write_exr};
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds, Sensor};
 use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Result};
 
+use super::layers;
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
 use super::{Developed, Development, encode, finish, header};
-use crate::film::{Film, SampleId, SampleLedger, union};
+use crate::film::{Film, MOST_PIXELS, SampleId, SampleLedger, StoredRows, union};
 
 /// A film and its provenance, as a file has them.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,8 +43,86 @@ impl FilmFile {
     /// `Syntax` where it is damaged; `Invalid` where it is no film, or of another version of the format; `Limit` where
     /// it is too large, or the budget for it and its picture too small.
     pub fn read(bytes: &[u8], path: &Path, budget: &Budget) -> Result<Self> {
+        let Opened { rows, places, file } = Opened::new(bytes, path)?;
+        let Self { mut film, provenance } = file;
+        let what = format!("a film of {} × {} pixels", film.width(), film.height());
+        let _memory = budget.reserve(Film::memory(&film.settings()), &what, &Location::file(path))?;
+        let width = film.width() as usize;
+        let area = film.area();
+        let mut sums = StoredRows::of(&mut film, area)?;
+        rows.read(&mut |row, numbers| {
+            sums.load(row, |channel| &numbers[places[channel] * width..][..width])
+        })?;
+        sums.flush()?;
+        Ok(Self { film, provenance })
+    }
+
+    /// Adds another film of the same picture: other samples, or other pixels, for which room is made. The goal of either
+    /// is forgotten.
+    ///
+    /// # Errors
+    /// `Invalid` where it is of another picture, says what differs, or has samples that this one has already. Then no sample has
+    /// been added.
+    pub fn merge(&mut self, other: &Self) -> Result<()> {
+        self.provenance.check_same(&other.provenance)?;
+        if !self.provenance.adapts_as(&other.provenance) {
+            let message = "films with different limits of noise, or different allocations of samples";
+            return Err(Error::invalid(&Location::default(), message));
+        }
+        self.film.enlarge(other.film.area());
+        self.film.merge(&other.film)?;
+        // Of texts that may differ, such as names of files on other machines, the same ones for any order of the films.
+        if other.provenance.order() < self.provenance.order() {
+            self.provenance = other.provenance.clone();
+        }
+        self.provenance.goal = None;
+        Ok(())
+    }
+
+    /// Develops the film as its provenance says, or otherwise.
+    pub fn develop(&self, development: &Development) -> Developed {
+        finish::develop(&self.film, development, &self.provenance.header)
+    }
+
+    /// Writes the file, with the picture that was developed from the film.
+    ///
+    /// # Errors
+    /// `Io` where `out` fails.
+    pub fn write(&self, developed: &Developed, out: &mut (impl Write + Seek)) -> Result<()> {
+        self.provenance.write(&self.film, developed, out)
+    }
+
+    /// The memory that the film takes, with one that is [merged](FilmFile::merge), and what developing it takes.
+    ///
+    /// # Errors
+    /// `Limit` if the budget is exceeded.
+    pub fn room_for(&self, other: Option<&Self>, budget: &Budget, path: &Path) -> Result<Reservation> {
+        let film = &self.film;
+        let what = format!("the merged film of {} × {} pixels", film.width(), film.height());
+        let area = other.map_or(film.area(), |other| union(film.area(), other.film.area()));
+        let bytes = Film::memory(&ImageSettings { crop: Some(area), ..film.settings() });
+        budget.reserve(bytes, &what, &Location::file(path))
+    }
+}
+
+/// A film's file of which only the header has been read.
+pub(super) struct Opened<B> {
+    /// Its rows, and among their numbers the place of each channel of the film.
+    pub(super) rows: ExrRows<B>,
+    pub(super) places: Vec<usize>,
+    /// What it is of, with a film that knows its samples but has no sums.
+    pub(super) file: FilmFile,
+}
+
+impl<B: AsRef<[u8]>> Opened<B> {
+    /// Reads the header, and tests the checksum of the file.
+    ///
+    /// # Errors
+    /// As [`FilmFile::read`].
+    pub(super) fn new(bytes: B, path: &Path) -> Result<Self> {
         let at = Location::file(path);
-        let rows = ExrRows::open(bytes, &at, &Limits::default())?;
+        let limits = Limits { texels: MOST_PIXELS, ..Limits::default() };
+        let rows = ExrRows::open(bytes, &at, &limits)?;
         let found = rows.header();
         let texts = Texts { attributes: &found.attributes, at: &at };
         match texts.find(PREFIX) {
@@ -65,10 +145,8 @@ impl FilmFile {
         if x0 >= x1 || y0 >= y1 || x1 > found.width || y1 > found.height {
             return Err(texts.damaged("film.area is not a part of the picture"));
         }
-        let image = image_of(found, area);
-        let what = format!("a film of {} × {} pixels", image.width, image.height);
-        let _memory = budget.reserve(Film::memory(&image), &what, &at)?;
-        let mut film = Film::for_image(&image).map_err(|error| Error { at: at.clone(), ..error })?;
+        let mut film =
+            Film::for_image(&image_of(found, area)).map_err(|error| Error { at: at.clone(), ..error })?;
         let place = |name: &String| {
             let place =
                 found.channels.iter().position(|(known, kind)| known == name && *kind == ExrChannel::Uint);
@@ -76,7 +154,7 @@ impl FilmFile {
         };
         let places = film.stored_channels().iter().map(place).collect::<Result<Vec<usize>>>()?;
 
-        // Its ledger and its sums.
+        // Its ledger.
         let ledger: SampleLedger = texts.read("film.ledger", |text| text.parse().ok())?;
         if ledger.bounds().is_some_and(|b| b.x0 < x0 || b.y0 < y0 || b.x1 > x1 || b.y1 > y1) {
             return Err(texts.damaged("its ledger has pixels outside of film.area"));
@@ -85,47 +163,7 @@ impl FilmFile {
         let [count, x, y, sample] = texts.read("film.dropped", numbers)?;
         let first = (count > 0).then_some(SampleId { pixel: [x as u32, y as u32], sample: sample as u32 });
         film.set_dropped(count, first);
-        let width = found.width as usize;
-        rows.read(&mut |row, numbers| {
-            film.load_row(row, |channel| &numbers[places[channel] * width..][..width]);
-            Ok(())
-        })?;
-        Ok(Self { film, provenance })
-    }
-
-    /// Adds another film of the same picture: other samples, or other pixels, for which room is made. The goal of either
-    /// is forgotten.
-    ///
-    /// # Errors
-    /// `Invalid` where it is of another picture, says what differs, or has samples that this one has already; `Limit`
-    /// where there is no memory. Then no sample has been added.
-    pub fn merge(&mut self, other: &Self) -> Result<()> {
-        self.provenance.check_same(&other.provenance)?;
-        if !self.provenance.adapts_as(&other.provenance) {
-            let message = "films with different limits of noise, or different allocations of samples";
-            return Err(Error::invalid(&Location::default(), message));
-        }
-        self.film.enlarge(union(self.film.area(), other.film.area()))?;
-        self.film.merge(&other.film)?;
-        // Of texts that may differ, such as names of files on other machines, the same ones for any order of the films.
-        if other.provenance.order() < self.provenance.order() {
-            self.provenance = other.provenance.clone();
-        }
-        self.provenance.goal = None;
-        Ok(())
-    }
-
-    /// Develops the film as its provenance says, or otherwise.
-    pub fn develop(&self, development: &Development) -> Developed {
-        finish::develop(&self.film, development, &self.provenance.header, true)
-    }
-
-    /// Writes the file, with the picture that was developed from the film.
-    ///
-    /// # Errors
-    /// `Io` where `out` fails.
-    pub fn write(&self, developed: &Developed, out: &mut (impl Write + Seek)) -> Result<()> {
-        self.provenance.write(&self.film, developed, out)
+        Ok(Self { rows, places, file: FilmFile { film, provenance } })
     }
 }
 
@@ -135,32 +173,44 @@ impl Provenance {
     /// # Errors
     /// `Io` where `out` fails.
     pub fn write(&self, film: &Film, developed: &Developed, out: &mut (impl Write + Seek)) -> Result<()> {
-        let Developed { picture, layers, header, development, .. } = developed;
-        let picture = encode::channels(picture, layers, development.background);
-        let channels = picture.iter().map(|(name, _)| (name.clone(), ExrChannel::Float));
+        let Developed { picture, header, development, .. } = developed;
+        let layers = &developed.layers_with(Some(film));
+        let light = encode::Light::Picture(picture);
+        let rows = encode::Rows { light, layers, background: development.background };
+        self.write_rows(film, &rows, header, out)
+    }
+
+    fn write_rows(
+        &self,
+        film: &Film,
+        rows: &encode::Rows<'_>,
+        texts: &[(String, String)],
+        out: &mut (impl Write + Seek),
+    ) -> Result<()> {
+        let header = self.exr_header(film, rows.channels(), texts);
+        write_exr(&header, &mut |row: u32, bytes: &mut [u8]| fill(film, rows, row, bytes), out)
+    }
+
+    /// The header of a film's file, whose picture has these channels and texts.
+    pub(super) fn exr_header(
+        &self,
+        film: &Film,
+        channels: Vec<String>,
+        texts: &[(String, String)],
+    ) -> ExrHeader {
+        let channels = channels.into_iter().map(|name| (name, ExrChannel::Float));
         let sums = film.stored_channels().into_iter().map(|name| (name, ExrChannel::Uint));
-        let mut attributes = header.clone();
+        let mut attributes = texts.to_vec();
         attributes.extend(self.attributes(film));
         attributes.sort();
-        let header = ExrHeader {
+        ExrHeader {
             width: film.width(),
             height: film.height(),
             channels: channels.chain(sums).collect(),
             attributes,
             is_fast: true,
             has_checksum: true,
-        };
-        let width = film.width() as usize;
-        let fill = |row: u32, bytes: &mut [u8]| {
-            let (of_picture, of_sums) = bytes.split_at_mut(picture.len() * width * 4);
-            for ((_, values), bytes) in picture.iter().zip(of_picture.chunks_exact_mut(width * 4)) {
-                for (value, bytes) in values[row as usize * width..].iter().zip(bytes.chunks_exact_mut(4)) {
-                    bytes.copy_from_slice(&value.to_le_bytes());
-                }
-            }
-            film.store_row(row, of_sums);
-        };
-        write_exr(&header, &fill, out)
+        }
     }
 
     /// Writes an unfinished film: its picture is the light as it was computed, and AOVs are in the sums only.
@@ -168,11 +218,19 @@ impl Provenance {
     /// # Errors
     /// `Io` where `out` fails.
     pub fn write_checkpoint(&self, film: &Film, out: &mut (impl Write + Seek)) -> Result<()> {
-        let (picture, development) = (film.picture(), self.development);
-        let header = header::finished(&self.header, film, &development, false);
-        let developed = Developed { picture, layers: Vec::new(), header, denoised: false, development };
-        self.write(film, &developed, out)
+        let header = header::finished(&self.header, film, &self.development, false);
+        let light = encode::Light::Film(film);
+        let layers = &layers::Layers::Given(&[]);
+        let rows = encode::Rows { light, layers, background: self.development.background };
+        self.write_rows(film, &rows, &header, out)
     }
+}
+
+/// Writes the numbers of a row of a film's file: of its picture, and of the sums of the film.
+pub(super) fn fill(film: &Film, rows: &encode::Rows<'_>, row: u32, bytes: &mut [u8]) {
+    let (of_picture, of_sums) = bytes.split_at_mut(rows.channels().len() * film.width() as usize * 4);
+    rows.fill(row, of_picture);
+    film.store_row(row, of_sums);
 }
 
 /// Image settings whose film has the sums that the channels of a file are of.

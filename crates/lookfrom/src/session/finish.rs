@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use lookfrom_scene::settings::{Background, ImageSettings, Tonemap};
 
-use super::{Fireflies, Session, header, layers};
+use super::{Fireflies, Session, header};
 use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
-use crate::post::denoise::denoised;
+use crate::post::denoise::denoise;
 use crate::render::Rendered;
 
 /// How a film becomes a picture: what can be changed without rendering anew.
@@ -38,7 +38,8 @@ impl Development {
 pub struct Developed {
     /// Linear light, with firefly suppression and denoising if they are enabled.
     pub picture: Picture,
-    /// Further channels for formats that can hold them, by name: AOVs, and the light before denoising.
+    /// Further channels for formats that can hold them, by name, where it is of no film: those of a film, AOVs and the light before
+    /// denoising, are made as they are [written](Developed::write).
     pub layers: Vec<(String, Vec<f32>)>,
     /// The settings of the picture, as names and values: everything that determines its light, and nothing else, so
     /// that the same picture has the same bytes.
@@ -56,6 +57,8 @@ pub struct Finished {
     pub rendered: Rendered,
     /// The picture.
     pub developed: Developed,
+    /// Whether AOVs and the light before denoising belong to it.
+    pub(super) has_layers: bool,
     /// The time that its development took.
     pub developing: Duration,
 }
@@ -81,37 +84,26 @@ impl Session {
     /// Finishes the picture of a film that its renderer has rendered.
     pub fn finish(&self, rendered: Rendered) -> Finished {
         let started = Stopwatch::start();
-        let developed = self.develop(&rendered.film, &self.development(), self.has_room_for_layers());
-        Finished { rendered, developed, developing: started.elapsed() }
+        let developed = self.develop(&rendered.film, &self.development());
+        let has_layers = self.has_room_for_layers();
+        Finished { rendered, developed, has_layers, developing: started.elapsed() }
     }
 
-    /// Develops a film of this session's picture, finished or not, `with_layers` for a format that can hold them.
-    pub fn develop(&self, film: &Film, development: &Development, with_layers: bool) -> Developed {
-        develop(film, development, &header::header(self), with_layers)
+    /// Develops a film of this session's picture, finished or not.
+    pub fn develop(&self, film: &Film, development: &Development) -> Developed {
+        develop(film, development, &header::header(self))
     }
 }
 
-/// Develops a film, whose header has the `common` texts. `has_layers` is whether anyone will see AOVs and the
-/// light before denoising. A film of a part of the samples, whose noise is nobody's picture, is not denoised.
-pub(super) fn develop(
-    film: &Film,
-    development: &Development,
-    common: &[(String, String)],
-    has_layers: bool,
-) -> Developed {
+/// Develops a film, whose header has the `common` texts. A film of a part of the samples, whose noise is nobody's picture, is not
+/// denoised.
+pub(super) fn develop(film: &Film, development: &Development, common: &[(String, String)]) -> Developed {
     let spread = development.fireflies == Fireflies::Spread;
     let mut picture = if spread { film.picture_without_fireflies() } else { film.picture() };
-    let mut layers = if has_layers && film.has_layers() { layers::channels(film) } else { Vec::new() };
-    if has_layers {
-        layers.extend(layers::of_light_paths(film, header::light_paths(common)));
-    }
     let is_denoised = development.denoise && film.ledger().is_from_start(film.area());
     if is_denoised {
-        picture = denoised(film, &picture);
-        if has_layers {
-            layers.extend(layers::noisy(development.background, film.picture()));
-        }
+        denoise(film, &mut picture);
     }
     let header = header::finished(common, film, development, is_denoised);
-    Developed { picture, layers, header, denoised: is_denoised, development: *development }
+    Developed { picture, layers: Vec::new(), header, denoised: is_denoised, development: *development }
 }

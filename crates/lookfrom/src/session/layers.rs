@@ -1,9 +1,10 @@
-//! AOVs of a film as EXR channels, with the names of pbrt's `gbuffer` film.
+//! Further channels of a picture in an EXR: AOVs, with the names of pbrt's `gbuffer` film, light-path expressions, and the light
+//! before denoising. They are made row by row as they are written.
 
 use lookfrom_scene::settings::Background;
 
 use super::encode::behind;
-use crate::film::{Film, Picture};
+use crate::film::Film;
 
 /// Channel names, in the order of [`to_array`](crate::film::Aovs::to_array); `depth` is ours, the others are pbrt's.
 const AOVS: [&str; 15] = [
@@ -15,49 +16,77 @@ const AOVS: [&str; 15] = [
 /// red, green and blue. The header states which (`variance.from_rgb`).
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
-/// The channels of a film's picture before denoising, over the same background as the denoised one.
-pub(super) fn noisy(background: Background, picture: Picture) -> Vec<(String, Vec<f32>)> {
-    let picture = picture.before(behind(background));
-    let channel = |index: usize| picture.pixels.iter().map(|pixel| pixel[index]).collect();
-    [("noisy.R", 0), ("noisy.G", 1), ("noisy.B", 2)]
-        .map(|(name, index)| (name.to_owned(), channel(index)))
-        .to_vec()
+/// Names of the channels of the light before denoising.
+const NOISY: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
+
+/// Further channels of a picture, whose numbers are told row by row.
+pub(super) enum Layers<'a> {
+    /// By their names, of all pixels.
+    Given(&'a [(String, Vec<f32>)]),
+    /// Of a film.
+    OfFilm {
+        /// The film.
+        film: &'a Film,
+        /// The names of the layers of light-path expressions.
+        light_paths: Vec<&'a str>,
+        /// The background of the light before denoising, if the picture is denoised.
+        noisy: Option<Background>,
+    },
 }
 
-/// The channels of the layers of light-path expressions, by their names.
-pub(super) fn of_light_paths<'a>(
-    film: &Film,
-    names: impl Iterator<Item = &'a str>,
-) -> Vec<(String, Vec<f32>)> {
-    let mut channels: Vec<(String, Vec<f32>)> = names
-        .flat_map(|name| ["R", "G", "B"].map(|letter| (format!("{name}.{letter}"), Vec::new())))
-        .collect();
-    if channels.is_empty() {
-        return channels;
-    }
-    for (x, y) in (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y))) {
-        for ((_, channel), value) in channels.iter_mut().zip(film.light_paths(x, y).flatten()) {
-            channel.push(value);
+impl Layers<'_> {
+    /// The names of the channels.
+    pub(super) fn names(&self) -> Vec<String> {
+        match self {
+            Self::Given(layers) => layers.iter().map(|(name, _)| name.clone()).collect(),
+            Self::OfFilm { film, light_paths, noisy } => {
+                let aovs = AOVS.iter().chain(&VARIANCES).filter(|_| film.has_layers());
+                let noisy = NOISY.iter().filter(|_| noisy.is_some());
+                let of_light_paths =
+                    light_paths.iter().flat_map(|name| ["R", "G", "B"].map(|c| format!("{name}.{c}")));
+                let names = aovs.map(|name| (*name).to_owned()).chain(of_light_paths);
+                names.chain(noisy.map(|name| (*name).to_owned())).collect()
+            }
         }
     }
-    channels
+
+    /// Calls `put` with the number of a channel, a column, and the channel's number there, for all of a row. AOVs are 0 where there
+    /// is no hit.
+    pub(super) fn row(&self, row: u32, width: u32, put: &mut dyn FnMut(usize, u32, f32)) {
+        match self {
+            Self::Given(layers) => {
+                let start = row as usize * width as usize;
+                for (channel, (_, numbers)) in layers.iter().enumerate() {
+                    for (x, number) in (0..width).zip(&numbers[start..]) {
+                        put(channel, x, *number);
+                    }
+                }
+            }
+            Self::OfFilm { film, light_paths, noisy } => {
+                for x in 0..width {
+                    let mut channel = 0;
+                    let mut put_next = |number: f32| {
+                        put(channel, x, number);
+                        channel += 1;
+                    };
+                    if film.has_layers() {
+                        aovs(film, x, row).into_iter().for_each(&mut put_next);
+                    }
+                    if !light_paths.is_empty() {
+                        film.light_paths(x, row).flatten().for_each(&mut put_next);
+                    }
+                    if let Some(background) = noisy {
+                        film.mean_before(x, row, behind(*background)).into_iter().for_each(&mut put_next);
+                    }
+                }
+            }
+        }
+    }
 }
 
-/// The AOV channels of a film, 0 where there is no hit.
-pub(super) fn channels(film: &Film) -> Vec<(String, Vec<f32>)> {
-    let pixels = || (0..film.height()).flat_map(|y| (0..film.width()).map(move |x| (x, y)));
-    let mut channels: Vec<(String, Vec<f32>)> = AOVS
-        .iter()
-        .chain(&VARIANCES)
-        .map(|name| ((*name).to_owned(), Vec::with_capacity(pixels().count())))
-        .collect();
-    for (x, y) in pixels() {
-        let variances = film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
-        let variances = variances.map(|variance| if variance.is_finite() { variance } else { 0.0 });
-        let values = film.aovs(x, y).unwrap_or_default().to_array().into_iter().chain(variances);
-        for ((_, channel), value) in channels.iter_mut().zip(values) {
-            channel.push(value);
-        }
-    }
-    channels
+/// The AOVs of a pixel and its variances, in the order of their names.
+fn aovs(film: &Film, x: u32, y: u32) -> impl IntoIterator<Item = f32> {
+    let variances = film.channel_variance(x, y).unwrap_or_else(|| film.variance(x, y));
+    let variances = variances.map(|variance| if variance.is_finite() { variance } else { 0.0 });
+    film.aovs(x, y).unwrap_or_default().to_array().into_iter().chain(variances)
 }

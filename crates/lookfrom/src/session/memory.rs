@@ -45,8 +45,8 @@ impl Session {
         let at = Location { file: self.name.as_str().into(), ..Location::default() };
         self.budget.reserve(Film::memory(image), &what, &at).map_err(|error| {
             error.hint(
-                "a smaller --size takes less; --crop X0,Y0,X1,Y1 --film renders a part, and `lookfrom merge` adds parts up \
-                 where there is memory for all; `--memory SIZE` sets another limit, such as 16GiB",
+                "a smaller --size takes less; --crop X0,Y0,X1,Y1 --film -o PART.exr renders some rows of it, and `lookfrom merge` \
+                 adds such parts up, without having all in memory if they have --denoise off; `--memory SIZE` sets another limit, such as 16GiB",
             )
         })
     }

@@ -1,14 +1,16 @@
 //! OpenEXR files, read row by row: numbers as they are in the file, not converted.
 
 use std::io::Cursor;
+use std::ops::Range;
 
 use ::exr::block::reader::{ChunksReader, Reader};
+use ::exr::block::{BlockIndex, UncompressedBlock};
 use ::exr::compression::Compression;
 use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::SampleType;
 
 use super::write::{CHECKSUM, ExrChannel, ExrHeader};
-use super::{MOST_CHANNELS, fault};
+use super::{ExrError, MOST_CHANNELS, fault};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::Limits;
 use crate::image::read::check_size;
@@ -21,19 +23,20 @@ const MOST_PACKED: u64 = 1040;
 
 /// An OpenEXR file of one part of scan lines, whose channels have 32 bits a number.
 #[derive(Debug)]
-pub struct ExrRows<'a> {
+pub struct ExrRows<B> {
     header: ExrHeader,
-    reader: Reader<Cursor<&'a [u8]>>,
+    reader: Reader<Cursor<B>>,
     at: Location,
 }
 
-impl<'a> ExrRows<'a> {
+impl<B: AsRef<[u8]>> ExrRows<B> {
     /// Reads the header.
     ///
     /// # Errors
     /// `Syntax` for a file that is damaged, by its checksum or its size, or is no OpenEXR file; `Unsupported` for one of
     /// another kind; `Limit` for one that is too large.
-    pub fn open(bytes: &'a [u8], at: &Location, limits: &Limits) -> Result<Self> {
+    pub fn open(file: B, at: &Location, limits: &Limits) -> Result<Self> {
+        let bytes = file.as_ref();
         let reader =
             Reader::read_from_buffered(Cursor::new(bytes), false).map_err(|error| fault(&error, at))?;
         let [found] = reader.headers() else {
@@ -80,6 +83,8 @@ impl<'a> ExrRows<'a> {
             is_fast,
             has_checksum: checksum.is_some(),
         };
+        let reader =
+            Reader::read_from_buffered(Cursor::new(file), false).map_err(|error| fault(&error, at))?;
         Ok(Self { header, reader, at: at.clone() })
     }
 
@@ -118,6 +123,68 @@ impl<'a> ExrRows<'a> {
                 Err(Error::syntax(&at, format!("not a whole OpenEXR picture: row {row} is missing")))
             }
         }
+    }
+}
+
+impl<B: AsRef<[u8]> + Send + 'static> ExrRows<B> {
+    /// Some rows, one after the other from the top.
+    ///
+    /// # Errors
+    /// `Syntax` where the file is damaged.
+    pub fn stream(self, rows: Range<u32>) -> Result<ExrRowStream> {
+        let Self { header: ExrHeader { width, channels, .. }, reader, at } = self;
+        let is_wanted = |block: &BlockIndex| {
+            let top = block.pixel_position.1;
+            top < rows.end as usize && top + block.pixel_size.1 > rows.start as usize
+        };
+        let chunks = reader
+            .filter_chunks(false, |_, _, block| is_wanted(&block))
+            .map_err(|error| fault(&error, &at))?;
+        Ok(ExrRowStream {
+            blocks: Box::new(chunks.sequential_decompressor(false)),
+            block: Vec::new(),
+            first: 0,
+            row: rows.start,
+            numbers: vec![0; width as usize * channels.len()],
+            at,
+        })
+    }
+}
+
+/// Rows of a file that are read one after the other.
+pub struct ExrRowStream {
+    blocks: Box<dyn Iterator<Item = std::result::Result<UncompressedBlock, ExrError>> + Send>,
+    /// The last block that was read, and the row that it begins with.
+    block: Vec<u8>,
+    first: u32,
+    /// The next row.
+    row: u32,
+    numbers: Vec<u32>,
+    at: Location,
+}
+
+impl ExrRowStream {
+    /// The numbers of the next row: `width` of the first channel, `width` of the second …
+    ///
+    /// # Errors
+    /// `Syntax` where a row is damaged, missing or out of order.
+    pub fn next_row(&mut self) -> Result<&[u32]> {
+        let Self { blocks, block, first, row, numbers, at } = self;
+        let a_row = numbers.len() * 4;
+        while *row as usize >= *first as usize + block.len() / a_row {
+            let missing = || Error::syntax(at, format!("not a whole OpenEXR picture: row {row} is missing"));
+            let next = blocks.next().ok_or_else(missing)?.map_err(|error| fault(&error, at))?;
+            (*first, *block) = (next.index.pixel_position.1 as u32, next.data);
+            if *first > *row {
+                return Err(missing());
+            }
+        }
+        let bytes = &block[(*row - *first) as usize * a_row..][..a_row];
+        for (number, bytes) in numbers.iter_mut().zip(bytes.chunks_exact(4)) {
+            *number = u32::from_ne_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        }
+        *row += 1;
+        Ok(numbers)
     }
 }
 

@@ -47,17 +47,33 @@ pub enum ExrChannel {
     Uint,
 }
 
-/// Writes an OpenEXR file: one part of scan lines. `fill` is called from several threads with a row, from 0 at the top,
-/// and the bytes of its numbers in little endian: `width` of the first channel of `header`, `width` of the second …; they
-/// are zeros before. The same input gives the same bytes.
+/// The rows of a picture that is written.
+pub trait ExrFill: Sync {
+    /// Makes these rows ready, before any of them is filled. They follow those of the call before, from 0 at the top on.
+    ///
+    /// # Errors
+    /// Those of what the rows come from.
+    fn prepare(&mut self, _rows: Range<u32>) -> Result<()> {
+        Ok(())
+    }
+
+    /// Writes the numbers of a row in little endian: `width` of the first channel of the header, `width` of the second …; they are
+    /// zeros before. It is called from several threads.
+    fn fill(&self, row: u32, bytes: &mut [u8]);
+}
+
+impl<F: Fn(u32, &mut [u8]) + Sync> ExrFill for F {
+    fn fill(&self, row: u32, bytes: &mut [u8]) {
+        self(row, bytes);
+    }
+}
+
+/// Writes an OpenEXR file: one part of scan lines, whose rows come from `fill`. The same input gives the same bytes.
 ///
 /// # Errors
-/// `Invalid` if a name is empty, too long, duplicate or reserved, or the picture has no pixels; `Io` where `out` fails.
-pub fn write_exr(
-    header: &ExrHeader,
-    fill: &(dyn Fn(u32, &mut [u8]) + Sync),
-    out: &mut (impl Write + Seek),
-) -> Result<()> {
+/// `Invalid` if a name is empty, too long, duplicate or reserved, or the picture has no pixels; `Io` where `out` fails; those of
+/// `fill`.
+pub fn write_exr(header: &ExrHeader, fill: &mut impl ExrFill, out: &mut (impl Write + Seek)) -> Result<()> {
     check_names(header)?;
     let blocks: Vec<Range<u32>> = blocks(header).collect();
     let mut order: Vec<usize> = (0..header.channels.len()).collect();
@@ -75,6 +91,10 @@ pub fn write_exr(
     let mut checksum = Hasher::new();
     let batch = 8 * parallel::threads();
     for (number, batch_of_blocks) in blocks.chunks(batch).enumerate() {
+        if let (Some(first), Some(last)) = (batch_of_blocks.first(), batch_of_blocks.last()) {
+            fill.prepare(first.start..last.end)?;
+        }
+        let fill = &*fill;
         let packed = parallel::map(batch_of_blocks.to_vec(), |rows| {
             let block = block(header, &order, rows, fill);
             let mut hasher = Hasher::new();
@@ -124,7 +144,7 @@ pub fn encode_exr(
         ..ExrHeader::default()
     };
     let width = width as usize;
-    let fill = |row: u32, bytes: &mut [u8]| {
+    let mut fill = |row: u32, bytes: &mut [u8]| {
         for ((_, values), bytes) in channels.iter().zip(bytes.chunks_exact_mut(width * 4)) {
             for (value, bytes) in values[row as usize * width..].iter().zip(bytes.chunks_exact_mut(4)) {
                 bytes.copy_from_slice(&value.to_le_bytes());
@@ -132,7 +152,7 @@ pub fn encode_exr(
         }
     };
     let mut bytes = Cursor::new(Vec::new());
-    write_exr(&header, &fill, &mut bytes)?;
+    write_exr(&header, &mut fill, &mut bytes)?;
     Ok(bytes.into_inner())
 }
 
@@ -143,18 +163,13 @@ fn blocks(header: &ExrHeader) -> impl Iterator<Item = Range<u32>> {
 }
 
 /// A block as it is in the file: its first row, its length, its packed bytes.
-fn block(
-    header: &ExrHeader,
-    order: &[usize],
-    rows: Range<u32>,
-    fill: &(dyn Fn(u32, &mut [u8]) + Sync),
-) -> Vec<u8> {
+fn block(header: &ExrHeader, order: &[usize], rows: Range<u32>, fill: &impl ExrFill) -> Vec<u8> {
     let a_channel = header.width as usize * 4;
     let mut raw = Vec::with_capacity(rows.len() * order.len() * a_channel);
     let mut row_bytes = vec![0; order.len() * a_channel];
     for row in rows.clone() {
         row_bytes.fill(0);
-        fill(row, &mut row_bytes);
+        fill.fill(row, &mut row_bytes);
         for &channel in order {
             raw.extend_from_slice(&row_bytes[channel * a_channel..][..a_channel]);
         }

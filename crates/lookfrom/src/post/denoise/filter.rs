@@ -1,6 +1,7 @@
 //! The filter's inner loop: for every offset between two pixels, a whole block of pixels at once, so that it is
 //! vectorised. A slow reference implementation, which goes pixel by pixel, is in the tests.
 
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_simd::{Kernel, Simd, dispatch, level};
 
 use super::planes::{BORDER, Planes};
@@ -16,40 +17,70 @@ const LEAST_VARIANCE: f32 = 1e-12;
 
 /// Size of a block of pixels that are filtered together: columns and rows. Its memory fits the L1 cache.
 pub(super) const COLUMNS: usize = 64;
-const ROWS: usize = 16;
+pub(super) const ROWS: usize = 16;
 
 /// Length of a row of a block with the patches' margins.
 const WIDE: usize = COLUMNS + 2 * PATCH;
 /// Number of rows of a block with the patches' margins.
 const HIGH: usize = ROWS + 2 * PATCH;
 
+/// The filter's changes of the pixels of a band.
+pub(super) struct Changes<const N: usize> {
+    /// The part of the picture.
+    area: PixelBounds,
+    /// Blocks of [`ROWS`] × [`COLUMNS`] pixels, row by row; `None` where there is no noise.
+    blocks: Vec<Option<BlockChanges<N>>>,
+}
+
+/// The changes of red, green, blue (and alpha) of a block, row by row; those behind its last column and row are any.
+type BlockChanges<const N: usize> = Vec<[f32; N]>;
+
 impl<const N: usize> Planes<N> {
-    /// Adds the filter's changes to the picture's pixels.
-    pub(super) fn filter_into(&self, picture: &mut Picture) {
-        let Picture { width: columns, pixels, alpha, .. } = picture;
-        let (width, columns) = (self.width(), *columns as usize);
-        if width == 0 || self.height() == 0 {
-            return;
-        }
-        let mut changes = vec![[0.0; N]; width * self.height()];
-        parallel::for_chunks_mut(&mut changes, width * ROWS, |band, changes| {
-            let level = level();
-            for left in (0..width).step_by(COLUMNS) {
-                let block = Block { planes: self, left, top: band * ROWS, rows: changes.len() / width };
-                if block.is_noisy() {
-                    dispatch(level, Filter { block, changes: &mut *changes });
+    /// The filter's changes of the band.
+    pub(super) fn changes(&self) -> Changes<N> {
+        let (width, height) = (self.width(), self.height());
+        let columns = width.div_ceil(COLUMNS);
+        let level = level();
+        let blocks = parallel::collect(columns * height.div_ceil(ROWS), |index| {
+            let (left, top) = (index % columns * COLUMNS, index / columns * ROWS);
+            let block = Block { planes: self, left, top, rows: ROWS.min(height - top) };
+            if !block.is_noisy() {
+                return None;
+            }
+            let mut changes = vec![[0.0; N]; COLUMNS * ROWS];
+            dispatch(level, Filter { block, changes: &mut changes });
+            for y in 0..block.rows {
+                for x in 0..COLUMNS.min(width - left) {
+                    let change = &mut changes[y * COLUMNS + x];
+                    *change = self.change((top + y) * width + left + x, *change);
                 }
             }
+            Some(changes)
         });
-        for (index, change) in changes.into_iter().enumerate() {
-            let (x, y) = (self.area.x0 as usize + index % width, self.area.y0 as usize + index / width);
-            let place = y * columns + x;
-            let change = self.change(index, change);
-            for c in 0..3 {
-                pixels[place][c] += change[c];
-            }
-            if N == 4 {
-                alpha[place] += change[N - 1];
+        Changes { area: self.area, blocks }
+    }
+}
+
+impl<const N: usize> Changes<N> {
+    /// Adds them to the picture's pixels.
+    pub(super) fn apply(self, picture: &mut Picture) {
+        let PixelBounds { x0, y0, x1, y1 } = self.area;
+        let [width, height] = [x1 - x0, y1 - y0].map(|side| side as usize);
+        let columns = width.div_ceil(COLUMNS);
+        for (index, changes) in self.blocks.into_iter().enumerate() {
+            let Some(changes) = changes else { continue };
+            let (left, top) = (index % columns * COLUMNS, index / columns * ROWS);
+            for y in 0..ROWS.min(height - top) {
+                for x in 0..COLUMNS.min(width - left) {
+                    let change = changes[y * COLUMNS + x];
+                    let place = (y0 as usize + top + y) * picture.width as usize + x0 as usize + left + x;
+                    for c in 0..3 {
+                        picture.pixels[place][c] += change[c];
+                    }
+                    if N == 4 {
+                        picture.alpha[place] += change[N - 1];
+                    }
+                }
             }
         }
     }
@@ -59,7 +90,7 @@ impl<const N: usize> Planes<N> {
 #[derive(Clone, Copy)]
 struct Block<'a, const N: usize> {
     planes: &'a Planes<N>,
-    /// The first column and row, in the area.
+    /// The first column and row, in the band.
     left: usize,
     top: usize,
     /// Number of rows, at most [`ROWS`]; there are always [`COLUMNS`] columns, of which the last may lie in the border.
@@ -84,7 +115,7 @@ impl<const N: usize> Block<'_, N> {
 /// The filter for one block.
 struct Filter<'a, const N: usize> {
     block: Block<'a, N>,
-    /// The changes of the rows of the block, over the whole width.
+    /// The changes of the block.
     changes: &'a mut [[f32; N]],
 }
 
@@ -180,11 +211,10 @@ impl<const N: usize> Kernel for Filter<'_, N> {
             }
         }
 
-        let width = block.planes.width();
         for y in 0..block.rows {
-            for x in 0..COLUMNS.min(width - block.left) {
+            for x in 0..COLUMNS {
                 for c in 0..N {
-                    changes[y * width + block.left + x][c] = sums[y][c][x] / weights[y][x];
+                    changes[y * COLUMNS + x][c] = sums[y][c][x] / weights[y][x];
                 }
             }
         }

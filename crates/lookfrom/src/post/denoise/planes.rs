@@ -1,5 +1,8 @@
-//! The film in planes for the filter: each component of a pixel in a plane of its own, scaled so that differences can
-//! be added, with a border as wide as the filter reaches.
+//! A band of rows of the film in planes for the filter: each component of a pixel in a plane of its own, scaled so that
+//! differences can be added, with a border as wide as the filter reaches. Beyond the film's area the border repeats the nearest
+//! pixel.
+
+use std::ops::Range;
 
 use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::spectrum::space::xyz_of_rec709;
@@ -29,9 +32,13 @@ const NOWHERE: f32 = 1e6;
 /// Number of features that are compared directly: normal and albedo.
 pub(super) const COMPARED: usize = 6;
 
-/// The picture with `N` channels: X, Y, Z, whose variances the film has, and alpha if N is 4.
+/// Number of rows above and below those of the planes whose pixels decide about them: a variance is estimated from pixels up to
+/// two rows away.
+const AROUND: usize = 2;
+
+/// A band of the picture with `N` channels: X, Y, Z, whose variances the film has, and alpha if N is 4.
 pub(super) struct Planes<const N: usize> {
-    /// The part of the picture that the film holds.
+    /// The part of the picture: rows of what the film holds.
     pub(super) area: PixelBounds,
     /// Offset from one row to the next.
     pub(super) stride: usize,
@@ -62,17 +69,18 @@ struct Known<const N: usize> {
 }
 
 impl<const N: usize> Planes<N> {
-    pub(super) fn new(film: &Film, picture: &Picture) -> Self {
-        let area = film.area();
-        let (width, height) = ((area.x1 - area.x0) as usize, (area.y1 - area.y0) as usize);
-        // Alpha is scaled to count as much as the mean light of the picture.
-        let mean = film.mean_luminance().abs() as f32;
-        let alpha_divisor = if mean > 0.0 { 1.0 / mean } else { 1.0 };
-        let known: Vec<Known<N>> = parallel::collect(width * height, |index| {
-            let [x, y] = [index % width, index / width].map(|offset| offset as u32);
-            known(film, picture, [area.x0 + x, area.y0 + y], alpha_divisor)
-        });
-        let known = Grid { pixels: &known, width, height };
+    /// The planes of some rows of the film's area, counted from its first one.
+    pub(super) fn new(film: &Film, picture: &Picture, rows: Range<usize>, alpha_divisor: f32) -> Self {
+        let whole = film.area();
+        let (width, height) = ((whole.x1 - whole.x0) as usize, (whole.y1 - whole.y0) as usize);
+        let margin = BORDER + AROUND;
+        let first = rows.start.saturating_sub(margin);
+        let pixels: Vec<Known<N>> =
+            parallel::collect(width * ((rows.end + margin).min(height) - first), |index| {
+                let [x, y] = [index % width, first + index / width].map(|offset| offset as u32);
+                known(film, picture, [whole.x0 + x, whole.y0 + y], alpha_divisor)
+            });
+        let known = Grid { pixels: &pixels, first, width, height, rows: rows.clone() };
 
         let spread = |of: &(dyn Fn(usize, usize) -> f32 + Sync)| known.bordered(of);
         let light = std::array::from_fn(|c| spread(&|x, y| known.at(x, y).light[c]));
@@ -84,10 +92,15 @@ impl<const N: usize> Planes<N> {
         known.mark_border(&mut compared[0]);
         let trust = spread(&|x, y| known.at(x, y).trust);
         let place = std::array::from_fn(|i| spread(&|x, y| known.at(x, y).aovs.position[i]));
-        let scales: Vec<f32> = known.each(|x, y| known.plane_scale(x, y));
-        let plane =
-            std::array::from_fn(|i| spread(&|x, y| known.at(x, y).aovs.ng[i] * scales[y * width + x]));
-        let divisors = known.pixels.iter().map(|pixel| pixel.divisor).collect();
+        let scales = spread(&|x, y| known.plane_scale(x, y));
+        let mut plane: [Vec<f32>; 3] = std::array::from_fn(|i| spread(&|x, y| known.at(x, y).aovs.ng[i]));
+        for plane in &mut plane {
+            plane.iter_mut().zip(&scales).for_each(|(n, scale)| *n *= scale);
+        }
+        let divisors = rows.clone().flat_map(|y| (0..width).map(move |x| (x, y)));
+        let divisors = divisors.map(|(x, y)| known.at(x, y).divisor).collect();
+        let [y0, y1] = [rows.start, rows.end].map(|row| whole.y0 + row as u32);
+        let area = PixelBounds { y0, y1, ..whole };
         Self { area, stride: stride(width), light, variance, compared, trust, place, plane, divisors }
     }
 
@@ -108,6 +121,12 @@ impl<const N: usize> Planes<N> {
         let rgb = rgb([of_light[0], of_light[1], of_light[2]]);
         std::array::from_fn(|c| rgb.get(c).unwrap_or(&of_light[c]) * divisors[c])
     }
+}
+
+/// What alpha is divided by to count as much as the mean light of the picture.
+pub(super) fn alpha_divisor(film: &Film) -> f32 {
+    let mean = film.mean_luminance().abs() as f32;
+    if mean > 0.0 { 1.0 / mean } else { 1.0 }
 }
 
 fn known<const N: usize>(film: &Film, picture: &Picture, [x, y]: [u32; 2], alpha_divisor: f32) -> Known<N> {
@@ -176,31 +195,32 @@ fn stride(width: usize) -> usize {
     width.next_multiple_of(COLUMNS) + 2 * BORDER
 }
 
-/// The pixels of an area, row by row.
+/// The pixels of a film's area, of which only rows of the planes and around them are known.
 struct Grid<'a, const N: usize> {
+    /// Row by row, from row `first` on.
     pixels: &'a [Known<N>],
+    first: usize,
+    /// Size of the area.
     width: usize,
     height: usize,
+    /// The rows of the planes.
+    rows: Range<usize>,
 }
 
 impl<const N: usize> Grid<'_, N> {
     fn at(&self, x: usize, y: usize) -> &Known<N> {
-        &self.pixels[y * self.width + x]
+        &self.pixels[(y - self.first) * self.width + x]
     }
 
-    fn each(&self, of: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f32> {
-        parallel::collect(self.pixels.len(), |index| of(index % self.width, index / self.width))
-    }
-
-    /// A plane with a border that repeats the nearest pixel.
+    /// A plane of the rows with a border: of the pixels there, or of the nearest ones.
     fn bordered(&self, of: &(dyn Fn(usize, usize) -> f32 + Sync)) -> Vec<f32> {
         let stride = stride(self.width);
-        let mut plane = vec![0.0; stride * (self.height + 2 * BORDER)];
+        let mut plane = vec![0.0; stride * (self.rows.len() + 2 * BORDER)];
         if self.pixels.is_empty() {
             return plane;
         }
         parallel::for_chunks_mut(&mut plane, stride, |row, values| {
-            let y = row.saturating_sub(BORDER).min(self.height - 1);
+            let y = (self.rows.start + row).saturating_sub(BORDER).min(self.height - 1);
             for (x, value) in values[BORDER..BORDER + self.width].iter_mut().enumerate() {
                 *value = of(x, y);
             }
@@ -211,10 +231,11 @@ impl<const N: usize> Grid<'_, N> {
         plane
     }
 
-    /// Makes a plane's border different from everything.
+    /// Makes what is beyond the area different from everything.
     fn mark_border(&self, plane: &mut [f32]) {
         for (row, values) in plane.chunks_mut(stride(self.width)).enumerate() {
-            if row < BORDER || row >= BORDER + self.height {
+            let y = self.rows.start + row;
+            if y < BORDER || y >= BORDER + self.height {
                 values.fill(NOWHERE);
             } else {
                 values[..BORDER].fill(NOWHERE);

@@ -1,0 +1,342 @@
+//! Sums of the pixels of a picture, each number in as few bytes as its neighbourhood needs.
+//!
+//! Sums have 128 bits so that nothing is ever lost; nearly always most of them are zeros or copies of the sign. Of each of its
+//! numbers a block of 32 × 32 pixels stores only the bytes between those that are zero, and those that repeat the sign, in all
+//! of its pixels. That is exact, and equal numbers have equal bytes. Pixels without sums take no memory.
+
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use lookfrom_scene::Result;
+use lookfrom_scene::settings::PixelBounds;
+
+use super::stored::Stored;
+use super::tile::room;
+
+/// Side of a block: that of the parts of a picture which threads render.
+pub(super) const SIDE: u32 = 32;
+
+/// The most numbers of a pixel.
+const MOST_NUMBERS: usize = 32;
+
+/// Bytes of a number before it is packed.
+const WIDE: usize = size_of::<i128>();
+
+/// Sums of one kind of all pixels of a picture; or of no kind, if the film has none of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Plane<T> {
+    width: u32,
+    height: u32,
+    /// Row by row; one without bytes has only pixels without sums.
+    blocks: Vec<Box<[u8]>>,
+    of: PhantomData<T>,
+}
+
+impl<T: Stored + Copy + Default + PartialEq> Plane<T> {
+    /// No sums.
+    pub(super) fn none() -> Self {
+        Self { width: 0, height: 0, blocks: Vec::new(), of: PhantomData }
+    }
+
+    /// Zeros for a picture of this size.
+    ///
+    /// # Errors
+    /// `Limit` if there is no memory for it.
+    pub(super) fn new(width: u32, height: u32) -> Result<Self> {
+        let count = u64::from(width.div_ceil(SIDE)) * u64::from(height.div_ceil(SIDE));
+        let mut blocks = room(count)?;
+        blocks.resize_with(count as usize, Box::default);
+        Ok(Self { width, height, blocks, of: PhantomData })
+    }
+
+    /// Whether there are no sums of this kind.
+    pub(super) fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
+    /// The sums of a pixel of the picture; `None` if there are none of this kind.
+    pub(super) fn get(&self, x: u32, y: u32) -> Option<T> {
+        let block = self.blocks.get(self.index(x / SIDE, y / SIDE))?;
+        let columns = SIDE.min(self.width - x / SIDE * SIDE);
+        Some(Packed::of(block).get((y % SIDE * columns + x % SIDE) as usize))
+    }
+
+    /// Calls `each` with the sums of the pixels of columns `x0` to `x1` (exclusive) of a row.
+    pub(super) fn row(&self, y: u32, x0: u32, x1: u32, mut each: impl FnMut(T)) {
+        let mut x = x0;
+        while x < x1 {
+            let left = x / SIDE * SIDE;
+            let columns = SIDE.min(self.width - left);
+            let packed = Packed::of(&self.blocks[self.index(x / SIDE, y / SIDE)]);
+            let end = x1.min(left + columns);
+            (x..end).for_each(|x| each(packed.get((y % SIDE * columns + x - left) as usize)));
+            x = end;
+        }
+    }
+
+    /// Changes the sums of the pixels of an area, by their columns and rows.
+    pub(super) fn change(&mut self, area: PixelBounds, mut each: impl FnMut(u32, u32, &mut T)) {
+        let PixelBounds { x0, y0, x1, y1 } = area;
+        if self.is_empty() || x0 >= x1 || y0 >= y1 {
+            return;
+        }
+        let (mut sums, mut bytes) = (Vec::new(), Vec::new());
+        for row in y0 / SIDE..y1.div_ceil(SIDE) {
+            for column in x0 / SIDE..x1.div_ceil(SIDE) {
+                let [left, top] = [column * SIDE, row * SIDE];
+                let (columns, rows) = (SIDE.min(self.width - left), SIDE.min(self.height - top));
+                let index = self.index(column, row);
+                unpack(&self.blocks[index], (columns * rows) as usize, &mut sums);
+                for y in y0.max(top)..y1.min(top + rows) {
+                    for x in x0.max(left)..x1.min(left + columns) {
+                        each(x, y, &mut sums[((y - top) * columns + x - left) as usize]);
+                    }
+                }
+                pack(&sums, &mut bytes);
+                replace(&mut self.blocks[index], &bytes);
+            }
+        }
+    }
+
+    /// Adds the sums of another plane of the same picture.
+    pub(super) fn merge(&mut self, other: &Self, add: impl Fn(&mut T, &T)) {
+        let (mut sums, mut others, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+        let columns = self.width.div_ceil(SIDE);
+        let sizes = (self.width, self.height);
+        for ((index, block), theirs) in (0..).zip(&mut self.blocks).zip(&other.blocks) {
+            if theirs.is_empty() {
+                continue;
+            }
+            let side = |size: u32, at: u32| SIDE.min(size - at * SIDE) as usize;
+            let count = side(sizes.0, index % columns) * side(sizes.1, index / columns);
+            unpack(block, count, &mut sums);
+            unpack(theirs, count, &mut others);
+            sums.iter_mut().zip(&others).for_each(|(sums, others)| add(sums, others));
+            pack(&sums, &mut bytes);
+            replace(block, &bytes);
+        }
+    }
+
+    /// Makes the pixels of blocks that end within these rows pixels without sums.
+    pub(super) fn forget(&mut self, rows: &Range<u32>) {
+        let blocks = self.index(0, rows.start / SIDE)..self.index(0, rows.end / SIDE);
+        for block in self.blocks.get_mut(blocks).unwrap_or_default() {
+            *block = Box::default();
+        }
+    }
+
+    fn index(&self, column: u32, row: u32) -> usize {
+        row as usize * self.width.div_ceil(SIDE) as usize + column as usize
+    }
+}
+
+/// Replaces a block, in its own memory if the new one has the same length.
+fn replace(block: &mut Box<[u8]>, bytes: &[u8]) {
+    match block.len() == bytes.len() {
+        true => block.copy_from_slice(bytes),
+        false => *block = bytes.into(),
+    }
+}
+
+/// The bytes of a number that are stored.
+#[derive(Clone, Copy, Debug, Default)]
+struct Kept {
+    /// Number of bytes below them, which are 0.
+    below: u8,
+    /// Number of bytes that are stored; those above repeat the sign.
+    bytes: u8,
+}
+
+/// A block: what is kept of each number, then the kept bytes pixel by pixel, then [`WIDE`] bytes more, so that a number can be read
+/// and written as a whole.
+struct Packed<'a, T> {
+    block: &'a [u8],
+    kept: [Kept; MOST_NUMBERS],
+    /// Bytes of a pixel.
+    pixel: usize,
+    of: PhantomData<T>,
+}
+
+impl<'a, T: Stored + Default> Packed<'a, T> {
+    fn of(block: &'a [u8]) -> Self {
+        let mut kept = [Kept::default(); MOST_NUMBERS];
+        let mut pixel = 0;
+        for (kept, pair) in kept.iter_mut().take(T::NUMBERS).zip(block.chunks_exact(2)) {
+            *kept = Kept { below: pair[0], bytes: pair[1] };
+            pixel += usize::from(kept.bytes);
+        }
+        Self { block, kept, pixel, of: PhantomData }
+    }
+
+    /// The sums of a pixel, by its number in the block.
+    #[inline(always)]
+    fn get(&self, index: usize) -> T {
+        if self.block.is_empty() {
+            return T::default();
+        }
+        let mut at = 2 * T::NUMBERS + index * self.pixel;
+        let mut kept = self.kept.iter();
+        T::take_numbers(&mut || match kept.next() {
+            Some(kept) if kept.bytes > 0 => {
+                let number = kept.number(&self.block[at..at + WIDE]);
+                at += usize::from(kept.bytes);
+                number
+            }
+            _ => 0,
+        })
+    }
+}
+
+impl Kept {
+    /// The number of which the first bytes are those that are kept, at least one.
+    #[inline(always)]
+    fn number(self, wide: &[u8]) -> i128 {
+        const HALF: usize = size_of::<i64>();
+        let [bytes, below] = [u32::from(self.bytes), 8 * u32::from(self.below)];
+        match wide.first_chunk::<HALF>() {
+            // Most numbers are short, and 64 bits are faster.
+            Some(half) if bytes <= HALF as u32 => {
+                let above = 8 * (HALF as u32 - bytes);
+                i128::from(i64::from_le_bytes(*half) << above >> above) << below
+            }
+            _ => {
+                let above = 8 * (WIDE as u32 - bytes);
+                let number = wide.first_chunk().map_or(0, |wide| i128::from_le_bytes(*wide));
+                number << above >> above << below
+            }
+        }
+    }
+}
+
+/// The sums of a block's `count` pixels.
+fn unpack<T: Stored + Default>(block: &[u8], count: usize, sums: &mut Vec<T>) {
+    let packed = Packed::of(block);
+    sums.clear();
+    sums.extend((0..count).map(|index| packed.get(index)));
+}
+
+/// The bytes of a block of these pixels.
+fn pack<T: Stored + Default + PartialEq>(sums: &[T], bytes: &mut Vec<u8>) {
+    const { assert!(T::NUMBERS <= MOST_NUMBERS) };
+    bytes.clear();
+    let none = T::default();
+    if sums.iter().all(|sums| *sums == none) {
+        return;
+    }
+    // The bits that are set in any pixel, and those that differ from the sign.
+    let mut bits = [[0_u128; 2]; MOST_NUMBERS];
+    for sums in sums {
+        let mut all = bits.iter_mut();
+        sums.put_numbers(&mut |number: i128| {
+            if let Some([set, unlike_sign]) = all.next() {
+                *set |= number.cast_unsigned();
+                *unlike_sign |= (number ^ (number >> 127)).cast_unsigned();
+            }
+        });
+    }
+    let kept = bits.map(|[set, unlike_sign]| {
+        if set == 0 {
+            return Kept::default();
+        }
+        // With a bit for the sign.
+        let end = (128 - unlike_sign.leading_zeros()) / 8 + 1;
+        let below = set.trailing_zeros() / 8;
+        Kept { below: below as u8, bytes: (end - below) as u8 }
+    });
+    let pixel: usize = kept.iter().take(T::NUMBERS).map(|kept| usize::from(kept.bytes)).sum();
+    bytes.extend(kept.iter().take(T::NUMBERS).flat_map(|kept| [kept.below, kept.bytes]));
+    let mut at = bytes.len();
+    bytes.resize(at + sums.len() * pixel + WIDE, 0);
+    for sums in sums {
+        let mut kept = kept.iter();
+        sums.put_numbers(&mut |number: i128| {
+            if let Some(&Kept { below, bytes: stored }) = kept.next() {
+                let number = number >> (8 * u32::from(below));
+                bytes[at..at + WIDE].copy_from_slice(&number.to_le_bytes());
+                at += usize::from(stored);
+            }
+        });
+    }
+    // Of the last number, the bytes that are not kept.
+    bytes[at..].fill(0);
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::super::Pixel;
+    use super::super::aov::LayerSums;
+    use super::*;
+
+    /// Numbers of any magnitude and number of zeros at their ends.
+    fn number() -> impl Strategy<Value = i128> {
+        (any::<i128>(), 0_u32..128, 0_u32..128)
+            .prop_map(|(bits, above, below)| bits << above >> above >> below << below)
+    }
+
+    fn pixel() -> impl Strategy<Value = Pixel> {
+        (prop::array::uniform3(number()), prop::array::uniform3(number()), any::<u64>(), 0_u32..64).prop_map(
+            |(sums, squares, samples, above)| Pixel {
+                sums,
+                squares: squares.map(i128::cast_unsigned),
+                samples: samples >> above,
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_come_back(sums in prop::collection::vec(pixel(), 1..30)) {
+            let (mut bytes, mut again) = (Vec::new(), Vec::<Pixel>::new());
+            pack(&sums, &mut bytes);
+            unpack(&bytes, sums.len(), &mut again);
+            prop_assert_eq!(again, sums);
+        }
+
+        #[test]
+        fn pixels_stay_where_they_are(
+            pixels in prop::collection::vec((0_u32..70, 0_u32..40, pixel()), 0..40),
+        ) {
+            let mut plane = Plane::<Pixel>::new(70, 40).unwrap();
+            let mut slow = vec![Pixel::default(); 70 * 40];
+            for (x, y, sums) in pixels {
+                plane.change(PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |_, _, pixel| *pixel = sums);
+                slow[(y * 70 + x) as usize] = sums;
+            }
+            for y in 0..40 {
+                let mut row = Vec::new();
+                plane.row(y, 3, 69, |pixel| row.push(pixel));
+                prop_assert_eq!(&row[..], &slow[y as usize * 70 + 3..][..66]);
+                prop_assert_eq!(plane.get(69, y), Some(slow[y as usize * 70 + 69]));
+            }
+            // The same sums have the same bytes, however they came.
+            let mut anew = Plane::<Pixel>::new(70, 40).unwrap();
+            let all = PixelBounds { x0: 0, y0: 0, x1: 70, y1: 40 };
+            anew.change(all, |x, y, pixel| *pixel = slow[(y * 70 + x) as usize]);
+            prop_assert_eq!(anew, plane);
+        }
+    }
+
+    #[test]
+    fn extremes_come_back() {
+        for extreme in [i128::MIN, i128::MAX, -1, 1, i128::from(u64::MAX), -128, 127, 128] {
+            let sums = [extreme; 3];
+            let sums =
+                [Pixel { sums, squares: [u128::MAX, 1 << 127, 0], samples: u64::MAX }, Pixel::default()];
+            let (mut bytes, mut again) = (Vec::new(), Vec::<Pixel>::new());
+            pack(&sums, &mut bytes);
+            unpack(&bytes, 2, &mut again);
+            assert_eq!(again, sums);
+        }
+    }
+
+    #[test]
+    fn what_has_no_samples_takes_no_memory() {
+        let mut bytes = vec![1];
+        pack(&[Pixel::default(); 9], &mut bytes);
+        assert!(bytes.is_empty());
+        pack(&[LayerSums::default(); 9], &mut bytes);
+        assert!(bytes.is_empty());
+    }
+}
