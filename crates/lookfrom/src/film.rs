@@ -214,8 +214,8 @@ impl Film {
     /// an estimate, by what was measured (docs/benchmarks/memory.md).
     pub fn memory(image: &ImageSettings) -> u64 {
         /// Of a pixel of the film's area.
-        const LIGHT: u64 = 60;
-        const LAYERS: u64 = 150;
+        const LIGHT: u64 = 55;
+        const LAYERS: u64 = 120;
         const FEATURES: u64 = 65;
         const DENOISER: u64 = 10;
         const ALPHA: u64 = 20;

@@ -124,7 +124,8 @@ impl<'a> FilmParts<'a> {
     ) -> Result<()> {
         let (FilmFile { film, provenance }, mut bands) = self.bands()?;
         let texts = header::finished(&provenance.header, film, &provenance.development, false);
-        let channels = bands.with_rows(|rows| rows.channels());
+        let mut channels = Vec::new();
+        bands.with_rows(|rows| channels = rows.channels());
         let header = adapt(provenance, film).exr_header(film, channels, &texts);
         write_exr(&header, &mut bands, out)
     }
@@ -197,11 +198,11 @@ struct Bands<'a> {
 
 impl Bands<'_> {
     /// Calls `use_rows` with the rows of the picture.
-    fn with_rows<T>(&self, use_rows: impl FnOnce(&Rows<'_>) -> T) -> T {
+    fn with_rows(&self, use_rows: impl FnOnce(&Rows<'_>)) {
         let film = &self.film;
         let light_paths = self.light_paths.iter().map(String::as_str).collect();
         let layers = &Layers::OfFilm { film, light_paths, noisy: None };
-        use_rows(&Rows { light: Light::Film(film), layers, background: self.background })
+        use_rows(&Rows { light: Light::Film(film), layers, background: self.background });
     }
 
     /// Reads some rows of a part.

@@ -74,8 +74,8 @@ impl<const N: usize> Changes<N> {
                 for x in 0..COLUMNS.min(width - left) {
                     let change = changes[y * COLUMNS + x];
                     let place = (y0 as usize + top + y) * picture.width as usize + x0 as usize + left + x;
-                    for c in 0..3 {
-                        picture.pixels[place][c] += change[c];
+                    for (light, change) in picture.pixels[place].iter_mut().zip(change) {
+                        *light += change;
                     }
                     if N == 4 {
                         picture.alpha[place] += change[N - 1];
