@@ -253,15 +253,18 @@ impl Film {
         self.area
     }
 
-    /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does; it is not recorded in the ledger.
+    /// Adds the light of one sample to its pixel, as [`FilmTile::add`] does; it is not recorded in the ledger. The block of the pixel is
+    /// packed anew: for many samples, [`Film::add_tile`] is far faster.
     ///
     /// # Panics
     /// If the pixel is outside of [`Film::area`].
     pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
         let area = PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
-        let mut tile = FilmTile::of_kinds(area, self.kinds()).expect("memory for a pixel");
-        tile.add(x, y, sample, rgb);
-        if let Err(error) = self.add_tile(&tile) {
+        let added = self.tile(area).and_then(|mut tile| {
+            tile.add(x, y, sample, rgb);
+            self.add_tile(&tile)
+        });
+        if let Err(error) = added {
             panic!("{error}");
         }
     }
@@ -282,7 +285,11 @@ impl Film {
             .change(area, |x, y, sum| *sum = sum.saturating_add(tile.alpha_squares[index(x, y)]));
         self.layers.change(area, |x, y, sums| sums.merge(&tile.layers[index(x, y)]));
         self.channels.change(area, |x, y, sums| sums.merge(&tile.channels[index(x, y)]));
-        self.features.change(area, |x, y, sums| sums.merge(&tile.features[index(x, y)]));
+        // Only the first samples of a pixel have any.
+        let none = AovSums::default();
+        if tile.features.iter().any(|sums| *sums != none) {
+            self.features.change(area, |x, y, sums| sums.merge(&tile.features[index(x, y)]));
+        }
         for (mine, theirs) in self.light_paths.iter_mut().zip(&tile.light_paths) {
             mine.change(area, |x, y, sums| sums.merge(&theirs[index(x, y)]));
         }
