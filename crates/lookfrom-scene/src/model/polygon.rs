@@ -167,14 +167,15 @@ mod tests {
     proptest! {
         #[test]
         fn star_shapes_are_covered_once(
-            radii in prop::collection::vec(0.1_f32..1.0, 4..40),
+            radii in prop::collection::vec(100_u16..1000, 4..40),
             scale in -20_i32..20,
             axis in 0_usize..6,
         ) {
             // A star-shaped polygon around the origin of any concavity, in one of six orientations of a cube.
             let scale = 2_f32.powi(scale);
             let step = std::f32::consts::TAU / radii.len() as f32;
-            let points: Vec<Vec3> = radii.iter().enumerate().map(|(i, r)| {
+            let radii = radii.iter().map(|&thousandths| f32::from(thousandths) / 1000.0);
+            let points: Vec<Vec3> = radii.enumerate().map(|(i, r)| {
                 let (x, y) = (scale * r * (step * i as f32).cos(), scale * r * (step * i as f32).sin());
                 match axis {
                     0 => Vec3::new(x, y, 0.3 * y), 1 => Vec3::new(y, x, 0.0),
