@@ -239,7 +239,7 @@ impl Bsdf {
 
     /// pbrt's `coateddiffuse`, with walks of the seed 0.
     pub fn coated_diffuse(reflectance: Spectrum, coat: &CoatLayer) -> Self {
-        Self::CoatedDiffuse(Layered::new(Diffuse::new(reflectance), coat, 0.0))
+        Self::CoatedDiffuse(Layered::coated_diffuse(Diffuse::new(reflectance), coat, 0.0))
     }
 
     /// pbrt's `coatedconductor` by the metal's index of refraction and extinction in air: both are divided by the

@@ -394,7 +394,7 @@ impl Evaluator<'_> {
 
     fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &Coat) -> Layered<Diffuse> {
         let coat = self.coat(coat);
-        Layered::new(self.diffuse(reflectance), &coat, self.seed)
+        Layered::coated_diffuse(self.diffuse(reflectance), &coat, self.seed)
     }
 
     fn coated_conductor(&mut self, metal: &Metal, roughness: &Roughness, coat: &Coat) -> Layered<Conductor> {
@@ -439,7 +439,7 @@ impl Evaluator<'_> {
             max_depth: coat.max_depth,
             samples: coat.samples,
             estimate: coat.estimate,
-            internal_reflectance: coat.internal_reflectance,
+            interior: coat.interior,
         }
     }
 }

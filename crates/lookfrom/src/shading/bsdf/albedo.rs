@@ -11,7 +11,7 @@
 mod anisotropic;
 
 use std::f32::consts::PI;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, OnceLock};
 
 use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
@@ -65,19 +65,19 @@ impl<R: Real> Split<R> {
         Self { straight: mix(self.straight, other.straight, t), grazing: mix(self.grazing, other.grazing, t) }
     }
 
-    /// The entries of a table at some distance from each index.
+    /// The entries of a table at indices.
     #[inline(always)]
-    fn lookup(table: &[Split], index: R::Bits, distance: usize) -> Self {
+    fn lookup(index: R::Bits, entry: impl Fn(usize) -> Split) -> Self {
         Self {
             straight: R::lookup(
                 index,
                 #[inline(always)]
-                |index| table[index + distance].straight,
+                |index| entry(index).straight,
             ),
             grazing: R::lookup(
                 index,
                 #[inline(always)]
-                |index| table[index + distance].grazing,
+                |index| entry(index).grazing,
             ),
         }
     }
@@ -88,19 +88,29 @@ fn mix<R: Real>(a: R, b: R, t: R) -> R {
     a + t * (b - a)
 }
 
+/// The albedos of reflectors of one roughness, by cosine.
 struct Mirrors {
-    /// Column by column.
-    albedo: Vec<Split>,
-    /// By column.
-    mean: Vec<Split>,
+    albedo: [Split; COSINES],
+    mean: Split,
 }
 
-static MIRRORS: LazyLock<Mirrors> = LazyLock::new(|| {
-    let albedo: Vec<Split> =
-        grid().map(|(cos, roughness)| integrated_mirror(cos, roughness * roughness)).collect();
-    let mean = albedo.chunks(COSINES).map(mean).collect();
-    Mirrors { albedo, mean }
-});
+/// By roughness; each is integrated on first use, since most scenes have few.
+static MIRRORS: [OnceLock<Mirrors>; ROUGHNESSES] = [const { OnceLock::new() }; ROUGHNESSES];
+
+impl Mirrors {
+    /// Those of a column of the table.
+    #[inline(always)]
+    fn of(column: usize) -> &'static Self {
+        MIRRORS[column].get_or_init(|| Self::integrated(column))
+    }
+
+    #[cold]
+    fn integrated(column: usize) -> Self {
+        let roughness = fraction(column, ROUGHNESSES);
+        let albedo = std::array::from_fn(|row| integrated_mirror(cosine(row), roughness * roughness));
+        Self { mean: mean(&albedo), albedo }
+    }
+}
 
 /// The table of the sheen is separate, because it takes longest and few scenes need it.
 static SHEENS: LazyLock<Vec<f32>> =
@@ -196,9 +206,16 @@ pub(super) fn mirror<R: Real>(cos: R, alpha: R) -> Split<R> {
             }
             let (row, down) = place(Float::sqrt(cos), COSINES);
             let (column, right) = place(Float::sqrt(alpha), ROUGHNESSES);
-            let (table, at) = (&MIRRORS.albedo, index(row, column));
-            let left = Split::lookup(table, at, 0).mixed(Split::lookup(table, at, 1), down);
-            let next = Split::lookup(table, at, COSINES).mixed(Split::lookup(table, at, COSINES + 1), down);
+            let at = index(row, column);
+            let entry = |distance: usize| {
+                Split::lookup(
+                    at,
+                    #[inline(always)]
+                    move |at| Mirrors::of((at + distance) / COSINES).albedo[(at + distance) % COSINES],
+                )
+            };
+            let left = entry(0).mixed(entry(1), down);
+            let next = entry(COSINES).mixed(entry(COSINES + 1), down);
             Split::select(is_smooth, smooth, left.mixed(next, right))
         },
     )
@@ -216,8 +233,15 @@ pub(super) fn mirror_mean<R: Real>(alpha: R) -> Split<R> {
                 return smooth;
             }
             let (column, right) = place(Float::sqrt(alpha), ROUGHNESSES);
-            let (table, at) = (&MIRRORS.mean, column.to_integer());
-            let rough = Split::lookup(table, at, 0).mixed(Split::lookup(table, at, 1), right);
+            let at = column.to_integer();
+            let mean = |distance: usize| {
+                Split::lookup(
+                    at,
+                    #[inline(always)]
+                    move |at| Mirrors::of(at + distance).mean,
+                )
+            };
+            let rough = mean(0).mixed(mean(1), right);
             Split::select(is_smooth, smooth, rough)
         },
     )

@@ -16,7 +16,7 @@ use super::microfacet::TrowbridgeReitz;
 use super::{
     DirectionSample, Lobes, fresnel, is_grazing,
     lanes::{Kind, LaneBsdf},
-    layered::Base,
+    layered::{Base, DiffuseInterior},
     same_side,
 };
 use crate::core::optics;
@@ -206,13 +206,15 @@ impl<R: Real> LaneBsdf<R> for Conductor<R> {
 }
 
 impl<R: Real> Base<R> for Conductor<R> {
+    type Interior = ();
+
     #[inline(always)]
     fn is_specular(&self) -> R::Mask {
         self.roughness.is_smooth()
     }
 
     #[inline(always)]
-    fn lambertian(&self) -> Option<Spectrum<R>> {
+    fn lambertian<'a>(&self, (): &'a ()) -> Option<(Spectrum<R>, &'a DiffuseInterior<R>)> {
         None
     }
 }

@@ -10,7 +10,7 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::{
     BsdfSample, DirectionSample, Lobes, is_grazing,
     lanes::{Kind, LaneBsdf},
-    layered::Base,
+    layered::{Base, DiffuseInterior},
     same_side,
 };
 use crate::core::spectrum::Spectrum;
@@ -81,14 +81,19 @@ impl<R: Real> LaneBsdf<R> for Diffuse<R> {
 }
 
 impl<R: Real> Base<R> for Diffuse<R> {
+    type Interior = DiffuseInterior<R>;
+
     #[inline(always)]
     fn is_specular(&self) -> R::Mask {
         self.reflectance.is_black().like(false)
     }
 
     #[inline(always)]
-    fn lambertian(&self) -> Option<Spectrum<R>> {
-        Some(self.reflectance)
+    fn lambertian<'a>(
+        &self,
+        interior: &'a DiffuseInterior<R>,
+    ) -> Option<(Spectrum<R>, &'a DiffuseInterior<R>)> {
+        Some((self.reflectance, interior))
     }
 }
 

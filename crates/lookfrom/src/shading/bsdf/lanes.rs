@@ -6,7 +6,7 @@ use super::conductor::Conductor;
 use super::dielectric::Dielectric;
 use super::diffuse::Diffuse;
 use super::henyey_greenstein::HenyeyGreenstein;
-use super::layered::{Base, Layered};
+use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
 use super::principled::{Look, Principled};
@@ -172,6 +172,21 @@ fn gather_roughness<S: Simd>(simd: S, rows: &[TrowbridgeReitz; LANES]) -> Trowbr
     }
 }
 
+#[inline(always)]
+fn gather_interior<S: Simd>(simd: S, rows: &[&DiffuseInterior; LANES]) -> DiffuseInterior<f32x8<S>> {
+    DiffuseInterior {
+        internal_reflectance: f32x8::load_array(simd, by_lane!(lane => rows[lane].internal_reflectance)),
+        has_transmission: f32x8::load_array(simd, by_lane!(lane => rows[lane].has_transmission)),
+        transmission: std::array::from_fn(
+            #[inline(always)]
+            |k| f32x8::load_array(simd, by_lane!(lane => rows[lane].transmission[k])),
+        ),
+    }
+}
+
+#[inline(always)]
+fn gather_nothing<S: Simd>(_: S, _: &[&(); LANES]) {}
+
 impl RowBsdf for Diffuse {
     type Lanes<S: Simd> = Diffuse<f32x8<S>>;
 
@@ -248,7 +263,7 @@ impl RowBsdf for Principled {
 }
 
 macro_rules! layered_class {
-    ($base:ident, $variant:ident) => {
+    ($base:ident, $variant:ident, $unknown:expr, $gather:ident) => {
         impl RowBsdf for Layered<$base> {
             type Lanes<S: Simd> = Layered<$base<f32x8<S>>, f32x8<S>>;
 
@@ -260,7 +275,7 @@ macro_rules! layered_class {
                 self.coat.regularize();
                 self.base.regularize();
                 // It was that of a smoother coat.
-                self.internal_reflectance = -1.0;
+                self.interior = $unknown;
             }
 
             #[inline(always)]
@@ -276,18 +291,15 @@ macro_rules! layered_class {
                     samples: f32x8::load_array(simd, by_lane!(lane => rows[lane].samples)),
                     unbiased: f32x8::load_array(simd, by_lane!(lane => rows[lane].unbiased)),
                     seed: f32x8::load_array(simd, by_lane!(lane => rows[lane].seed)),
-                    internal_reflectance: f32x8::load_array(
-                        simd,
-                        by_lane!(lane => rows[lane].internal_reflectance),
-                    ),
+                    interior: $gather(simd, &by_lane!(lane => &rows[lane].interior)),
                 }
             }
         }
     };
 }
 
-layered_class!(Diffuse, CoatedDiffuse);
-layered_class!(Conductor, CoatedConductor);
+layered_class!(Diffuse, CoatedDiffuse, DiffuseInterior::new(None), gather_interior);
+layered_class!(Conductor, CoatedConductor, (), gather_nothing);
 
 #[cfg(test)]
 mod tests;

@@ -3,9 +3,11 @@
 //! Between the coat (a dielectric boundary) and the base lies a slab of `thickness` in units of the mean free path,
 //! which absorbs or scatters. Its scattering has no closed form; `f` estimates it by a short random walk whose
 //! random numbers are a hash of a seed, which differs by sample, and of the directions: `f` is a deterministic function
-//! whose mean over seeds is right. Over a diffuse base, below a slab without particles, only the ways through the coat are
-//! sampled: what goes to and fro between is a geometric series, where its ratio is known beforehand. `pdf` is also an estimate, of single reflections off the base, mixed with a tenth of
-//! a uniform density. `sample` walks until it leaves the coat; only the ratio `f / pdf` of its result is meaningful.
+//! whose mean over seeds is right. Over a diffuse base, below a slab without particles, nothing is left to chance: the fraction of light
+//! that gets through the coat along each direction is a polynomial ([`CoatInterior`]; only the ways through the coat are sampled
+//! where none fits), and what goes to and fro between is a geometric series. `pdf` is also an estimate, of single reflections off
+//! the base (there a cosine), mixed with a tenth of a uniform density. `sample` walks until it leaves the coat; only the ratio
+//! `f / pdf` of its result is meaningful.
 //!
 //! This is pbrt-v4's model, including every simplification that is visible in images: the slab absorbs even where
 //! nothing scatters (exp(−thickness / cos θ) per crossing), walks are cut off after `max_depth` steps, and both
@@ -23,12 +25,14 @@ mod random;
 mod walk;
 
 use std::f32::consts::FRAC_1_PI;
+use std::fmt;
 
 use lookfrom_scene::material::CoatEstimate;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
+use super::diffuse::Diffuse;
 use super::fresnel;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
@@ -38,22 +42,25 @@ use crate::core::elementary::exp;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-pub use coat::CoatLayer;
+pub use coat::{CoatInterior, CoatLayer, DiffuseInterior};
 use coat::{coat_f, coat_pdf, sample_coat};
 use random::{Purpose, Random};
 use walk::{Walk, surviving};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
 pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
+    /// What is known beforehand of the light between coat and base.
+    type Interior: Copy + fmt::Debug;
+
     /// True if it reflects in single directions.
     fn is_specular(&self) -> R::Mask;
-    /// The albedo of a base that reflects all light alike into all directions.
-    fn lambertian(&self) -> Option<Spectrum<R>>;
+    /// The albedo of a base that reflects all light alike into all directions, and what is known of the light above it.
+    fn lambertian<'a>(&self, interior: &'a Self::Interior) -> Option<(Spectrum<R>, &'a DiffuseInterior<R>)>;
 }
 
 /// A base under a coat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Layered<B, R = f32> {
+pub struct Layered<B: Base<R>, R: Real = f32> {
     /// The coat's boundary.
     pub(crate) coat: Dielectric<R>,
     /// The base's BSDF.
@@ -70,8 +77,8 @@ pub struct Layered<B, R = f32> {
     pub(crate) unbiased: R,
     /// The seed of its walks, in [0, 1).
     pub(crate) seed: R,
-    /// [`CoatLayer::internal_reflectance`]; negative where it is not known.
-    pub(crate) internal_reflectance: R,
+    /// What is known beforehand of the light between coat and base.
+    pub(crate) interior: B::Interior,
 }
 
 impl Layered<Conductor> {
@@ -84,7 +91,14 @@ impl Layered<Conductor> {
         seed: f32,
     ) -> Self {
         let coat_eta = fresnel::valid_eta(coat.eta);
-        Self::new(Conductor::new(eta / coat_eta, k / coat_eta, roughness), coat, seed)
+        Self::with_interior(Conductor::new(eta / coat_eta, k / coat_eta, roughness), coat, seed, ())
+    }
+}
+
+impl Layered<Diffuse> {
+    /// A coat on a diffuse base.
+    pub fn coated_diffuse(base: Diffuse, coat: &CoatLayer, seed: f32) -> Self {
+        Self::with_interior(base, coat, seed, DiffuseInterior::new(coat.interior))
     }
 }
 
@@ -95,9 +109,9 @@ fn transmittance<R: Real>(depth: R, w: Vector<R>) -> R {
     R::select(is_empty, depth.like(1.0), exp(-Float::abs(depth / w.z)))
 }
 
-impl<B> Layered<B> {
+impl<B: Base<f32>> Layered<B> {
     /// A coat on a base, whose indices are those over the coat's; walks of different seeds in [0, 1) are independent.
-    pub fn new(base: B, coat: &CoatLayer, seed: f32) -> Self {
+    fn with_interior(base: B, coat: &CoatLayer, seed: f32, interior: B::Interior) -> Self {
         Self {
             coat: Dielectric::new(coat.eta, coat.roughness),
             base,
@@ -108,7 +122,7 @@ impl<B> Layered<B> {
             samples: f32::from(coat.samples.max(1)),
             unbiased: if coat.estimate == CoatEstimate::Unbiased { 1.0 } else { 0.0 },
             seed,
-            internal_reflectance: coat.internal_reflectance.unwrap_or(-1.0),
+            interior,
         }
     }
 
@@ -160,8 +174,10 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 );
                 return Spectrum::select(is_lit, mean, black);
             }
-            sum += match self.base.lambertian() {
-                Some(reflectance) => self.through(reflectance, [wo, wi], mode, &mut random, active),
+            sum += match self.base.lambertian(&self.interior) {
+                Some((reflectance, interior)) => {
+                    self.through((reflectance, interior), [wo, wi], mode, &mut random, active)
+                }
                 None => self.walk([wo, wi], mode, &mut random, active),
             };
             taken += 1.0;
@@ -173,18 +189,33 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
     #[inline(always)]
     fn through(
         &self,
-        reflectance: Spectrum<R>,
+        (reflectance, interior): (Spectrum<R>, &DiffuseInterior<R>),
         [wo, wi]: [Vector<R>; 2],
         mode: Mode,
         random: &mut Random<R>,
         active: R::Mask,
     ) -> Spectrum<R> {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
-        let is_unknown = self.internal_reflectance.lt(zero);
-        let is_known = active & !is_unknown;
+        let is_unknown = interior.internal_reflectance.lt(zero);
+        let series = |both: R| {
+            reflectance.map(
+                #[inline(always)]
+                |rho| both * rho / (one - rho * interior.internal_reflectance),
+            )
+        };
+        // What gets through the coat along both directions is known; light is spread by the refraction on one of its ways.
+        let is_closed = active & interior.has_transmission();
         let mut sum = Spectrum::splat(zero);
+        if is_closed.any() {
+            let [there, back] = [interior.transmission_along(wo), interior.transmission_along(wi)];
+            let both = there * back * FRAC_1_PI / (self.coat.eta * self.coat.eta);
+            sum = Spectrum::select(is_closed, series(both), sum);
+        }
+        let active = active & !is_closed;
+        let is_known = active & !is_unknown;
         if (active & is_unknown).any() {
-            sum = self.walk([wo, wi], mode, random, active & is_unknown);
+            let walked = self.walk([wo, wi], mode, random, active & is_unknown);
+            sum = Spectrum::select(active & is_unknown, walked, sum);
         }
         if is_known.any() {
             let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, is_known);
@@ -196,11 +227,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 },
             );
             let both = entering * leaving * FRAC_1_PI;
-            let series = reflectance.map(
-                #[inline(always)]
-                |rho| both * rho / (one - rho * self.internal_reflectance),
-            );
-            sum = Spectrum::select(is_known & exit.is_valid, series, sum);
+            sum = Spectrum::select(is_known & exit.is_valid, series(both), sum);
         }
         sum
     }
@@ -314,13 +341,26 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         if !reflects.any() {
             return uniform;
         }
-        let mut sum = coat_pdf(&self.coat, wo, wi, Lobes::REFLECTION) * self.samples;
+        let reflecting = coat_pdf(&self.coat, wo, wi, Lobes::REFLECTION);
+        // What gets through comes back as from a Lambertian surface.
+        let interior = self.base.lambertian(&self.interior);
+        let (is_closed, through) = match interior {
+            Some((_, interior)) => (interior.has_transmission(), interior.transmission_along(wo)),
+            None => (zero.lt(zero), zero),
+        };
+        let closed = reflecting * (zero.like(1.0) - through) + through * (wi.z * FRAC_1_PI);
+        let closed = R::select(reflects, closed * 0.9 + 0.1 * UNIFORM, uniform);
+        if is_closed.all() {
+            return closed;
+        }
+        let mut sum = reflecting * self.samples;
         let mut random = Random::new(Purpose::Density, self.seed, wi, [wo.x, wo.y, wo.z]);
         let mut taken = 0.0;
         loop {
-            let active = reflects & self.samples.gt(zero.like(taken));
+            let active = reflects & !is_closed & self.samples.gt(zero.like(taken));
             if !active.any() {
-                return R::select(reflects, sum / self.samples * 0.9 + 0.1 * UNIFORM, uniform);
+                let estimate = R::select(reflects, sum / self.samples * 0.9 + 0.1 * UNIFORM, uniform);
+                return R::select(is_closed, closed, estimate);
             }
             sum = sum + self.once_off_the_base(wo, wi, mode, &mut random, active);
             taken += 1.0;

@@ -514,7 +514,7 @@ fn numbers_of_any_size_never_become_nan() {
             max_depth: 10,
             samples: 1,
             estimate: lookfrom_scene::material::CoatEstimate::Unbiased,
-            internal_reflectance: None,
+            interior: None,
         };
         let whitted = Whitted {
             diffuse: lanes(41),

@@ -7,7 +7,7 @@ use lookfrom_scene::scene::{TextureId, VertexNormals};
 use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
 use super::kind::{Roughness, Whitted};
 use super::{Material, albedo, approximate, pictures, principled};
-use crate::shading::bsdf::layered::CoatLayer;
+use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
@@ -122,18 +122,18 @@ impl<'a> Compiler<'a> {
 
     fn coat(&self, coat: &written::Coat) -> Coat {
         let roughness = rough(&coat.roughness);
-        let internal_reflectance = match (coat.eta, &roughness, coat.thickness) {
+        let interior = match (coat.eta, &roughness, coat.thickness) {
             (written::Ior::Value(eta), Roughness::Constant(distribution), Scalar::Value(thickness))
                 if coat.albedo == Color::BLACK && coat.estimate == written::CoatEstimate::Unbiased =>
             {
-                Some(CoatLayer::internal_reflectance(eta, *distribution, thickness))
+                Some(CoatInterior::new(eta, *distribution, thickness))
             }
             _ => None,
         };
         Coat {
             eta: index(coat.eta),
             roughness,
-            internal_reflectance,
+            interior,
             thickness: coat.thickness.into(),
             albedo: self.albedo(coat.albedo),
             g: coat.g.into(),

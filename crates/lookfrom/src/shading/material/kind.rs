@@ -4,6 +4,7 @@ use glam::Vec3;
 use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
+use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled as bsdf;
 use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
@@ -183,8 +184,8 @@ pub struct Coat {
     pub samples: u16,
     /// How they are weighted.
     pub estimate: CoatEstimate,
-    /// [`internal_reflectance`](crate::shading::bsdf::layered::CoatLayer::internal_reflectance) where the coat is the same everywhere and has no particles, and is not pbrt's.
-    pub internal_reflectance: Option<f32>,
+    /// What is known beforehand, where the coat is the same everywhere and has no particles, and is not pbrt's.
+    pub interior: Option<CoatInterior>,
 }
 
 /// Perturbations of the shading normal.

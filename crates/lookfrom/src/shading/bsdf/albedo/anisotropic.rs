@@ -1,9 +1,9 @@
 //! Directional albedos of anisotropic reflectors, by a table of four dimensions: the roughness along both axes, the angle
-//! between the direction and the first axis, and its cosine to the normal. It is integrated when the first anisotropic
-//! surface is shaded (about a tenth of a second).
+//! between the direction and the first axis, and its cosine to the normal. A pair of roughnesses is integrated when a surface first
+//! needs it (about a millisecond).
 
 use std::f32::consts::{FRAC_PI_2, PI};
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use glam::Vec3;
 use lookfrom_simd::{Float, Real};
@@ -22,35 +22,34 @@ const ROUGHNESSES: usize = 16;
 /// Distances of neighbours in the table.
 const STRIDES: [usize; 4] = [TURNS * COSINES * ROUGHNESSES, TURNS * COSINES, COSINES, 1];
 
+/// The albedos of reflectors of two roughnesses, by angle and cosine.
 struct Reflectors {
-    /// By α along x, α along y, angle and cosine.
-    albedo: Vec<Split>,
-    /// By α along x and y.
-    mean: Vec<Split>,
+    albedo: [Split; TURNS * COSINES],
+    mean: Split,
 }
 
-static REFLECTORS: LazyLock<Reflectors> = LazyLock::new(|| {
-    let mut albedo = vec![Split::<f32>::default(); STRIDES[0] * ROUGHNESSES];
-    for x in 0..ROUGHNESSES {
-        for y in 0..=x {
-            for turn in 0..TURNS {
-                for row in 0..COSINES {
-                    let entry = entry([x, y], turn, row);
-                    albedo[index([x, y], turn, row)] = entry;
-                    // Turned by a right angle it is the same surface.
-                    albedo[index([y, x], TURNS - 1 - turn, row)] = entry;
-                }
-            }
-        }
-    }
-    let mean = (0..ROUGHNESSES * ROUGHNESSES)
-        .map(|cell| mean(&albedo, [cell / ROUGHNESSES, cell % ROUGHNESSES].map(alpha)))
-        .collect();
-    Reflectors { albedo, mean }
-});
+/// By roughness along x and y; each is integrated on first use, since most scenes have few.
+static REFLECTORS: [OnceLock<Reflectors>; ROUGHNESSES * ROUGHNESSES] =
+    [const { OnceLock::new() }; ROUGHNESSES * ROUGHNESSES];
 
-fn index([x, y]: [usize; 2], turn: usize, row: usize) -> usize {
-    x * STRIDES[0] + y * STRIDES[1] + turn * STRIDES[2] + row * STRIDES[3]
+impl Reflectors {
+    /// Those of a pair of roughnesses: x times [`ROUGHNESSES`] and y.
+    #[inline(always)]
+    fn of(pair: usize) -> &'static Self {
+        REFLECTORS[pair].get_or_init(|| Self::integrated([pair / ROUGHNESSES, pair % ROUGHNESSES]))
+    }
+
+    #[cold]
+    fn integrated([x, y]: [usize; 2]) -> Self {
+        // Turned by a right angle it is the same surface.
+        let is_turned = y > x;
+        let columns = if is_turned { [y, x] } else { [x, y] };
+        let albedo = std::array::from_fn(|at| {
+            let turn = at / COSINES;
+            entry(columns, if is_turned { TURNS - 1 - turn } else { turn }, at % COSINES)
+        });
+        Self { mean: mean(&albedo), albedo }
+    }
 }
 
 fn fraction(index: usize, count: usize) -> f32 {
@@ -80,7 +79,7 @@ fn entry(columns: [usize; 2], turn: usize, row: usize) -> Split {
 pub(super) fn mirror<R: Real>(wo: Vector<R>, roughness: TrowbridgeReitz<R>) -> Split<R> {
     wo.z.at_level(
         #[inline(always)]
-        || interpolated(&REFLECTORS.albedo, wo, roughness),
+        || interpolated(wo, roughness),
     )
 }
 
@@ -92,38 +91,69 @@ pub(super) fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>) -> Split<R> {
         || {
             let (x, right) = place(Float::sqrt(roughness.alpha_x), ROUGHNESSES);
             let (y, down) = place(Float::sqrt(roughness.alpha_y), ROUGHNESSES);
-            let (table, at) = (&REFLECTORS.mean, (x * ROUGHNESSES as f32 + y).to_integer());
-            let here = Split::lookup(table, at, 0).mixed(Split::lookup(table, at, 1), down);
-            let next =
-                Split::lookup(table, at, ROUGHNESSES).mixed(Split::lookup(table, at, ROUGHNESSES + 1), down);
+            let at = (x * ROUGHNESSES as f32 + y).to_integer();
+            let mean = |distance: usize| {
+                Split::lookup(
+                    at,
+                    #[inline(always)]
+                    move |at| Reflectors::of(at + distance).mean,
+                )
+            };
+            let [here, next] = [0, ROUGHNESSES].map(|pair| mean(pair).mixed(mean(pair + 1), down));
             here.mixed(next, right)
         },
     )
 }
 
 #[inline(always)]
-fn interpolated<R: Real>(table: &[Split], wo: Vector<R>, roughness: TrowbridgeReitz<R>) -> Split<R> {
+fn interpolated<R: Real>(wo: Vector<R>, roughness: TrowbridgeReitz<R>) -> Split<R> {
+    let (x, x_part) = place(Float::sqrt(roughness.alpha_x), ROUGHNESSES);
+    let (y, y_part) = place(Float::sqrt(roughness.alpha_y), ROUGHNESSES);
+    let [(turn, turn_part), (row, row_part)] = directions(wo);
+    let at = x * STRIDES[0] as f32 + y * STRIDES[1] as f32 + turn * STRIDES[2] as f32 + row;
+    let parts = [x_part, y_part, turn_part, row_part];
+    sum_of_corners(
+        at.to_integer(),
+        parts,
+        STRIDES,
+        #[inline(always)]
+        |at| Reflectors::of(at / STRIDES[1]).albedo[at % STRIDES[1]],
+    )
+}
+
+/// The place of a direction among the turns and the cosines of the table.
+#[inline(always)]
+fn directions<R: Real>(wo: Vector<R>) -> [(R, R); 2] {
     let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
     let along = Float::abs(wo.x) + Float::abs(wo.y);
     let turn = R::select(along.gt(zero), Float::abs(wo.x) / along, zero);
-    let (x, x_part) = place(Float::sqrt(roughness.alpha_x), ROUGHNESSES);
-    let (y, y_part) = place(Float::sqrt(roughness.alpha_y), ROUGHNESSES);
-    let (turn, turn_part) = place(turn, TURNS);
-    let (row, row_part) = place(Float::sqrt(Float::min(wo.z, one)), COSINES);
-    let at = x * STRIDES[0] as f32 + y * STRIDES[1] as f32 + turn * STRIDES[2] as f32 + row;
-    let at = at.to_integer();
+    [place(turn, TURNS), place(Float::sqrt(Float::min(wo.z, one)), COSINES)]
+}
+
+/// Linear interpolation along some axes of a table.
+#[inline(always)]
+fn sum_of_corners<R: Real, const AXES: usize>(
+    at: R::Bits,
+    parts: [R; AXES],
+    strides: [usize; AXES],
+    entry: impl Fn(usize) -> Split,
+) -> Split<R> {
+    let (zero, one) = (parts[0].like(0.0), parts[0].like(1.0));
     let mut sum = Split { straight: zero, grazing: zero };
     let mut corner = 0;
-    while corner < 16 {
+    while corner < 1 << AXES {
         let (mut weight, mut distance, mut axis) = (one, 0, 0);
-        while axis < 4 {
-            let part = [x_part, y_part, turn_part, row_part][axis];
+        while axis < AXES {
             let is_next = corner >> axis & 1 == 1;
-            weight = weight * if is_next { part } else { one - part };
-            distance += if is_next { STRIDES[axis] } else { 0 };
+            weight = weight * if is_next { parts[axis] } else { one - parts[axis] };
+            distance += if is_next { strides[axis] } else { 0 };
             axis += 1;
         }
-        let Split { straight, grazing }: Split<R> = Split::lookup(table, at, distance);
+        let Split { straight, grazing }: Split<R> = Split::lookup(
+            at,
+            #[inline(always)]
+            |at| entry(at + distance),
+        );
         sum.straight = sum.straight + straight * weight;
         sum.grazing = sum.grazing + grazing * weight;
         corner += 1;
@@ -131,8 +161,9 @@ fn interpolated<R: Real>(table: &[Split], wo: Vector<R>, roughness: TrowbridgeRe
     sum
 }
 
-/// `(2/π) ∫∫ E(μ, φ) μ dμ dφ` over a quarter of the circle, of the table's rows with their interpolation.
-fn mean(table: &[Split], [alpha_x, alpha_y]: [f32; 2]) -> Split {
+/// `(2/π) ∫∫ E(μ, φ) μ dμ dφ` over a quarter of the circle, of the entries of one pair of roughnesses with their
+/// interpolation.
+fn mean(albedo: &[Split; TURNS * COSINES]) -> Split {
     const STEPS: usize = 32;
     const ANGLES: usize = 8;
     let mut sum = Split::<f32>::default();
@@ -142,8 +173,9 @@ fn mean(table: &[Split], [alpha_x, alpha_y]: [f32; 2]) -> Split {
             let x = (step as f32 + 0.5) / STEPS as f32;
             let cos = x * x;
             let sin = (1.0 - cos * cos).sqrt();
-            let wo = Vector { x: sin * c, y: sin * s, z: cos };
-            let here = interpolated(table, wo, TrowbridgeReitz { alpha_x, alpha_y });
+            let [(turn, turn_part), (row, row_part)] = directions(Vector { x: sin * c, y: sin * s, z: cos });
+            let at = (turn * COSINES as f32 + row) as u32;
+            let here: Split<f32> = sum_of_corners(at, [turn_part, row_part], [COSINES, 1], |at| albedo[at]);
             // μ = x², so 2 μ dμ = 4 x³ dx.
             let weight = 4.0 * x * x * x / (STEPS * ANGLES) as f32;
             sum.straight += weight * here.straight;

@@ -7,7 +7,7 @@ use super::*;
 use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::BsdfSample;
-use crate::shading::bsdf::layered::CoatLayer;
+use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::principled::Parameters;
 use crate::shading::bsdf::principled::film::Film;
 use lookfrom_scene::material::{CoatEstimate, Energy};
@@ -127,7 +127,12 @@ fn coat(index: u64) -> CoatLayer {
         g: 2.0 * unit(41, index) - 1.0,
         max_depth: 1 + (index % 12) as u16,
         samples: 1 + (index % 2) as u16,
-        internal_reflectance: index.is_multiple_of(4).then(|| unit(43, index)),
+        interior: index.is_multiple_of(4).then(|| CoatInterior {
+            internal_reflectance: unit(43, index),
+            transmission: index
+                .is_multiple_of(8)
+                .then(|| std::array::from_fn(|k| unit(44 + k as u64, index) - 0.5)),
+        }),
         estimate: if index.is_multiple_of(7) { CoatEstimate::Pbrt } else { CoatEstimate::Unbiased },
     }
 }

@@ -256,9 +256,11 @@ fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
         (1.5, rough, 0.01),
         (1.33, TrowbridgeReitz::new(0.2, 0.6), 0.3),
         (2.2, TrowbridgeReitz::new(0.05, 0.05), 0.1),
+        (1.4, TrowbridgeReitz::new(0.6, 0.6), 0.5),
     ] {
         let coat = CoatLayer { eta, roughness, thickness, ..coat };
-        let inside = CoatLayer::internal_reflectance(eta, roughness, thickness);
+        let interior = CoatInterior::new(eta, roughness, thickness);
+        let inside = interior.internal_reflectance;
         if roughness.is_smooth() && thickness < 0.02 {
             // ∫ 2 μ F(μ) e^(−2 t / μ) dμ; without the slab it would be 0.596.
             let steps = 20_000;
@@ -271,14 +273,17 @@ fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
                 .sum();
             assert!((f64::from(inside) - expected / f64::from(steps)).abs() < 1e-3, "{inside}");
         }
-        let closed = CoatLayer { internal_reflectance: Some(inside), ..coat };
+        let closed = CoatLayer { interior: Some(interior), ..coat };
         for (wo, wi) in
             [(direction(20.0, 30.0), direction(35.0, 170.0)), (direction(70.0, 10.0), direction(50.0, 190.0))]
         {
             let mean = |coat: &CoatLayer, seed: u64| {
                 estimate(40_000, |index| {
-                    let bsdf =
-                        Bsdf::CoatedDiffuse(Layered::new(Diffuse::new(grey(0.9)), coat, number(seed, index)));
+                    let bsdf = Bsdf::CoatedDiffuse(Layered::coated_diffuse(
+                        Diffuse::new(grey(0.9)),
+                        coat,
+                        number(seed, index),
+                    ));
                     f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
                 })
             };
@@ -286,6 +291,10 @@ fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
             let error = walks.error.hypot(series.error) + 1e-3 * walks.mean;
             assert!((walks.mean - series.mean).abs() < 4.5 * error, "{coat:?}: {walks:?} {series:?}");
             assert!(series.error < 0.8 * walks.error, "{coat:?}: {walks:?} {series:?}");
+            // Even rough coats need no random numbers at all.
+            let is_even = roughness.alpha_x == roughness.alpha_y && !roughness.is_smooth();
+            assert_eq!(interior.transmission.is_some(), is_even, "{coat:?}");
+            assert!(!is_even || series.error < 1e-6 * series.mean, "{coat:?}: {series:?}");
         }
     }
 }
