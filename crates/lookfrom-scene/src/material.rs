@@ -122,7 +122,7 @@ pub enum MaterialKind {
         metal: Metal,
         /// Roughness of its surface.
         roughness: Roughness,
-        /// What becomes of light between microfacets.
+        /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
     },
     /// A dielectric such as glass or water, which encloses an interior.
@@ -131,7 +131,7 @@ pub enum MaterialKind {
         eta: Ior,
         /// Roughness of its surface.
         roughness: Roughness,
-        /// What becomes of light between microfacets.
+        /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
     },
     /// A sheet so thin that transmitted light is not deflected.
@@ -389,7 +389,7 @@ impl Roughness {
     pub const SMOOTH: Self = Self { u: Scalar::Value(0.0), v: Scalar::Value(0.0), remap: true };
 }
 
-/// What becomes of light that one microfacet of a rough surface sends to another.
+/// Multiple scattering between the microfacets of a rough surface (Heitz et al. 2016): kept or lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Energy {
     /// It leaves in the end: a white surface reflects or transmits all light at any roughness.
@@ -416,7 +416,7 @@ pub struct Coat {
     pub max_depth: u32,
     /// Number of random walks that are averaged.
     pub samples: u32,
-    /// How its random walks are weighted.
+    /// Weights of its random walks.
     pub estimate: CoatEstimate,
 }
 

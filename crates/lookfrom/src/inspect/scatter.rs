@@ -47,8 +47,7 @@ pub struct FoundReport {
     /// q: the density of the direction in light sampling, the choice of the light included; 0 if light sampling cannot
     /// find it. (p is the ray's `pdf`.)
     pub light_pdf: f32,
-    /// How `light_pdf` comes about: the probability of the light at the surface before, and the density of the direction, whose
-    /// product it is; `None` where the direction was the only one possible, or light sampling cannot find the light.
+    /// The factors of `light_pdf`: the probability of the light at the surface before, and the density of the direction; `None` where the direction was the only one possible, or light sampling cannot find the light.
     pub sampling: Option<FoundSampling>,
     /// w: the MIS weight, `p² / (p² + q²)` where both techniques can find the light.
     pub weight: f32,
@@ -56,16 +55,16 @@ pub struct FoundReport {
     pub added: Amount,
 }
 
-/// How light sampling finds the light that a path hit.
+/// The density of light sampling for a light that a path hit.
 #[derive(Clone, Debug, Serialize)]
 pub struct FoundSampling {
     /// The probability of choosing the light at the surface before.
     pub probability: f32,
-    /// How it comes about.
+    /// The formula of that probability.
     pub choice: Derivation,
     /// The density of the direction for this light.
     pub density: f32,
-    /// How it, and the radiance, come about, as far as there is a formula.
+    /// The formulas of that density and of the radiance, as far as there are any.
     pub derivations: Vec<Derivation>,
 }
 
@@ -78,7 +77,7 @@ pub struct LightSampleReport {
     pub light: String,
     /// The probability of choosing it among all lights.
     pub probability: f32,
-    /// How it comes about.
+    /// The formula of that probability.
     pub choice: Option<Derivation>,
     /// The sampled direction; `None` when the light does not illuminate this point.
     pub sample: Option<SampledDirectionReport>,
@@ -99,7 +98,7 @@ pub struct SampledDirectionReport {
     pub pdf: f32,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
-    /// How `arrives` and `light_pdf` come about, as far as there is a formula.
+    /// The formulas of `arrives` and `light_pdf`, as far as there are any.
     pub derivations: Vec<Derivation>,
     /// Whether the light has only one direction here (a point, a distant light): then p is a probability, not a density.
     pub is_delta: bool,

@@ -30,12 +30,12 @@ impl Derivation {
     }
 }
 
-/// How an environment map's texel, or that of a picture, is found in an equal-area octahedral square.
+/// The texel of a direction in an equal-area octahedral square (Clarberg 2008).
 pub(super) const OCTAHEDRAL: &str = "i = ⌊½ (1 ± U) columns⌋, j = ⌊½ (1 ± V) rows⌋ with the signs of x and y; \
     R = √(1 − |z|), Q = R atan2(|y|, |x|) 2 / π; (U, V) = (R − Q, Q) where z ≥ 0, else (1 − Q, 1 − R + Q)";
 
 impl Light {
-    /// How the sample's radiance (of point lights: the light that arrives) and its density follow from the light; `at` is the
+    /// The formulas of the sample's radiance (of point lights: of the light that arrives) and of its density; `at` is the
     /// point that is lit. Nothing where there is nothing to compute, as of distant lights.
     pub(crate) fn derivations(
         &self,

@@ -38,7 +38,7 @@ pub(super) fn of_pixels(camera: &Camera) -> PixelFootprint {
             }
         }
     }
-    PixelFootprint { eye: camera.lookfrom(), world_from_camera, origins, directions }
+    PixelFootprint { eye: camera.lookfrom(), world_from_camera, camera_from_world, origins, directions }
 }
 
 #[cfg(test)]

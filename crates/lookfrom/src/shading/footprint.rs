@@ -20,6 +20,8 @@ pub struct PixelFootprint {
     pub eye: DVec3,
     /// From the camera's space to the world.
     pub world_from_camera: DMat3,
+    /// Its inverse.
+    pub camera_from_world: DMat3,
     /// What the origins of rays change by, from one pixel to the next in x and in y, in a space whose z axis is along the
     /// ray.
     pub origins: [DVec3; 2],
@@ -43,9 +45,9 @@ impl PixelFootprint {
         (u.is_finite() && v.is_finite()).then_some(Vec2::new(u, v))
     }
 
-    /// How a point of a surface moves from sample to sample in x and y, in the world.
+    /// ∂p/∂x and ∂p/∂y of a point of a surface times the spacing of samples, in the world; `None` at the camera itself.
     fn on_surface(&self, world: DVec3, ng: DVec3) -> Option<[DVec3; 2]> {
-        let point = self.world_from_camera.inverse() * (world - self.eye);
+        let point = self.camera_from_world * (world - self.eye);
         let distance = point.length();
         // The camera's space turned so that its z axis goes through the point.
         let [x, y, z] = axes_toward(point.try_normalize()?);
@@ -81,6 +83,7 @@ mod tests {
         PixelFootprint {
             eye: DVec3::ZERO,
             world_from_camera: DMat3::IDENTITY,
+            camera_from_world: DMat3::IDENTITY,
             origins: [DVec3::ZERO; 2],
             directions: [DVec3::X * pixel, DVec3::Y * pixel],
         }

@@ -27,7 +27,7 @@ pub struct LightReport {
     pub pdf: Option<f32>,
     /// The point on the light, in the world; `None` for a light infinitely far away.
     pub point: Option<[f64; 3]>,
-    /// How `arrives` and `pdf` come about, as far as there is a formula.
+    /// The formulas of `arrives` and `pdf`, as far as there are any.
     pub derivations: Vec<Derivation>,
     /// `I_j` of Whitted's formula: the unoccluded light.
     pub intensity: Amount,
@@ -46,7 +46,7 @@ pub struct LightReport {
 pub struct ShadowReport {
     /// Its origin.
     pub from: [f64; 3],
-    /// How it follows from the point that is lit.
+    /// The step from the point that is lit to its origin.
     pub departure: Option<Departure>,
     /// Its target (if it has no end: one length of its direction away).
     pub to: [f64; 3],

@@ -25,7 +25,7 @@ pub struct RayReport {
     pub origin: [f32; 3],
     /// Its direction, not necessarily of unit length.
     pub direction: [f32; 3],
-    /// How its origin follows from the point that it leaves; `None` for camera rays.
+    /// The step from the point that it leaves to its origin; `None` for camera rays.
     pub departure: Option<Departure>,
     /// β: the throughput, the factor of light along it in the sample.
     pub throughput: Factor,

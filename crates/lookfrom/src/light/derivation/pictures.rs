@@ -1,6 +1,6 @@
 //! Derivations of lights that project pictures: the direction in the light's space, its texel, the intensity.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 use super::{Derivation, OCTAHEDRAL, as_spectrum, color_of, in_space, lanes, place, texel_at, vector};
 use crate::core::warp;
@@ -8,19 +8,26 @@ use crate::light::picture::{Goniometric, Projection};
 use crate::light::toward;
 use crate::shading::texture::{SpectralMode, Textures};
 
-/// How a direction from a light is found in its space.
+/// The direction from a light in its space.
 const FROM_LIGHT: &str = "(x, y, z) = M (−wi), of unit length: the direction from the light, in its space";
 
+/// The direction from a light to a point, in the light's space and of unit length, and their distance.
+fn direction(light_from_render: &Mat3, position: DVec3, from: DVec3) -> Option<(Vec3, f64)> {
+    let (wi, distance) = toward(from, position)?;
+    Some(((*light_from_render * -wi).normalize_or_zero(), distance))
+}
+
 impl Projection {
-    /// How the light at a point comes about.
+    /// Formulas of the light that arrives at a point.
     pub(in crate::light) fn derivations(
         &self,
         textures: &Textures,
         from: DVec3,
         mode: &SpectralMode,
     ) -> Vec<Derivation> {
-        let Some((wi, distance)) = toward(from, self.position) else { return Vec::new() };
-        let w = (self.light_from_render * -wi).normalize_or_zero();
+        let Some((w, distance)) = direction(&self.light_from_render, self.position, from) else {
+            return Vec::new();
+        };
         let image = textures.image(self.image);
         let [half_x, half_y] = self.half_size;
         let st = [0.5 + 0.5 * w.x / (w.z * half_x), 0.5 - 0.5 * w.y / (w.z * half_y)];
@@ -49,15 +56,16 @@ impl Projection {
 }
 
 impl Goniometric {
-    /// How the light at a point comes about.
+    /// Formulas of the light that arrives at a point.
     pub(in crate::light) fn derivations(
         &self,
         textures: &Textures,
         from: DVec3,
         mode: &SpectralMode,
     ) -> Vec<Derivation> {
-        let Some((wi, distance)) = toward(from, self.position) else { return Vec::new() };
-        let w: Vec3 = (self.light_from_render * -wi).normalize_or_zero();
+        let Some((w, distance)) = direction(&self.light_from_render, self.position, from) else {
+            return Vec::new();
+        };
         let image = textures.image(self.image);
         let texel = texel_at(image, warp::octahedral_square(w));
         let [size, index] = place(image, texel);

@@ -13,11 +13,11 @@ use crate::light::derivation::{
 use crate::light::{IncompletePdf, LightSample, LightSampleContext};
 use crate::shading::texture::{SpectralMode, Textures};
 
-/// How the texel of a direction is found in an equirectangular map.
+/// The texel of a direction in an equirectangular map.
 const EQUIRECTANGULAR: &str = "i = ⌊u columns⌋, j = ⌊v rows⌋; u = ½ + atan2(x, −z) / 2π, v = acos(y) / π";
 
 impl Environment {
-    /// How the radiance and the density of a direction come about; as [`Light::derivations`](super::super::Light::derivations).
+    /// The formulas of the radiance and the density of a direction; as [`Light::derivations`](super::super::Light::derivations).
     pub(in crate::light) fn derivations(
         &self,
         textures: &Textures,

@@ -73,7 +73,7 @@ impl Conductor {
     /// The same conductor with the light between its facets or without it.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
-        Self { conserves: if energy == Energy::Conserved { 1.0 } else { 0.0 }, ..self }
+        Self { conserves: f32::from(energy == Energy::Conserved), ..self }
     }
 
     /// The kinds of scattering.

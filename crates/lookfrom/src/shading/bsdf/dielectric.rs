@@ -51,7 +51,7 @@ impl Dielectric {
     /// The same boundary with the light between its facets or without it.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
-        Self { conserves: if energy == Energy::Conserved { 1.0 } else { 0.0 }, ..self }
+        Self { conserves: f32::from(energy == Energy::Conserved), ..self }
     }
 
     /// The kinds of scattering. With equal indices nothing is reflected or refracted.

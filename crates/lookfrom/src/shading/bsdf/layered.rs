@@ -120,7 +120,7 @@ impl<B: Base<f32>> Layered<B> {
             phase: HenyeyGreenstein::new(coat.g),
             max_depth: f32::from(coat.max_depth),
             samples: f32::from(coat.samples.max(1)),
-            unbiased: if coat.estimate == CoatEstimate::Unbiased { 1.0 } else { 0.0 },
+            unbiased: f32::from(coat.estimate == CoatEstimate::Unbiased),
             seed,
             interior,
         }

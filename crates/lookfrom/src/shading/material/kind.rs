@@ -35,7 +35,7 @@ pub enum MaterialKind {
         metal: Metal,
         /// Roughness of its surface.
         roughness: Roughness,
-        /// What becomes of light between microfacets.
+        /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
     },
     /// A dielectric such as glass or water: the inside is a body.
@@ -44,7 +44,7 @@ pub enum MaterialKind {
         eta: Ior,
         /// Roughness of its surface.
         roughness: Roughness,
-        /// What becomes of light between microfacets.
+        /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
     },
     /// A dielectric sheet so thin that light passes undeviated.

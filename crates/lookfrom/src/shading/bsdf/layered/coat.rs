@@ -83,7 +83,7 @@ impl DiffuseInterior {
         let transmission = known.and_then(|known| known.transmission);
         Self {
             internal_reflectance: known.map_or(-1.0, |known| known.internal_reflectance),
-            has_transmission: if transmission.is_some() { 1.0 } else { 0.0 },
+            has_transmission: f32::from(transmission.is_some()),
             transmission: transmission.unwrap_or_default(),
         }
     }
