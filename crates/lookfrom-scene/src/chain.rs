@@ -1,5 +1,6 @@
-//! Graphs of textures and of mixed materials: one that uses itself, directly or indirectly, is an error, and so is a chain that is
-//! too deep, or a tree that is too large where every use counts, as it does when it is evaluated.
+//! Graphs of textures and of mixed materials: one that uses itself, directly or indirectly, is an error, and so are a chain that is
+//! too deep and mixed materials that are too many where every use counts. Of textures every use is counted once, since each is
+//! evaluated once per point.
 
 use std::collections::BTreeMap;
 
@@ -11,26 +12,26 @@ use crate::texture::Texture;
 /// The maximum depth of a chain.
 const DEEPEST: usize = 16;
 
-/// The largest number of items that one may stand for.
-const LARGEST: usize = 4096;
-
 /// Items that may be made of others of their kind.
 pub(crate) trait Made {
     /// The noun for an item in messages.
     const WHAT: &'static str;
     /// The remedy for an item that uses itself.
     const REMEDY: &'static str;
+    /// The largest number of items that one may stand for, each as often as it is used.
+    const LARGEST: usize;
     /// The item's name.
     fn name(&self) -> &str;
     /// The location in the file.
     fn at(&self) -> &Location;
-    /// The indices of the items that it is made of, as often as each is evaluated.
+    /// The indices of the items that it is made of, as often as each is used.
     fn parts(&self) -> Vec<usize>;
 }
 
 impl Made for Texture {
     const WHAT: &'static str = "texture";
     const REMEDY: &'static str = "give one of them a plain colour";
+    const LARGEST: usize = usize::MAX;
     fn name(&self) -> &str {
         &self.name
     }
@@ -39,20 +40,14 @@ impl Made for Texture {
     }
     fn parts(&self) -> Vec<usize> {
         let index = |color: Color| if let Color::Texture(id) = color { Some(id.index()) } else { None };
-        let mut parts = self.kind.parts();
-        // Values between a colour and itself are evaluated once.
-        if let [low, high] = self.kind.colors()[..]
-            && low == high
-        {
-            parts.remove(0);
-        }
-        parts.into_iter().filter_map(index).collect()
+        self.kind.parts().into_iter().filter_map(index).collect()
     }
 }
 
 impl Made for Material {
     const WHAT: &'static str = "material";
     const REMEDY: &'static str = "let one of them mix other materials";
+    const LARGEST: usize = 4096;
     fn name(&self) -> &str {
         &self.name
     }
@@ -127,10 +122,11 @@ impl<T: Made> Search<'_, T> {
         let (what, name) = (T::WHAT, thing.name());
         let fault = if extent.height > DEEPEST || self.chain.len() > DEEPEST {
             format!("{what} {name:?} is in a chain of more than {DEEPEST} {what}s")
-        } else if extent.size > LARGEST {
+        } else if extent.size > T::LARGEST {
             format!(
-                "{what} {name:?} is made of {} {what}s, more than {LARGEST}, as often as each is used",
-                extent.size
+                "{what} {name:?} is made of {} {what}s, more than {}, as often as each is used",
+                extent.size,
+                T::LARGEST
             )
         } else {
             self.chain.pop();

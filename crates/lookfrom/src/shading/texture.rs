@@ -6,7 +6,7 @@
 //!
 //! `input`: the inputs of materials and lights; `node`: the textures themselves; `mapping`: texture coordinates;
 //! `picture`, `pattern`: image lookups and procedural patterns; `look_ups`: those of eight points at once; `evaluation`:
-//! conversion to numbers, RGB or spectra.
+//! conversion to numbers, RGB or spectra; `shared`: values of textures that are used many times at a point.
 
 mod constants;
 mod evaluation;
@@ -17,6 +17,7 @@ mod mapping;
 mod node;
 mod pattern;
 mod picture;
+mod shared;
 
 use std::f32::consts::PI;
 
@@ -39,6 +40,7 @@ use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvalu
 use self::input::Input;
 use self::look_ups::Picture;
 use self::node::Node;
+use self::shared::Values;
 use crate::core::color::{DenselySampledSpectrum, Wavelengths};
 use crate::core::noise::{self, perlin};
 use crate::core::spectrum::Spectrum;
@@ -56,6 +58,8 @@ pub enum SpectralMode {
 #[derive(Clone, Debug, Default)]
 pub struct Textures {
     nodes: Vec<Node>,
+    /// For each node, whether the values of its parts are kept while it is evaluated.
+    keeps_values: Vec<bool>,
     /// Pictures as the nodes read them.
     pictures: Vec<Picture>,
     images: Vec<Image>,
@@ -94,6 +98,8 @@ pub struct TexturePoint<'a> {
     pub n: Vec3,
     /// Pictures that were looked up here beforehand.
     pub looked_up: Option<LookedUp<'a>>,
+    /// The values here of textures that are used many times.
+    pub(crate) values: Option<&'a Values>,
 }
 
 impl SpectralMode {
@@ -126,6 +132,7 @@ impl TexturePoint<'_> {
         opacity: 1.0,
         n: Vec3::Z,
         looked_up: None,
+        values: None,
     };
 }
 
@@ -140,7 +147,7 @@ impl Textures {
         let curves = curves.into_iter().map(measured).collect();
         let uplifts = color == ColorMode::Spectral;
         let (nodes, pictures) = Node::compile_all(kinds, &images, uplifts);
-        Self { nodes, pictures, images, curves, uplifts }
+        Self { nodes, keeps_values: shared::keeps_values(kinds), pictures, images, curves, uplifts }
     }
 
     /// A colour of the scene, compiled for its spectrum type.
@@ -236,6 +243,18 @@ impl Textures {
     // Out of line: most colours are constant, and their callers stay short.
     #[inline(never)]
     fn texture<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
+        match at.values {
+            Some(values) => values.get(id, evaluation.spectrum_type(), || self.evaluate(id, at, evaluation)),
+            None if self.keeps_values[id.index()] => {
+                let values = Values::default();
+                self.evaluate(id, &TexturePoint { values: Some(&values), ..*at }, evaluation)
+            }
+            None => self.evaluate(id, at, evaluation),
+        }
+    }
+
+    #[inline(always)]
+    fn evaluate<R: Evaluation>(&self, id: TextureId, at: &TexturePoint, evaluation: &R) -> R::Value {
         let space = |mapping| mapping::coordinates(mapping, at).as_vec3();
         match &self.nodes[id.index()] {
             Node::Image { picture, channel, scale, invert } => {

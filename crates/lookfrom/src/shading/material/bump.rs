@@ -210,7 +210,7 @@ fn bumped(height: FloatTexture, relief: Relief<'_>, surface: &ShadingGeometry, a
             // As far as u or v moves in single precision.
             let step = (uv - at.uv).dot(axis);
             let world = at.world + (step * along).as_dvec3();
-            let moved = TexturePoint { uv, world, looked_up: None, ..*at };
+            let moved = TexturePoint { uv, world, looked_up: None, values: None, ..*at };
             // In the tangent plane of the shading normal.
             let tangent = along - n * n.dot(along);
             tangent + n * ((textures.float(height, &moved) - here) / step)

@@ -8,6 +8,7 @@ use std::ops::{Add, Mul};
 use lookfrom_scene::texture::TexelFilter;
 
 use super::input::{Constant, uplift};
+use super::shared::Kept;
 use super::{Measured, SpectrumType};
 use crate::core::color::{Unbounded, Wavelengths};
 use crate::core::spectrum::Spectrum;
@@ -15,7 +16,10 @@ use crate::core::spectrum::Spectrum;
 /// A way to evaluate leaves.
 pub(super) trait Evaluation {
     /// Result of the evaluation.
-    type Value: Copy + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+    type Value: Kept + Add<Output = Self::Value> + Mul<Output = Self::Value> + Mul<f32, Output = Self::Value>;
+
+    /// The use of the values: one texture may be evaluated for several. `None` for a number.
+    fn spectrum_type(&self) -> Option<SpectrumType>;
 
     /// The evaluation for the second factor of a product: of an illuminant, only one of the two factors is an
     /// illuminant.
@@ -51,6 +55,10 @@ pub(super) struct FloatEvaluation;
 
 impl Evaluation for FloatEvaluation {
     type Value = f32;
+
+    fn spectrum_type(&self) -> Option<SpectrumType> {
+        None
+    }
 
     fn of_factor(&self) -> Self {
         Self
@@ -93,6 +101,10 @@ pub(super) struct RgbEvaluation(pub SpectrumType);
 impl Evaluation for RgbEvaluation {
     type Value = Spectrum;
 
+    fn spectrum_type(&self) -> Option<SpectrumType> {
+        Some(self.0)
+    }
+
     fn of_factor(&self) -> Self {
         Self(of_factor(self.0))
     }
@@ -132,6 +144,10 @@ impl SpectralEvaluation<'_> {
 
 impl Evaluation for SpectralEvaluation<'_> {
     type Value = Spectrum;
+
+    fn spectrum_type(&self) -> Option<SpectrumType> {
+        Some(self.spectrum_type)
+    }
 
     fn of_factor(&self) -> Self {
         SpectralEvaluation { spectrum_type: of_factor(self.spectrum_type), ..*self }

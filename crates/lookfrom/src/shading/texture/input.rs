@@ -12,7 +12,7 @@ use crate::core::color::{Sigmoid, Unbounded};
 use crate::core::spectrum::Spectrum;
 
 /// The use of a spectrum, which determines the spectrum that three primaries are uplifted to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SpectrumType {
     /// A reflectance or transmittance: a smooth spectrum within 0 … 1; components beyond are clamped.
     Albedo,

@@ -504,3 +504,53 @@ fn vertices_have_opacities_and_what_is_opaque_is_known() {
         assert_eq!(cut, if opacity < 0.5 { 0.0 } else { 1.0 });
     }
 }
+
+/// Textures in a chain, each made of the one before by `part`.
+fn chain(count: u32, part: impl Fn(Color, u32) -> TextureKind) -> Vec<TextureKind> {
+    let first = TextureKind::VertexColor { tint: [0.5, 0.25, 0.75] };
+    let others = (1..count).map(|k| part(Color::Texture(TextureId(k - 1)), k));
+    std::iter::once(first).chain(others).collect()
+}
+
+#[test]
+fn textures_that_are_used_a_billion_times_are_evaluated_once() {
+    let four = |before, _| TextureKind::Bilinear { corners: [before; 4], mapping: Mapping::UV };
+    let textures = textures_of(&chain(16, four), vec![], vec![]);
+    let last = Color::Texture(TextureId(15));
+    // All weights are powers of 2.
+    let at = at(0.5, 0.5);
+    assert_eq!(textures.rgb_of(last, SpectrumType::Albedo, &at), [0.5, 0.25, 0.75]);
+    assert_eq!(textures.scalar(Scalar::Texture(TextureId(15)), &at), 0.5);
+}
+
+#[test]
+fn values_that_are_kept_are_those_that_are_not() {
+    // Numbers, colours and both spectrum types of one texture in one graph.
+    let woven = |before, k: u32| match (k % 3, before) {
+        (0, Color::Texture(id)) => {
+            TextureKind::Mix { low: before, high: Color::Value([0.9, 0.1, 1.5]), amount: Scalar::Texture(id) }
+        }
+        (1, _) => TextureKind::Product { a: before, b: before },
+        _ => TextureKind::Bilinear {
+            corners: [before, Color::Value([1.0; 3]), before, Color::Texture(FIRST)],
+            mapping: Mapping::UV,
+        },
+    };
+    let kept = textures_of(&chain(13, woven), vec![], vec![]);
+    assert!(kept.keeps_values[12] && !kept.keeps_values[3]);
+    let mut again = kept.clone();
+    again.keeps_values.fill(false);
+    let modes = [SpectralMode::Rgb, SpectralMode::Spectral(Wavelengths::sample_visible(0.3))];
+    for index in 0..13 {
+        let color = Color::Texture(TextureId(index));
+        for (of, mode) in [SpectrumType::Albedo, SpectrumType::Unbounded, SpectrumType::Illuminant]
+            .into_iter()
+            .flat_map(|of| modes.map(|mode| (of, mode)))
+        {
+            let at = at(0.3, 0.8);
+            assert_eq!(kept.spectrum_of(color, of, &at, &mode), again.spectrum_of(color, of, &at, &mode));
+            let number = Scalar::Texture(TextureId(index));
+            assert_eq!(kept.scalar(number, &at), again.scalar(number, &at));
+        }
+    }
+}
