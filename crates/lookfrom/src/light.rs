@@ -10,6 +10,8 @@ pub(crate) mod derivation;
 mod environment;
 mod picture;
 mod portal;
+mod power;
+mod scale;
 mod tree;
 
 #[cfg(test)]
@@ -36,6 +38,7 @@ pub(crate) use environment::brightest_around;
 pub use environment::{Environment, Layout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};
 pub use portal::{Opening, Portal};
+pub use scale::{Scale, Total};
 
 /// A light, ready to be sampled. Positions are in render space.
 #[derive(Clone, Debug)]
@@ -235,19 +238,6 @@ impl Light {
             (Self::Area(light), Some(surface)) => light.pdf(at.point, surface, wi),
             (Self::Environment(environment), None) => environment.pdf(at, wi, incomplete_pdf),
             _ => 0.0,
-        }
-    }
-
-    /// Approximate power of the light for a radiance (or intensity) of 1; `radius` is that of the scene.
-    fn power_per_brightness(&self, radius: f32) -> f64 {
-        use std::f64::consts::PI;
-        match self {
-            Self::Point { .. } | Self::Goniometric(_) | Self::Spot { .. } => 4.0 * PI,
-            Self::Projection(_) => 1.0,
-            Self::Area(light) => PI * light.area(),
-            Self::Environment(Environment { portal: Some(portal), .. }) => PI * portal.area(),
-            Self::Distant { .. } => PI * f64::from(radius) * f64::from(radius),
-            Self::Environment(_) => 4.0 * PI * PI * f64::from(radius) * f64::from(radius),
         }
     }
 

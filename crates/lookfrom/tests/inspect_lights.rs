@@ -247,6 +247,8 @@ fn check(derivations: &[Derivation], sample: &Sample<'_>, told: &mut BTreeSet<St
             }
             let expected = one(of, "P") * one(of, "d").powi(2) / (one(of, "A") * one(of, "cos at the light"));
             near(pdf, expected, 2e-5, of);
+        } else if formula.starts_with("L = s C") {
+            emission(of, arrives);
         } else {
             continue;
         }
@@ -254,20 +256,125 @@ fn check(derivations: &[Derivation], sample: &Sample<'_>, told: &mut BTreeSet<St
     }
 }
 
-/// A light's probability.
-fn choice(of: &Derivation, probability: f64, told: &mut BTreeSet<String>) {
+/// A light's probability, and the operands of that.
+fn choice(all_of_it: &[Derivation], probability: f64, told: &mut BTreeSet<String>) {
+    let [of, operands @ ..] = all_of_it else { panic!("no derivation") };
+    let ways: Vec<&[f64]> =
+        of.numbers.iter().filter(|(name, _)| *name == "importances").map(|(_, pair)| &pair[..]).collect();
     let expected = if of.formula.starts_with("P = power") {
         one(of, "power") / one(of, "sum")
     } else if of.formula.starts_with("P = 1 / (listed") {
         1.0 / (one(of, "listed") + one(of, "trees"))
     } else {
-        let ways = of.numbers.iter().filter(|(name, _)| *name == "importances");
-        let share = |pair: &[f64]| (pair[0] / (pair[0] + pair[1])).clamp(1.0 / 65536.0, 1.0 - 1.0 / 65536.0);
-        let product: f64 = ways.map(|(_, pair)| share(pair)).product();
+        let share = |pair: &&[f64]| match pair {
+            [_, 0.0] => 1.0,
+            [chosen, other] => (chosen / (chosen + other)).clamp(1.0 / 65536.0, 1.0 - 1.0 / 65536.0),
+            _ => panic!("{of:#?}"),
+        };
+        let product: f64 = ways.iter().map(share).product();
         product * one(of, "trees") / (one(of, "listed") + one(of, "trees"))
     };
-    near(probability, expected, 1e-4, of);
-    told.insert(of.formula.chars().take(40).collect());
+    near(probability, expected, 1e-6, of);
+    let (children, powers): (Vec<&Derivation>, Vec<&Derivation>) =
+        operands.iter().partition(|operand| operand.formula.starts_with("importance = "));
+    // The children of each node on the way, the chosen one first; whose lights are those below.
+    assert_eq!(children.len(), 2 * ways.len(), "{of:#?}");
+    for (pair, node) in ways.iter().zip(children.chunks(2)) {
+        node.iter().for_each(|child| importance(child));
+        assert_eq!(pair[..], [one(node[0], "importance"), one(node[1], "importance")], "{of:#?}");
+    }
+    for nodes in children.chunks(2).collect::<Vec<_>>().windows(2) {
+        let below: f64 = nodes[1].iter().map(|child| one(child, "Φ")).sum();
+        near(one(nodes[0][0], "Φ"), below, 1e-6, nodes[0][0]);
+    }
+    let is_chosen_by_power = of.formula.starts_with("P = power") || !ways.is_empty();
+    assert_eq!(powers.len(), usize::from(is_chosen_by_power), "{all_of_it:#?}");
+    for of_light in &powers {
+        power(of_light);
+        let chosen = children.iter().rev().nth(1).map_or_else(|| one(of, "power"), |leaf| one(leaf, "Φ"));
+        near(chosen, one(of_light, "power"), 1e-12, of_light);
+    }
+    told.extend(all_of_it.iter().map(|of| of.formula.chars().take(40).collect::<String>()));
+}
+
+/// The importance of a child of the light tree: angles are cosine and sine.
+fn importance(of: &Derivation) {
+    let close = |name: &str, found: f64, expected: f64| {
+        assert!((found - expected).abs() < 1e-6, "{name} = {found}, by its operands {expected}: {of:#?}");
+    };
+    let (to, r) = (vector(of, "p − c"), one(of, "r"));
+    near(one(of, "d²"), to.length_squared(), 1e-6, of);
+    let by_distance = one(of, "Φ") / one(of, "d²").max(r);
+    if of.formula.starts_with("importance = Φ / max") {
+        assert!(!(1e-36..1e36).contains(&one(of, "d²")), "{of:#?}");
+        return near(one(of, "importance"), by_distance.clamp(1e-30, 1e30), 1e-6, of);
+    }
+    let angle = |name: &str| {
+        let [cos, sin] = all(of, &format!("cos, sin {name}"))[..] else { panic!("{of:#?}") };
+        close(name, cos * cos + sin * sin, 1.0);
+        [cos, sin]
+    };
+    let [axis, normals, of_box, at_surface] = ["θ_w", "θ_o", "θ_b", "θ_i"].map(angle);
+    let (w, d) = (to.normalize(), one(of, "d²").sqrt());
+    let cos_axis = vector(of, "a").dot(w);
+    close("cos θ_w", axis[0], if one(of, "two-sided") == 1.0 { cos_axis.abs() } else { cos_axis });
+    close("cos θ_i", at_surface[0], vector(of, "N").dot(w).abs());
+    match d > r {
+        true => close("sin θ_b", of_box[1], r / d),
+        false => assert_eq!(of_box, [-1.0, 0.0], "{of:#?}"),
+    }
+    let less = |[cos_a, sin_a]: [f64; 2], [cos_b, sin_b]: [f64; 2]| match cos_a > cos_b {
+        true => [1.0, 0.0],
+        false => [cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b],
+    };
+    let [least, incident] = ["cos θ'", "cos θᵢ'"].map(|name| one(of, name));
+    close("cos θ'", least, less(less(axis, normals), of_box)[0]);
+    close("cos θᵢ'", incident, less(at_surface, of_box)[0]);
+    let is_lit = least > one(of, "cos θ_e");
+    let directed = (by_distance * least * incident).clamp(1e-30, 1e30);
+    near(one(of, "importance"), if is_lit { directed } else { 0.0 }, 1e-6, of);
+}
+
+/// The power of a light.
+fn power(of: &Derivation) {
+    let b = one(of, "B");
+    let formula = of.formula.strip_prefix("power = ").and_then(|formula| formula.split(" / M").next());
+    let whole = match formula {
+        Some("B") => b,
+        Some("4π B") => 4.0 * PI * b,
+        Some("π A B") => PI * one(of, "A") * b,
+        Some("π R² B") => PI * one(of, "R").powi(2) * b,
+        Some("4π² R² B") => (2.0 * PI * one(of, "R")).powi(2) * b,
+        _ => panic!("{of:#?}"),
+    };
+    near(one(of, "power"), (whole / one(of, "M")).max(1e-30), 1e-6, of);
+    if of.formula.contains("B = s · the largest channel of C") {
+        near(b, one(of, "s") * vector(of, "C").max_element(), 1e-6, of);
+    }
+}
+
+/// The radiance of an area light.
+fn emission(of: &Derivation, radiance: &[f32]) {
+    let (s, color) = (one(of, "s"), vector(of, "C"));
+    let is_filtered = of.formula.starts_with("L = s C T");
+    let through = if is_filtered { one(of, "T") } else { 1.0 };
+    for (lane, color) in radiance.iter().zip(color.to_array()) {
+        near(f64::from(*lane), s * color * through, 1e-6, of);
+    }
+    let luminance = |color: DVec3| color.dot(DVec3::new(0.2126, 0.7152, 0.0722));
+    if of.formula.contains("s = k") {
+        let (k, y) = (one(of, "k"), one(of, "Y"));
+        let whole = match of.formula.contains("s = k Φ / (n π A Y)") {
+            true => one(of, "Φ") / (one(of, "n") * PI * one(of, "A")),
+            false => 1.0,
+        };
+        near(s, k * whole / y, 1e-6, of);
+        if !of.formula.contains("texture") {
+            near(y, luminance(color), 2e-4, of);
+        }
+        let is_two_sided = of.formula.contains("on both sides");
+        assert!(is_two_sided || !of.formula.contains("Φ") || one(of, "n") == 1.0, "{of:#?}");
+    }
 }
 
 /// Every light of every ray; the beginnings of all formulas that were computed anew.
@@ -276,8 +383,7 @@ fn told(name: &str, text: &str) -> BTreeSet<String> {
     for inspection in inspections(name, text) {
         for ray in &inspection.rays {
             if let Some(sampled) = &ray.light_sample {
-                let of = sampled.choice.as_ref().expect("a derivation");
-                choice(of, f64::from(sampled.probability), &mut told);
+                choice(&sampled.choice, f64::from(sampled.probability), &mut told);
                 if let Some(sample) = &sampled.sample {
                     let (wi, pdf) =
                         (DVec3::from_array(sample.wi.map(f64::from)), f64::from(sample.light_pdf));
@@ -297,10 +403,14 @@ fn told(name: &str, text: &str) -> BTreeSet<String> {
                 };
                 check(&light.derivations, &sample, &mut told);
             }
-            for FoundReport { sampling, light_pdf, radiance, .. } in &ray.found {
+            for FoundReport { sampling, light_pdf, radiance, emission: of_radiance, .. } in &ray.found {
+                if let Some(of) = of_radiance {
+                    emission(of, &radiance.lanes);
+                    told.insert("found emission".into());
+                }
                 let Some(sampling) = sampling else { continue };
                 let (probability, density) = (f64::from(sampling.probability), f64::from(sampling.density));
-                near(f64::from(*light_pdf), probability * density, 1e-6, &sampling.choice);
+                near(f64::from(*light_pdf), probability * density, 1e-6, &sampling.choice[0]);
                 choice(&sampling.choice, probability, &mut told);
                 let direction = DVec3::from_array(ray.direction.map(f64::from)).normalize();
                 let sample = Sample { wi: direction, arrives: &radiance.lanes, pdf: density };
@@ -395,4 +505,61 @@ AttributeEnd
         ];
         tells("a.pbrt", &text, &told);
     }
+}
+
+/// Lights of every kind; those of pbrt have written powers, curves and textures.
+const EVERY_KIND: &str = r#"
+LightSource "point" "point3 from" [ 0 1e19 0 ]
+LightSource "point" "point3 from" [ -3 3 -1 ] "rgb I" [ 3 2 1 ]
+LightSource "spot" "point3 from" [ 2 4 -2 ] "point3 to" [ 0 0 0 ] "rgb I" [ 20 30 10 ]
+LightSource "distant" "point3 from" [ 1 3 -2 ] "rgb L" [ 0.1 0.2 0.3 ]
+LightSource "infinite" "string filename" "square.pfm" "float scale" 0.1
+AttributeBegin
+    Translate 0 4 -1
+    Rotate 80 1 0 0
+    LightSource "projection" "string filename" "map.pfm" "float scale" 9 "float fov" 80
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 1 2 4 ] "float power" 30
+    Translate -1.5 1 -1.5
+    Shape "sphere" "float radius" 0.3
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "blackbody L" 3000 "bool twosided" true "float power" 50
+    Shape "bilinearmesh" "point3 P" [ 3 1 -1  3 1 1  3 3 -1  2 4 1 ]
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "blackbody L" 5000 "float scale" 3
+    Translate 1.5 2.5 -1
+    Rotate 90 1 0 0
+    Shape "disk" "float radius" 0.5 "float alpha" 0.5
+AttributeEnd
+AttributeBegin
+    AreaLightSource "diffuse" "string filename" "map.pfm" "float power" 20 "bool twosided" true
+    Shape "trianglemesh" "point3 P" [ -3 0 0  -3 3 0  -4 1 -2 ] "point2 uv" [ 0 0  1 0  0 1 ] "integer indices" [ 0 1 2 ]
+AttributeEnd
+"#;
+
+#[test]
+fn lights_of_every_kind_by_importance_and_power() {
+    let emissions = [
+        "L = s C on the side of its normal: C its",
+        "L = s C on both sides: C its colour, s =",
+        "L = s C on both sides: C the colour of i",
+        "L = s C T on the side of its normal: C i",
+        "found emission",
+        "found",
+    ];
+    let text = |sampler: &str| {
+        format!("Integrator \"path\" \"string lightsampler\" \"{sampler}\"\n{PBRT}{EVERY_KIND}")
+    };
+    let by_importance =
+        ["P = trees / ", "importance = Φ cos θ'", "importance = Φ / max(d², r)", "power = π A B"];
+    tells("a.pbrt", &text("bvh"), &[&by_importance[..], &emissions].concat());
+    let by_power = ["P = power / ", "power = 4π B", "power = π A B", "power = 4π² R² B"];
+    tells("a.pbrt", &text("power"), &by_power);
+    let even = "[[light]]\ntype = \"distant\"\ndirection = [1, -2, 1]\nintensity = [1, 2, 3]\n[[light]]\ntype = \"environment\"\n\
+        image = \"map.pfm\"\nscale = [0.5, 1, 2]\n";
+    let settings = "integrator = \"path\"\nlight_sampler = \"power\"";
+    tells("a.toml", &own(settings, even), &["power = π R² B", "power = 4π² R² B"]);
 }

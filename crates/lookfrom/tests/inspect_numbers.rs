@@ -440,7 +440,7 @@ fn every_number_follows_from_what_is_printed() {
         for ray in &inspection.rays {
             let what = format!("{at}, ray {}", ray.address);
             if let Some(sampled) = &ray.light_sample {
-                let of = sampled.choice.as_ref().unwrap_or_else(|| panic!("{what}: {sampled:?}"));
+                let of = sampled.choice.first().unwrap_or_else(|| panic!("{what}: {sampled:?}"));
                 choice(of, sampled.probability, &what);
                 told.insert("choice".to_owned());
                 for (sample, of) in sampled
@@ -542,7 +542,7 @@ fn so_do_those_of_ribbons_spots_and_solid_angles() {
                 });
             }
             let Some(sampled) = &ray.light_sample else { continue };
-            choice(sampled.choice.as_ref().expect("a derivation"), sampled.probability, &what);
+            choice(sampled.choice.first().expect("a derivation"), sampled.probability, &what);
             let Some(sample) = &sampled.sample else { continue };
             for of in &sample.derivations {
                 derivation(of, &sample.arrives.lanes, sample.light_pdf, &what);

@@ -44,6 +44,8 @@ pub struct FoundReport {
     pub light: String,
     /// L: the radiance toward the ray's origin.
     pub radiance: Amount,
+    /// The formula of L, of an area light.
+    pub emission: Option<Derivation>,
     /// q: the density of the direction in light sampling, the choice of the light included; 0 if light sampling cannot
     /// find it. (p is the ray's `pdf`.)
     pub light_pdf: f32,
@@ -60,11 +62,11 @@ pub struct FoundReport {
 pub struct FoundSampling {
     /// The probability of choosing the light at the surface before.
     pub probability: f32,
-    /// The formula of that probability.
-    pub choice: Derivation,
+    /// The formula of that probability, and those of its operands.
+    pub choice: Vec<Derivation>,
     /// The density of the direction for this light.
     pub density: f32,
-    /// The formulas of that density and of the radiance, as far as there are any.
+    /// The formulas of that density and, of environments, of the radiance, as far as there are any.
     pub derivations: Vec<Derivation>,
 }
 
@@ -77,8 +79,8 @@ pub struct LightSampleReport {
     pub light: String,
     /// The probability of choosing it among all lights.
     pub probability: f32,
-    /// The formula of that probability.
-    pub choice: Option<Derivation>,
+    /// The formula of that probability, and those of its operands.
+    pub choice: Vec<Derivation>,
     /// The sampled direction; `None` when the light does not illuminate this point.
     pub sample: Option<SampledDirectionReport>,
     /// The shadow ray; `None` where its contribution would be 0.

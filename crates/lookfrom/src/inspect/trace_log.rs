@@ -118,6 +118,7 @@ impl<'a> TraceLogBuilder<'a> {
                     index: *light,
                     light: self.world.names.lights[*light as usize].clone(),
                     radiance: self.amount(*radiance),
+                    emission: self.emission(*light, *radiance),
                     light_pdf: *light_pdf,
                     sampling: self.found_sampling(*address, *light, *radiance, *light_pdf),
                     weight: *weight,

@@ -3,6 +3,7 @@
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
 //! sampling requires. The sampling of each kind of shape is in a file of its own.
 
+mod derivation;
 mod disk;
 mod lanes;
 mod mesh;
@@ -13,7 +14,7 @@ use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Point;
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::{EmissionSpectrum, LightSample, Target, toward};
+use super::{EmissionSpectrum, LightSample, Scale, Target, toward};
 use crate::core::math;
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
@@ -35,6 +36,8 @@ use quadric::{SphereLights, gather_spheres};
 pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: EmissionSpectrum,
+    /// What its scale follows from.
+    pub written: Scale,
     /// Alpha; `None` is opaque.
     pub alpha: Option<FloatTexture>,
     /// Whether both sides emit light.
@@ -311,12 +314,7 @@ impl AreaLight {
 
     /// Area of (one side of) the light, in render space.
     pub fn area(&self) -> f64 {
-        match &self.shape {
-            LightShape::Quadric(light) => light.area(),
-            LightShape::Disk(light) => light.area(),
-            LightShape::Mesh(light) => light.area(),
-            LightShape::Patches(light) => light.area(),
-        }
+        self.shape.area()
     }
 
     /// Bounds of the light and of its normals.
@@ -331,6 +329,18 @@ impl AreaLight {
         // Rounding must not make the cone too narrow.
         let cos_normals = (cos as f32 - 1e-6).max(-1.0);
         EmitterBounds { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }
+    }
+}
+
+impl LightShape {
+    /// Area of (one side of) the shape, in render space.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Quadric(light) => light.area(),
+            Self::Disk(light) => light.area(),
+            Self::Mesh(light) => light.area(),
+            Self::Patches(light) => light.area(),
+        }
     }
 }
 

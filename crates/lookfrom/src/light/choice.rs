@@ -8,12 +8,14 @@ use lookfrom_scene::settings::LightSampler as Kind;
 use lookfrom_simd::{Float, LaneMask, Simd, f32x8, f64x8, prelude::*};
 
 use super::derivation::Derivation;
+use super::power::Powers;
 use super::tree::{LightBounds, Tree};
 use super::{Light, LightSampleContext};
 use crate::core::distribution::Discrete;
 use crate::core::lanes::{LANES, by_lane, row, store, store_f64};
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::vector::Vector;
+use crate::shading::texture::Textures;
 
 /// A light that was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,29 +39,24 @@ pub struct LightChoice {
     /// For each light of the world, its index in `listed`.
     places: Vec<Option<u32>>,
     tree: Tree,
+    powers: Powers,
 }
 
 impl LightChoice {
-    /// The distribution over the lights that need to be sampled; `radius` is that of the scene, for the power of lights
-    /// infinitely far away.
-    pub fn new(kind: Kind, lights: &[Light], brightness: &[f32], radius: f32) -> Self {
-        let asked = || (0..).zip(lights).filter(|(_, light)| light.is_sampled());
-        let power = |index: u32, light: &Light| {
-            f64::from(brightness[index as usize]) * light.power_per_brightness(radius)
-        };
-        // Relative to the largest, any power fits an f32; a positive one stays positive.
-        let greatest = asked().map(|(index, light)| power(index, light)).fold(0.0, f64::max);
-        let relative = |power: f64| if power > 0.0 { ((power / greatest) as f32).max(1e-30) } else { 0.0 };
+    /// The distribution over the lights that need to be sampled, given the brightness of each; `radius` is that of the
+    /// scene, for the power of lights infinitely far away.
+    pub fn new(kind: Kind, lights: &[Light], brightness: Vec<f32>, radius: f32) -> Self {
+        let powers = Powers::new(lights, brightness, radius);
         let mut listed: Vec<u32> = Vec::new();
-        let mut powers: Vec<f32> = Vec::new();
+        let mut weights: Vec<f32> = Vec::new();
         let mut with_place: Vec<(u32, LightBounds)> = Vec::new();
-        for (index, light) in asked() {
-            let power = relative(power(index, light));
+        for (index, light) in (0..).zip(lights).filter(|(_, light)| light.is_sampled()) {
+            let power = powers.relative(index, light);
             match light.bounds(power) {
                 Some(bounds) if kind == Kind::Bvh => with_place.push((index, bounds)),
                 _ => {
                     listed.push(index);
-                    powers.push(power);
+                    weights.push(power);
                 }
             }
         }
@@ -67,8 +64,8 @@ impl LightChoice {
         for (place, light) in (0..).zip(&listed) {
             places[*light as usize] = Some(place);
         }
-        let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&powers));
-        Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()) }
+        let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&weights));
+        Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()), powers }
     }
 
     /// The light to sample at a point, for `u ∈ [0, 1)`.
@@ -158,27 +155,41 @@ impl LightChoice {
         }
     }
 
-    /// How the probability of a light at a point comes about.
-    pub(crate) fn derivation(&self, at: &LightSampleContext, light: u32) -> Derivation {
+    /// How the probability of a light at a point comes about: its formula, and then those of its operands.
+    pub(crate) fn derivations(
+        &self,
+        lights: &[Light],
+        textures: &Textures,
+        at: &LightSampleContext,
+        light: u32,
+    ) -> Vec<Derivation> {
+        let of_light = || self.powers.derivation(textures, light, &lights[light as usize]);
         let place = self.places.get(light as usize).copied().flatten();
-        let of_power = |place: u32| self.weights.as_ref().map(|weights| weights.weight(place as usize));
-        if let Some([power, sum]) = place.and_then(of_power) {
-            return Derivation::new(
+        let weight = |place: u32| self.weights.as_ref().map(|weights| weights.weight(place as usize));
+        if let Some([power, sum]) = place.and_then(weight) {
+            let choice = Derivation::new(
                 "P = power / sum of all powers, of which the greatest is 1",
                 vec![("power", vec![power]), ("sum", vec![sum])],
             );
+            return [choice].into_iter().chain(of_light()).collect();
         }
         let (list, has_tree) = (self.listed.len() as f64, !self.tree.is_empty());
         let others = vec![("listed", vec![list]), ("trees", vec![f64::from(u8::from(has_tree))])];
         if place.is_some() {
-            return Derivation::new("P = 1 / (listed + trees)", others);
+            return vec![Derivation::new("P = 1 / (listed + trees)", others)];
         }
         let way = self.tree.way(at.point.as_vec3(), at.n, light);
-        let way = way.into_iter().map(|pair| ("importances", pair.map(f64::from).to_vec()));
-        Derivation::new(
-            "P = trees / (listed + trees) · the product of chosen / (chosen + other) of all importances",
-            others.into_iter().chain(way).collect(),
-        )
+        let pairs = way
+            .iter()
+            .map(|[(chosen, _), (other, _)]| ("importances", [*chosen, *other].map(f64::from).to_vec()));
+        let choice = Derivation::new(
+            "P = trees / (listed + trees) · the product of chosen / (chosen + other) of all importances, within 2⁻¹⁶ … 1 − 2⁻¹⁶ \
+             where neither is 0",
+            others.into_iter().chain(pairs).collect(),
+        );
+        let power = if way.is_empty() { None } else { of_light() };
+        let importances = way.into_iter().flatten().map(|(_, importance)| importance);
+        [choice].into_iter().chain(importances).chain(power).collect()
     }
 
     /// The probability of choosing from the list; the tree counts as one more light.

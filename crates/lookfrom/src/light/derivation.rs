@@ -1,17 +1,17 @@
 //! Where the numbers of a light sample come from: formulas of its radiance, its density and its choice, with their operands,
 //! for people who compute them anew.
 //!
-//! Those of lights that project pictures are in `pictures`; environments and portals have theirs beside them.
+//! Those of lights that project pictures are in `pictures`; area lights, environments, portals and the light tree have theirs
+//! beside them.
 
 mod pictures;
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{Mat3, Vec3};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::Falloff;
 use serde::Serialize;
 
-use super::area::{AreaDensity, AreaLight};
-use super::{IncompletePdf, Light, LightSample, LightSampleContext, Target, fade, smooth_step, toward};
+use super::{IncompletePdf, Light, LightSample, LightSampleContext, fade, smooth_step, toward};
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, Textures};
 
@@ -35,8 +35,9 @@ pub(super) const OCTAHEDRAL: &str = "i = ⌊½ (1 ± U) columns⌋, j = ⌊½ (1
     R = √(1 − |z|), Q = R atan2(|y|, |x|) 2 / π; (U, V) = (R − Q, Q) where z ≥ 0, else (1 − Q, 1 − R + Q)";
 
 impl Light {
-    /// The formulas of the sample's radiance (of point lights: of the light that arrives) and of its density; `at` is the
-    /// point that is lit. Nothing where there is nothing to compute, as of distant lights.
+    /// The formulas of the sample's radiance (of point lights: of the light that arrives; not of area lights, see
+    /// [`Light::emission`]) and of its density; `at` is the point that is lit. Nothing where there is nothing to compute, as
+    /// of distant lights.
     pub(crate) fn derivations(
         &self,
         textures: &Textures,
@@ -73,7 +74,7 @@ impl Light {
                     Derivation::new(formula, numbers)
                 })
             }
-            Self::Area(light) => of_area(light, from, sample),
+            Self::Area(light) => light.of_density(from, sample),
             Self::Projection(light) => return light.derivations(textures, from, mode),
             Self::Goniometric(light) => return light.derivations(textures, from, mode),
             Self::Environment(light) => return light.derivations(textures, at, sample, mode, incomplete_pdf),
@@ -81,60 +82,19 @@ impl Light {
         };
         of_light.into_iter().collect()
     }
-}
 
-/// The density of a point of an area light.
-fn of_area(light: &AreaLight, from: DVec3, sample: &LightSample) -> Option<Derivation> {
-    let Target::Surface(point, normal) = sample.target else { return None };
-    let to = DVec3::from_array(point.position) - from;
-    let cos = normal.dot(sample.wi.as_dvec3()).abs();
-    let of_place = [
-        ("d", vec![to.length()]),
-        ("n at the light", normal.to_array().to_vec()),
-        ("cos at the light", vec![cos]),
-    ];
-    /// Corners relative to the point that is lit.
-    const CORNERS: [&str; 3] = ["a − p", "b − p", "c − p"];
-    let seen = |corners: [DVec3; 3]| {
-        CORNERS.into_iter().zip(corners.map(|corner| (corner - from).to_array().to_vec()))
-    };
-    Some(match light.density(from, point.position.into()) {
-        AreaDensity::Area { area, probability, corners } => Derivation::new(
-            match corners {
-                Some(_) => {
-                    "pdf = P d² / (A cos): a point of a triangle a b c of the area A = |(b − a) × (c − a)| / 2"
-                }
-                None => "pdf = P d² / (A cos): a point of the area A",
-            },
-            [("P", vec![probability]), ("A", vec![area])]
-                .into_iter()
-                .chain(of_place)
-                .chain(corners.into_iter().flat_map(seen))
-                .collect(),
-        ),
-        AreaDensity::SolidAngle { solid_angle, probability, corners } => Derivation::new(
-            "pdf = P / Ω: a direction of a triangle's solid angle; \
-             tan(Ω/2) = |A·(B×C)| / (1 + A·B + B·C + C·A), with A B C the unit vectors of a − p, b − p, c − p",
-            [("P", vec![probability]), ("Ω", vec![solid_angle])].into_iter().chain(seen(corners)).collect(),
-        ),
-        AreaDensity::Cone { radius, distance } => Derivation::new(
-            "pdf = 1 / (2π (1 − cos θ)), sin θ = R / D: a direction of the cone around a sphere",
-            vec![("R", vec![radius]), ("D", vec![distance])],
-        ),
-        AreaDensity::Patch { probability, place, corners, here } => Derivation::new(
-            "pdf = P s d² / (J cos): a point of a bilinear patch, whose area element is J; \
-             s = 4 ((1−u)(1−v) J00 + u(1−v) J10 + (1−u)v J01 + uv J11) / (J00 + J10 + J01 + J11)",
-            [
-                ("P", vec![probability]),
-                ("u, v", place.to_vec()),
-                ("J", vec![here]),
-                ("J00, J10, J01, J11", corners.to_vec()),
-            ]
-            .into_iter()
-            .chain(of_place)
-            .collect(),
-        ),
-    })
+    /// How the radiance `li` of an area light comes about.
+    pub(crate) fn emission(
+        &self,
+        textures: &Textures,
+        li: Spectrum,
+        mode: &SpectralMode,
+    ) -> Option<Derivation> {
+        match self {
+            Self::Area(light) => Some(light.of_radiance(textures, li, mode)),
+            _ => None,
+        }
+    }
 }
 
 /// The law of a fall-off.

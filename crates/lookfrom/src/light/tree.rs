@@ -1,8 +1,9 @@
 //! Light tree: one of many lights, chosen in proportion to its estimated contribution.
 //!
 //! Conty Estevez & Kulla 2018 (importance of light clusters, surface area orientation heuristic); the bounds of an
-//! importance as in pbrt-v4.
+//! importance as in pbrt-v4. `derivation` is for the inspector.
 
+mod derivation;
 mod sight;
 
 use glam::Vec3;
@@ -143,21 +144,6 @@ impl Tree {
                 }
             }
         }
-    }
-
-    /// The importances of the children on the way to a light, the chosen one first.
-    pub(super) fn way(&self, p: Vec3, n: Vec3, light: u32) -> Vec<[f32; 2]> {
-        let Some(mut way) = self.ways.get(light as usize).copied().flatten() else { return Vec::new() };
-        let (mut importances, mut node) = (Vec::new(), 0);
-        while let Link::Second(second) = self.nodes[node].link {
-            let children = [node + 1, second as usize];
-            let [first, other] = children.map(|child| self.nodes[child].sight.importance(p.into(), n.into()));
-            let is_first = way & 1 == 0;
-            importances.push(if is_first { [first, other] } else { [other, first] });
-            node = children[usize::from(!is_first)];
-            way >>= 1;
-        }
-        importances
     }
 
     /// The probability of the first of two children, and whether either can be chosen.

@@ -109,9 +109,8 @@ impl World {
         }
         let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
         let radius = scene.bounds().radius() as f32;
-        let light_choice =
-            LightChoice::new(scene.render.light_sampler, &lights.lights, &lights.brightness, radius);
-        let Lights { lights, names: light_names, ambient, .. } = lights;
+        let Lights { lights, names: light_names, brightness, ambient, .. } = lights;
+        let light_choice = LightChoice::new(scene.render.light_sampler, &lights, brightness, radius);
         if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
             && matches!(scene.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
         {

@@ -12,8 +12,8 @@ use crate::core::distribution::Piecewise2D;
 use crate::core::math;
 use crate::core::warp;
 use crate::light::{
-    EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Sky, SkyImage,
-    brightest_around,
+    EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Scale, Sky,
+    SkyImage, Total, brightest_around,
 };
 use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
@@ -40,25 +40,27 @@ impl<'a> Lights<'a> {
         self.lights.len() as u32 - 1
     }
 
-    /// The emission spectrum of a colour with the given power; `per_unit` is the total power of the light if its colour
+    /// The emission spectrum of a colour with the given power; `of_white` is the total power of the light if its colour
     /// is white of luminance 1.
-    pub(super) fn emission_spectrum(&self, color: Color, power: &Power, per_unit: f32) -> EmissionSpectrum {
-        let mut scale = power.scale;
+    pub(super) fn emission_spectrum(&self, color: Color, power: &Power, of_white: f32) -> EmissionSpectrum {
+        EmissionSpectrum { color: self.illuminant(color), scale: self.scale(color, power, of_white).value() }
+    }
+
+    /// The scale of that emission spectrum.
+    pub(super) fn scale(&self, color: Color, power: &Power, of_white: f32) -> Scale {
         // Other colours have luminance 1 if they are white; the luminance of a curve follows from its values.
-        if let (Color::Curve(curve), false) = (color, power.absolute) {
-            let luminance = self.textures.curve(curve).to_xyz()[1];
-            scale = if luminance > 0.0 { scale / luminance } else { 0.0 };
-        }
-        if let Some(total) = power.total {
-            // By the luminance of the colour; that of a curve is 1 by now.
-            let luminance = match color {
-                Color::Curve(_) if !power.absolute => 1.0,
-                _ => self.mean_over_places(&self.illuminant(color), math::luminance),
+        let of_curve = match color {
+            Color::Curve(curve) if !power.absolute => Some(self.textures.curve(curve).to_xyz()[1]),
+            _ => None,
+        };
+        let total = power.total.map(|power| {
+            let luminance = match of_curve {
+                Some(_) => 1.0,
+                None => self.mean_over_places(&self.illuminant(color), math::luminance),
             };
-            let whole = per_unit * luminance;
-            scale = if whole > 0.0 { scale * total / whole } else { 0.0 };
-        }
-        EmissionSpectrum { color: self.illuminant(color), scale }
+            Total { power, of_white, luminance }
+        });
+        Scale { factor: power.scale, of_curve, total }
     }
 
     pub(super) fn illuminant(&self, color: Color) -> SpectrumTexture {

@@ -282,16 +282,18 @@ impl Compiler<'_> {
             Some(MaterialKind::Principled(principled)) => Some(FloatTexture::from(principled.clearcoat)),
             _ => None,
         };
-        let mut light = AreaLight {
-            radiance: EmissionSpectrum { color: self.lights.illuminant(radiance), scale: 1.0 },
+        // power of a white radiance of 1
+        let sides = if two_sided { 2.0 } else { 1.0 };
+        let of_white = sides * PI * shape_of_light.area() as f32;
+        let written = self.lights.scale(radiance, &power, of_white);
+        let light = AreaLight {
+            radiance: EmissionSpectrum { color: self.lights.illuminant(radiance), scale: written.value() },
+            written,
             alpha: shape.alpha.map(FloatTexture::from),
             two_sided,
             coat: coat.filter(|amount| !amount.is(0.0)),
             shape: shape_of_light,
         };
-        // power of a white radiance of 1
-        let sides = if two_sided { 2.0 } else { 1.0 };
-        light.radiance = self.lights.emission_spectrum(radiance, &power, sides * PI * light.area() as f32);
         let brightness = match light.mean_of_pattern() {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),

@@ -75,16 +75,33 @@ fn write_lift(f: &mut String, lift: Option<&LiftReport>, pad: &str) -> fmt::Resu
     Ok(())
 }
 
-/// Writes a formula with its operands.
-pub(super) fn write_derivation(f: &mut String, derivation: &Derivation, pad: &str) -> fmt::Result {
-    let Derivation { formula, numbers } = derivation;
-    let numbers = numbers.iter().map(|(name, values)| match values.as_slice() {
-        [value] => format!("{name} = {}", full64(*value)),
-        values => format!("{name} = {}", exact(values)),
-    });
-    let numbers: Vec<String> = numbers.collect();
-    writeln!(f, "{pad}{formula}")?;
-    writeln!(f, "{pad}  {}", numbers.join("   "))
+/// Writes formulas with their operands; one formula with several rows of operands is written once.
+pub(super) fn write_derivations(f: &mut String, derivations: &[Derivation], pad: &str) -> fmt::Result {
+    let mut before = "";
+    for Derivation { formula, numbers } in derivations {
+        if formula != before {
+            writeln!(f, "{pad}{formula}")?;
+        }
+        let numbers: Vec<String> =
+            numbers.iter().map(|(name, of)| format!("{name} = {}", operand(of))).collect();
+        writeln!(f, "{pad}  {}", numbers.join("   "))?;
+        before = formula;
+    }
+    Ok(())
+}
+
+/// Numbers with enough digits to read them back: in single precision where all of them are.
+fn operand(numbers: &[f64]) -> String {
+    let is_single = numbers.iter().all(|x| f64::from(*x as f32) == *x);
+    let digits = |x: &f64| match *x as f32 {
+        _ if !is_single => full64(*x),
+        single if single != 0.0 && !(1e-5..1e15).contains(&single.abs()) => format!("{single:e}"),
+        single => format!("{single}"),
+    };
+    match numbers {
+        [number] => digits(number),
+        numbers => format!("({})", numbers.iter().map(digits).collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// Writes the result of a shadow ray; `end` describes one that is unoccluded.

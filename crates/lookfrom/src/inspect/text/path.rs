@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use lookfrom_scene::plural::counted;
 
 use super::candidates::{write_candidates, write_traced};
-use super::hit::{write_absorption, write_departure, write_derivation, write_met, write_shadow};
+use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
 use super::microfacets::write_microfacets;
 use super::{Excerpt, Part, RayReport};
 use super::{amount, full, lanes, vector, vector32};
@@ -147,6 +147,7 @@ impl Excerpt<'_> {
 
     fn write_found(&self, f: &mut String, ray: &RayReport, found: &FoundReport) -> fmt::Result {
         writeln!(f, "    finds the light {}: L = {}", found.light, amount(&found.radiance))?;
+        write_derivations(f, found.emission.as_slice(), "      ")?;
         let (w, q) = (full(found.weight), full(found.light_pdf));
         match (ray.pdf, self.inspection.integrator) {
             (None, _) => {
@@ -178,7 +179,7 @@ impl Excerpt<'_> {
             report.light,
             full(report.probability)
         )?;
-        report.choice.iter().try_for_each(|choice| write_derivation(f, choice, "      "))?;
+        write_derivations(f, &report.choice, "      ")?;
         let Some(sample) = &report.sample else {
             return writeln!(
                 f,
@@ -199,7 +200,7 @@ impl Excerpt<'_> {
         if let Some(point) = sample.point {
             writeln!(f, "      from the point {}", vector(&point))?;
         }
-        sample.derivations.iter().try_for_each(|derivation| write_derivation(f, derivation, "      "))?;
+        write_derivations(f, &sample.derivations, "      ")?;
         let (p, pdf, probability) = (full(sample.pdf), full(sample.light_pdf), full(report.probability));
         match sample.is_delta {
             true => writeln!(f, "      p = {p}: the probability of choosing it; it has only this direction")?,
@@ -290,8 +291,8 @@ fn write_found_sampling(f: &mut String, sampling: Option<&FoundSampling>) -> fmt
     let Some(FoundSampling { probability, choice, density, derivations }) = sampling else { return Ok(()) };
     let (probability, density) = (full(*probability), full(*density));
     writeln!(f, "        = P × pdf = {probability} × {density}: its choice there, and the direction")?;
-    write_derivation(f, choice, "        ")?;
-    derivations.iter().try_for_each(|derivation| write_derivation(f, derivation, "        "))
+    write_derivations(f, choice, "        ")?;
+    write_derivations(f, derivations, "        ")
 }
 
 fn write_scattering(f: &mut String, scattering: &ScatteringReport) -> fmt::Result {

@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::candidates::{write_candidates, write_traced};
-use super::hit::{write_absorption, write_departure, write_derivation, write_met, write_shadow};
+use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
 use super::{Excerpt, Part, amount, full, lanes, vector, vector32};
 use crate::inspect::{BranchReport, LightReport, RayReport};
 
@@ -115,9 +115,7 @@ fn write_light(f: &mut String, light: &LightReport, pad: &str) -> fmt::Result {
             amount(&light.intensity)
         )?,
     }
-    for derivation in &light.derivations {
-        write_derivation(f, derivation, &format!("{pad}      "))?;
-    }
+    write_derivations(f, &light.derivations, &format!("{pad}      "))?;
     if let (Some(n_dot_l), Some(h), Some(n_dot_h)) = (light.n_dot_l, light.h, light.n_dot_h) {
         let (n_dot_l, h, n_dot_h) = (full(n_dot_l), vector32(&h), full(n_dot_h));
         writeln!(f, "{pad}    N·L = {n_dot_l}   H = {h}   N·H = {n_dot_h}")?;

@@ -48,16 +48,25 @@ impl TraceLogBuilder<'_> {
 
     /// How a light's sample comes about at the hit of a ray.
     fn derivations(&self, address: u64, light: u32, sample: &LightSample) -> Vec<Derivation> {
-        let Some((_, Some(surface))) = self.hits.get(&address) else { return Vec::new() };
+        let Some((at, incomplete_pdf)) = self.light_context(address) else { return Vec::new() };
+        let of_sample = self.derivations_at(&at, light, sample, incomplete_pdf);
+        self.emission(light, sample.li).into_iter().chain(of_sample).collect()
+    }
+
+    /// The point and the normal for which lights are sampled at the hit of a ray.
+    fn light_context(&self, address: u64) -> Option<(LightSampleContext, IncompletePdf)> {
+        let (_, surface) = self.hits.get(&address)?;
+        let surface = surface.as_ref()?;
         let point = DVec3::from_array(surface.point.position);
         // Along paths light is sampled by the frame of the BSDF, and BSDF sampling finds what light sampling leaves out.
         let (n, incomplete_pdf) = match self.shadings.get(&address) {
             Some((shading, _)) => (shading.n(), IncompletePdf::Allowed),
             None => (surface.ns_facing(), IncompletePdf::Forbidden),
         };
-        self.derivations_at(&LightSampleContext { point, n }, light, sample, incomplete_pdf)
+        Some((LightSampleContext { point, n }, incomplete_pdf))
     }
 
+    /// The same at a point, without the radiance of an area light.
     fn derivations_at(
         &self,
         at: &LightSampleContext,
@@ -67,6 +76,11 @@ impl TraceLogBuilder<'_> {
     ) -> Vec<Derivation> {
         let light = &self.world.lights[light as usize];
         light.derivations(&self.world.textures, at, sample, &self.lanes, incomplete_pdf)
+    }
+
+    /// How the radiance of an area light comes about.
+    pub(super) fn emission(&self, light: u32, radiance: Spectrum) -> Option<Derivation> {
+        self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.lanes)
     }
 
     /// How light sampling at the surface before finds the light that a ray hit.
@@ -99,18 +113,20 @@ impl TraceLogBuilder<'_> {
         let sample = LightSample { wi, li: radiance, pdf: density, target };
         Some(FoundSampling {
             probability,
-            choice: choice.derivation(&at, light),
+            choice: self.choice_at(&at, light),
             density,
             derivations: self.derivations_at(&at, light, &sample, IncompletePdf::Allowed),
         })
     }
 
     /// How the probability of a light comes about at the hit of a ray.
-    fn choice(&self, address: u64, light: u32) -> Option<Derivation> {
-        let met = self.rays.get(&address)?.met.as_ref()?;
-        let (shading, _) = self.shadings.get(&address)?;
-        let point = DVec3::from_array(met.point) - self.world.origin;
-        Some(self.world.light_choice().derivation(&LightSampleContext { point, n: shading.n() }, light))
+    fn choice(&self, address: u64, light: u32) -> Vec<Derivation> {
+        self.light_context(address).map(|(at, _)| self.choice_at(&at, light)).unwrap_or_default()
+    }
+
+    fn choice_at(&self, at: &LightSampleContext, light: u32) -> Vec<Derivation> {
+        let world = self.world;
+        world.light_choice().derivations(&world.lights, &world.textures, at, light)
     }
 
     pub(super) fn direction(

@@ -51,11 +51,40 @@ impl Sight {
     }
 }
 
+/// Bounds of lights as seen from a point: their importance, and what it follows from. Angles are cosine and sine.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<R: Real = f32> {
+    /// From the box's centre to the point.
+    pub(super) to_p: Vector<R>,
+    /// The square of its length.
+    pub(super) length2: R,
+    /// θ_w: between it and the axis of the normals, or, of two-sided lights, the nearer end of the axis.
+    pub(super) to_axis: (R, R),
+    /// θ_b: half the angle that the box subtends; π within its sphere.
+    pub(super) of_box: (R, R),
+    /// θ_i: between the direction to the centre and the surface's normal, on either side.
+    pub(super) at_surface: (R, R),
+    /// Cosine of θ': the least angle to a normal of the lights at which they may emit light toward the point.
+    pub(super) cos_least: R,
+    /// Cosine of θᵢ': the least angle to the surface's normal at which their light may arrive; 1 where there is none.
+    pub(super) cos_incident: R,
+    /// Whether angles count: neither at the centre nor so far away that squares leave the range of f32.
+    pub(super) is_usual: R::Mask,
+    /// An upper bound, up to the variation of distance within the bounds, of the light that arrives. Finite, and positive
+    /// where any light may arrive.
+    pub(super) importance: R,
+}
+
 impl<R: Real> Sight<R> {
-    /// An upper bound, up to the variation of distance within the bounds, of the light that arrives at `p` with normal
-    /// `n`. Finite, and positive where any light may arrive.
+    /// [`Seen::importance`] from `p` with normal `n`.
     #[inline(always)]
     pub(super) fn importance(&self, p: Vector<R>, n: Vector<R>) -> R {
+        self.seen(p, n).importance
+    }
+
+    /// The bounds as seen from `p` with normal `n`.
+    #[inline(always)]
+    pub(super) fn seen(&self, p: Vector<R>, n: Vector<R>) -> Seen<R> {
         let (zero, one) = (p.x.like(0.0), p.x.like(1.0));
         let to_p = p - self.center;
         let length2 = to_p.length_squared();
@@ -66,22 +95,26 @@ impl<R: Real> Sight<R> {
         // θ to the axis, less the spread of the normals, less the angle that the box subtends.
         let cos_axis = self.axis.dot(wi);
         let cos_axis = R::select(self.two_sided.gt(zero), Float::abs(cos_axis), cos_axis);
+        let to_axis = (cos_axis, sin_of(cos_axis));
         let radius2 = self.radius * self.radius;
         let is_outside = length2.gt(radius2);
         let sin2 = radius2 / length2;
         let cos_box = R::select(is_outside, Float::sqrt(Float::max(one - sin2, zero)), -one);
         let sin_box = R::select(is_outside, Float::sqrt(sin2), zero);
-        let to_normals = angle_less((cos_axis, sin_of(cos_axis)), (self.cos_normals, self.sin_normals));
-        let (least, _) = angle_less(to_normals, (cos_box, sin_box));
+        let of_box = (cos_box, sin_box);
+        let to_normals = angle_less(to_axis, (self.cos_normals, self.sin_normals));
+        let (cos_least, _) = angle_less(to_normals, of_box);
         // At the surface: the smallest angle between its normal and the box, on either side.
         let cos_surface = Float::abs(wi.dot(n));
-        let (at_surface, _) = angle_less((cos_surface, sin_of(cos_surface)), (cos_box, sin_box));
+        let at_surface = (cos_surface, sin_of(cos_surface));
+        let (cos_incident, _) = angle_less(at_surface, of_box);
         let has_normal = n.length_squared().gt(zero);
-        let at_surface = R::select(has_normal, at_surface, one);
+        let cos_incident = R::select(has_normal, cos_incident, one);
         let directed =
-            R::select(least.gt(self.cos_emission), bounded(by_distance * least * at_surface), zero);
+            R::select(cos_least.gt(self.cos_emission), bounded(by_distance * cos_least * cos_incident), zero);
         let is_usual = !length2.lt(length2.like(1e-36)) & length2.lt(length2.like(1e36));
-        R::select(is_usual, directed, bounded(by_distance))
+        let importance = R::select(is_usual, directed, bounded(by_distance));
+        Seen { to_p, length2, to_axis, of_box, at_surface, cos_least, cos_incident, is_usual, importance }
     }
 }
 
