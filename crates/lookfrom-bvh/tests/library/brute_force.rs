@@ -4,11 +4,8 @@ use std::sync::Arc;
 
 use lookfrom_bvh::{Builder, Bvh, Hit, Quality, Ray, Sphere, Triangles, reference};
 
-mod shapes;
-#[path = "../src/testing.rs"]
-mod testing;
-use shapes::Squares;
-use testing::Random;
+use crate::shapes::Squares;
+use crate::testing::Random;
 
 /// A coordinate: often a small whole number, so that planes, edges and corners are met exactly.
 fn coordinate(random: &mut Random, scale: f32, whole: bool) -> f32 {

@@ -5,9 +5,7 @@ use std::time::Instant;
 
 use lookfrom_bvh::{Aabb, Affine, BuildError, Builder, Bvh, Hit, Observer, Quality, Ray, Sphere, Triangles};
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 fn of_triangles(corners: &[[[f32; 3]; 3]]) -> Bvh {
     let positions: Vec<[f32; 3]> = corners.iter().flatten().copied().collect();

@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use lookfrom_bvh::{Affine, Builder, Bvh, ClosestPoint, NONE, Quality, Sphere, Triangles};
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 type Corners = [[f32; 3]; 3];
 

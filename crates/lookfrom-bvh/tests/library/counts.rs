@@ -1,11 +1,8 @@
 //! How many nodes and triangles do rays visit? Counts do not depend on the machine's mood: a tree or a loop that became worse is
 //! seen here, and not only by those who measure times.
 
-#[path = "../src/testing.rs"]
-mod testing;
-
+use crate::testing::Random;
 use lookfrom_bvh::{Builder, Observer, Quality, Ray, RayF64, Triangles};
-use testing::Random;
 
 #[derive(Default)]
 struct Counts {

@@ -6,11 +6,8 @@ use lookfrom_bvh::{
     Affine, Builder, Bvh, Hit, HitF64, NONE, Quality, Ray, RayF64, Sphere, Triangles, reference,
 };
 
-mod shapes;
-#[path = "../src/testing.rs"]
-mod testing;
-use shapes::Squares;
-use testing::Random;
+use crate::shapes::Squares;
+use crate::testing::Random;
 
 struct Soup {
     corners: Vec<[[f32; 3]; 3]>,

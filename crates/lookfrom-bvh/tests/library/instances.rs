@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use lookfrom_bvh::{Affine, Builder, Hit, NONE, Ray, Sphere, Triangles, reference};
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 fn random_map(random: &mut Random) -> Affine {
     loop {

@@ -6,9 +6,7 @@ use std::sync::Arc;
 
 use lookfrom_bvh::{Affine, Builder, Bvh, Hit, OriginPrimitive, Point, Ray, Sphere, Triangles};
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 fn rays() -> usize {
     std::env::var("LOOKFROM_RAYS").ok().and_then(|text| text.parse().ok()).unwrap_or(100_000)

@@ -5,9 +5,7 @@ use lookfrom_bvh::{
     reference,
 };
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 type Corners = [[f32; 3]; 3];
 

@@ -7,9 +7,7 @@ use lookfrom_bvh::{
     Triangles,
 };
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 /// Two geometries of triangles around one of spheres, and a ball in an instance that stays.
 #[derive(Clone)]

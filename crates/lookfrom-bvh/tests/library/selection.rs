@@ -7,9 +7,7 @@ use lookfrom_bvh::{
     RayF64, Sphere, Triangles,
 };
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 /// A mask and faces.
 #[derive(Clone, Copy, Debug)]

@@ -9,9 +9,7 @@ use std::collections::HashMap;
 use lookfrom_bvh::{Affine, Builder, Bvh, NONE, Ray, Triangles};
 use std::sync::Arc;
 
-#[path = "../src/testing.rs"]
-mod testing;
-use testing::Random;
+use crate::testing::Random;
 
 struct Mesh {
     positions: Vec<[f32; 3]>,

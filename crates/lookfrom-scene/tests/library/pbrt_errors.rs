@@ -1,11 +1,9 @@
 //! What is said of broken scenes of pbrt: the place, the line, what was found, what was expected.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 
+use crate::support::shown;
 use lookfrom_scene::{LoadContext, Memory, load};
-use support::shown;
 
 /// All that is said of a scene: its error if there is one, and then its warnings.
 fn said(text: &str) -> String {
@@ -18,7 +16,7 @@ fn said(text: &str) -> String {
     if all.is_empty() { "nothing".to_owned() } else { all.join("\n") }
 }
 
-/// `tests/pbrt/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is
+/// `tests/library/pbrt/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is
 /// said.
 #[test]
 fn errors_say_where_and_what_to_do() {
@@ -27,7 +25,7 @@ fn errors_say_where_and_what_to_do() {
         expected.split("\n=====\n").map(|case| case.split_once("\n-----\n").map_or(case, |(text, _)| text));
     let found: Vec<String> = texts.map(|text| format!("{text}\n-----\n{}", said(text))).collect();
     if std::env::var_os("LOOKFROM_ACCEPT").is_some() {
-        std::fs::write("tests/pbrt/errors.txt", found.join("\n=====\n"))
+        std::fs::write("tests/library/pbrt/errors.txt", found.join("\n=====\n"))
             .expect("the expectations can be written");
         return;
     }

@@ -1,5 +1,4 @@
 //! Files that can be read only once: named pipes and process substitutions.
-#![cfg(unix)]
 
 use std::process::Command;
 

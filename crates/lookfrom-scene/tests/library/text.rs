@@ -7,7 +7,7 @@ use lookfrom_scene::shape::Mesh;
 use lookfrom_scene::{LoadContext, Memory, load};
 
 /// The font of the guide: a glyph for each letter of "lookfrom", of strokes that overlap.
-const FONT: &[u8] = include_bytes!("../../../docs/guide/scenes/parts/letters.ttf");
+const FONT: &[u8] = include_bytes!("../../../../docs/guide/scenes/parts/letters.ttf");
 
 fn read(keys: &str) -> Result<(Mesh, Vec<String>), String> {
     let scene = format!("[camera]\nlookfrom = [0, 0, 9]\nlookat = [0, 0, 0]\n[[text]]\n{keys}\n");

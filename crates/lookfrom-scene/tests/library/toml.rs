@@ -1,9 +1,8 @@
 //! Our own format: what is said is what is read, and what is wrong is named with its place and a remedy.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::shown;
 use glam::{DMat4, DVec3};
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::excerpt::Excerpts;
@@ -12,7 +11,6 @@ use lookfrom_scene::material::{Color, MaterialKind, Whitted};
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::texture::{Mapping, TextureKind};
 use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, Scene, image, load};
-use support::shown;
 
 fn files(texts: &[(&str, &str)]) -> Memory {
     let mut files = Memory::default();
@@ -38,7 +36,7 @@ fn look(scene: &Scene, index: usize) -> &Whitted {
     whitted
 }
 
-/// `tests/toml/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is
+/// `tests/library/toml/errors.txt` has bad scenes and what is said of them; `LOOKFROM_ACCEPT=1 cargo test` writes anew what is
 /// said.
 #[test]
 fn errors_say_where_and_what_to_do() {
@@ -59,7 +57,7 @@ fn errors_say_where_and_what_to_do() {
         count += 1;
     }
     if std::env::var_os("LOOKFROM_ACCEPT").is_some() {
-        std::fs::write("tests/toml/errors.txt", &found).expect("the expectations can be written");
+        std::fs::write("tests/library/toml/errors.txt", &found).expect("the expectations can be written");
         return;
     }
     assert!(count > 60);

@@ -1,8 +1,6 @@
 //! Pictures whose colours can be worked out on paper.
 
-mod support;
-
-use support::{Compiled, close, scene};
+use crate::support::{Compiled, close, scene};
 
 /// The colour of the middle of a tiny picture, seen from (0, 0, 5) toward the origin through the pixel's centre.
 fn middle(samples: u32, rest: &str) -> [f32; 3] {

@@ -1,17 +1,15 @@
 //! Lights of each form: what is sampled has the density that it says, and a ray that finds the same point agrees.
 
-mod support;
-
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::support::forms::{Random, forms, ray, shape, shining, world};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom::light::{AreaLight, Light};
 use lookfrom::world::World;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::scene::MeshId;
 use lookfrom_scene::shape::{Geometry, Mesh, Patches, Shape, Sphere};
-use support::forms::{Random, forms, shape, shining, world};
 
 /// How many samples, and how many uniform directions.
 const COUNT: usize = 40_000;
@@ -214,7 +212,7 @@ fn what_shines_is_linked_to_its_light() {
         let dark = world(shape(geometry, map), meshes);
         let mut met = 0;
         for _ in 0..200 {
-            let ray = support::forms::ray(&mut random, &map);
+            let ray = ray(&mut random, &map);
             let hit = lit.bvh().closest_hit(&ray);
             assert_eq!(hit, dark.bvh().closest_hit(&ray));
             if hit.is_hit() {

@@ -1,12 +1,10 @@
 //! Bump maps: slopes are taken over half a pixel's footprint, however the surface is parameterised.
 
-mod support;
-
+use crate::support::{Compiled, scene};
 use glam::{DMat4, Vec2, Vec3};
 use lookfrom_scene::Location;
 use lookfrom_scene::scene::{MaterialId, MeshId};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
-use support::{Compiled, scene};
 
 /// The picture of a wall of 2 × 2 with bumps of noise, whose u and v go to `span`, seen from a distance.
 fn wall(span: f32, distance: f64, fov: f64) -> Vec<[f32; 3]> {

@@ -1,10 +1,8 @@
 //! A clear coat over what shines takes the part that `KHR_materials_clearcoat` says, whether the light is met or asked for.
 
-mod support;
-
+use crate::support::{Compiled, SMALL, scene};
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Integrator;
-use support::{Compiled, SMALL, scene};
 
 /// What the extension says of emission under a coat.
 fn formula(amount: f64, cos: f64) -> f64 {

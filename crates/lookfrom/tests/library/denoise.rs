@@ -1,12 +1,10 @@
 //! Are pictures of few samples nearer to the truth when they are denoised, and are they then the same bits everywhere?
 
-mod support;
-
+use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::{Film, Picture};
 use lookfrom::post::denoise::denoised;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::{Integrator, PixelBounds};
-use support::{Compiled, own_scene};
 
 fn small(name: &str, samples: u32) -> Scene {
     let mut scene = own_scene(name);
@@ -95,7 +93,7 @@ alpha = 0.25
 #[test]
 fn surfaces_of_fractional_alpha_are_smooth() {
     let picture = |panes: &str, samples, seed| {
-        let mut scene = support::scene(panes);
+        let mut scene = scene(panes);
         (scene.render.samples, scene.render.seed, scene.image.denoise) = (samples, seed, true);
         Compiled::new(scene).film()
     };

@@ -1,11 +1,9 @@
 //! Dispersion in RGB mode: does each colour go where its own index of refraction sends it, is nothing won or lost by leaving
 //! only one, and does nothing change where nothing disperses?
 
-mod support;
-
+use crate::support::{Compiled, SMALL, scene};
 use lookfrom::inspect::inspect;
 use lookfrom::render::SampleId;
-use support::{Compiled, SMALL, scene};
 
 /// A ball before a sky that is brighter above, close up.
 fn ball(look: &str, samples: u32) -> Compiled {

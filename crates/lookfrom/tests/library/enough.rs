@@ -1,14 +1,12 @@
 //! Does a render end when it shall, and is the picture then what its number of samples says?
 
-mod support;
-
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use crate::support::{Compiled, own_scene};
 use lookfrom::render::{FEWEST_SAMPLES, Progress, StopCriteria, StopReason, TileDone};
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Allocation;
-use support::{Compiled, own_scene};
 
 fn small(samples: u32) -> Scene {
     let mut scene = own_scene("soft-shadows.toml");

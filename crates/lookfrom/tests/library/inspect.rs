@@ -1,9 +1,8 @@
 //! The inspector of paths: does what it shows add up to what the film received, and do its numbers fit its formulas?
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::{Compiled, scene};
 use lookfrom::film::{Film, FilmTile};
 use lookfrom::inspect::{Inspection, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
@@ -12,7 +11,6 @@ use lookfrom_scene::light::{Light, LightKind, Power, Sky};
 use lookfrom_scene::scene::ImageId;
 use lookfrom_scene::settings::{ColorMode, Integrator, PixelBounds};
 use lookfrom_scene::{Location, Scene};
-use support::{Compiled, scene};
 
 /// Glass that disperses, rough metal, a coat, a pane with holes, a mirror, a swallowing body, two lamps.
 const ROOM: &str = r##"

@@ -1,14 +1,12 @@
 //! The origins of rays that leave surfaces, computed anew from the operands that the inspector prints.
 
-mod support;
-
 use std::path::Path;
 
+use crate::support::Compiled;
 use glam::{DMat3, DVec3, Vec3};
 use lookfrom::inspect::{Departure, Inspection, MetReport, inspect};
 use lookfrom::render::SampleId;
 use lookfrom_scene::{LoadContext, Memory};
-use support::Compiled;
 
 /// A coarse mesh with the normals of a sphere, as itself and as an instance, on a floor.
 const SCENE: &str = r#"

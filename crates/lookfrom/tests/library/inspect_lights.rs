@@ -1,17 +1,15 @@
 //! The densities, radiances and choices of lights, computed anew in f64 from the operands that the inspector prints.
 
-mod support;
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;
 
+use crate::support::Compiled;
 use glam::DVec3;
 use lookfrom::inspect::{Derivation, FoundReport, Inspection, inspect};
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::ColorMode;
 use lookfrom_scene::{LoadContext, Memory, Scene, image};
-use support::Compiled;
 
 /// A floor, a ball, and what lights them.
 const OWN: &str = r#"

@@ -1,17 +1,15 @@
 //! The inspector's D, G and F of microfacets, computed anew in f64 from the directions and α that it prints, and their
 //! product, which is the BSDF.
 
-mod support;
-
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
+use crate::support::{Compiled, scene};
 use glam::{DVec3, Vec3};
 use lookfrom::inspect::{Inspection, MicrofacetReport, RayReport, inspect};
 use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::ColorMode;
-use support::{Compiled, scene};
 
 /// Balls of rough metal and glass, a coat, glTF's layers, and smooth glass, on a floor under a lamp.
 const BALLS: &str = r#"

@@ -1,17 +1,15 @@
 //! The inspector's numbers, computed anew in f64 from the inputs that it prints: with them, a reader and a pocket
 //! calculator can do the same.
 
-mod support;
-
 use std::collections::BTreeSet;
 
+use crate::support::{Compiled, own_scene};
 use glam::{DMat3, DVec3, Vec3};
 use lookfrom::inspect::{
     Candidate, Derivation, Inspection, LightReport, RayReport, Test, TestNumbers, inspect,
 };
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::Integrator;
-use support::{Compiled, own_scene};
 
 /// Scenes with triangles, spheres, instances, quadrics, disks, patches, curves, holes, glass that absorbs; each with an
 /// integrator.

@@ -1,11 +1,9 @@
 //! Layers of light-path expressions: they add up to the picture, whose own bits stay the same.
 
-mod support;
-
+use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::Film;
 use lookfrom_scene::settings::{ColorMode, Filter, LightPathLayer};
 use lookfrom_scene::{Location, Scene};
-use support::{Compiled, own_scene, scene};
 
 /// Ways that have no light in common, and together all: seen at once, and by what the first surface did.
 const ALL: [(&str, &str); 4] =

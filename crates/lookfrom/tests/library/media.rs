@@ -4,15 +4,13 @@
 //! Each scene is seen twice, with a medium that absorbs and with one that does not; by Beer's law the ratio says how long the
 //! light's way was in it.
 
-mod support;
-
 use std::path::{Path, PathBuf};
 
+use crate::support::{self, Compiled};
 use lookfrom::inspect::inspect;
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::{ColorMode, Integrator};
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
-use support::Compiled;
 
 /// What the medium takes away per unit of length.
 const SIGMA: [f64; 3] = [0.4, 0.1, 0.0];

@@ -1,14 +1,12 @@
 //! Bodies in bodies: does each surface bend light by the indices on its two sides, however the bodies are modelled, and does
 //! nothing change where they are not nested?
 
-mod support;
-
+use crate::support::{self, Compiled, SMALL, scene};
 use glam::DVec3;
 use lookfrom::inspect::{Inspection, RayReport, inspect};
 use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Integrator;
-use support::{Compiled, SMALL, scene};
 
 const GLASS: f64 = 1.5;
 const WATER: f64 = 1.33;

@@ -1,8 +1,6 @@
 //! A room with a window: the sky lights it as before when the window is named as its portal, and with less noise.
 
-mod support;
-
-use support::{Compiled, scene};
+use crate::support::{Compiled, scene};
 
 /// A room of 4 × 4 × 4 around the origin, open on a window of 1 × 1 in the wall at z = −2; the camera looks at its back wall.
 fn room(integrator: &str, color: &str, sky: &str, portal: bool) -> [f64; 3] {

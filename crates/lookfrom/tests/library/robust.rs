@@ -1,13 +1,11 @@
 //! No epsilons: the picture does not depend on the scene's unit, nor on where in the world it stands; and nothing that a
 //! scene can say makes a number that is not one.
 
-mod support;
-
+use crate::support::{Compiled, close, own_scene, scene};
 use lookfrom::film::Picture;
 use lookfrom::world::World;
 use lookfrom_scene::settings::Integrator;
 use lookfrom_scene::{LoadContext, Memory, image};
-use support::{Compiled, close, own_scene, scene};
 
 /// Glass, a mirror, an instance with a shear, a disk and a mesh over a floor, all times `scale` and moved by `offset`.
 fn still_life(scale: f64, offset: [f64; 3]) -> Picture {

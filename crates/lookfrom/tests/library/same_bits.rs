@@ -1,7 +1,6 @@
 //! One and the same picture, bit for bit, however the work is divided – and the inspector tells the truth about it.
 
-mod support;
-
+use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{SvgView, inspect, svg};
 use lookfrom::integrator::{
@@ -13,7 +12,6 @@ use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::Scene;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds};
-use support::{Compiled, own_scene};
 
 const SCENES: [&str; 6] = [
     "whitted1980.toml",
@@ -176,7 +174,7 @@ fn room(lights: &[&str], settings: &str) -> Scene {
         positions = [[0.2, -0.9, 0], [0.8, -0.9, 0], [0.5, -0.3, 0.1]]
         triangles = [[0, 1, 2]]
     "#;
-    let mut scene = support::scene(&format!("{WALLS}{}", lights.join("\n")));
+    let mut scene = scene(&format!("{WALLS}{}", lights.join("\n")));
     scene.render.integrator = Integrator::Path;
     scene.render.samples = 2;
     scene.render.depth = 7;
@@ -365,7 +363,7 @@ fn shadow_rays_pass_surfaces_eight_at_once_as_one_by_one() {
         intensity = 0.5
     "#;
     for color in [ColorMode::Rgb, ColorMode::Spectral] {
-        let mut scene = support::scene(BODIES);
+        let mut scene = scene(BODIES);
         scene.render.integrator = Integrator::Whitted;
         scene.render.color = color;
         let compiled = Compiled::new(scene);

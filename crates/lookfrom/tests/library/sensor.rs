@@ -1,12 +1,10 @@
 //! What a sensor makes of whole samples: the limit of their brightness, and the noise of its own channels.
 
-mod support;
-
+use crate::support::{Compiled, close, scene};
 use lookfrom::core::color::{rgb_from_xyz, xyz_of};
 use lookfrom::film::Film;
 use lookfrom::render::SampleId;
 use lookfrom::shading::texture::SpectralMode;
-use support::{Compiled, close, scene};
 
 /// A ball of glass that disperses, before a bright sky.
 fn prism(image: &str, color: &str) -> Compiled {

@@ -1,16 +1,14 @@
 //! Each shape against its twin: triangles along the formula of its points, or a search along its curve.
 
-mod support;
-
 use std::sync::Arc;
 
+use crate::support::forms::{Random, forms, place, ray, shape, shining, twin, world};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom::shading::interaction::SurfaceInteraction;
 use lookfrom_bvh::Ray;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::MeshId;
 use lookfrom_scene::shape::{Geometry, Mesh, Patches, Profile, Sphere, Strand};
-use support::forms::{Random, forms, place, ray, shape, shining, twin, world};
 
 #[test]
 fn rays_meet_what_they_meet_of_fine_triangles() {

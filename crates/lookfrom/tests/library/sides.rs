@@ -1,13 +1,11 @@
 //! Single-sided surfaces that face inward: half of the light passes their backs, as the camera does.
 
-mod support;
-
+use crate::support::{Compiled, scene};
 use glam::{DMat4, DVec3};
 use lookfrom::film::Film;
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::Scene;
 use lookfrom_scene::camera::Look;
-use support::{Compiled, scene};
 
 const ALBEDO: f32 = 0.4;
 

@@ -1,7 +1,6 @@
 //! Coarse meshes with smooth normals: no dark rims at silhouettes, and no facets at the terminator.
 
-mod support;
-
+use crate::support::{Compiled, scene};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom::integrator::Event;
 use lookfrom::render::SampleId;
@@ -10,7 +9,6 @@ use lookfrom_scene::Scene;
 use lookfrom_scene::scene::{MaterialId, MeshId, VertexNormals};
 use lookfrom_scene::settings::Integrator;
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
-use support::{Compiled, scene};
 
 /// A unit sphere of `rings` × 2 `rings` quadrangles with the normals of the sphere.
 fn sphere(rings: u32) -> Mesh {

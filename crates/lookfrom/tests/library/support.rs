@@ -1,7 +1,5 @@
 //! What the tests of this crate share: scenes written in the test, and short ways to a picture.
 
-#![allow(dead_code)] // each test file uses its part
-
 pub(crate) mod forms;
 
 use std::path::{Path, PathBuf};

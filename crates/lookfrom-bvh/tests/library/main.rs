@@ -1,0 +1,19 @@
+//! The kernel as a program uses it: geometry and rays in, hits out.
+//!
+//! One program for all files, since each would compile and link the kernel for itself.
+
+mod brute_force;
+mod build;
+mod closest_point;
+mod counts;
+mod double;
+mod extremes;
+mod instances;
+mod origins;
+mod query;
+mod refit;
+mod selection;
+mod shapes;
+#[path = "../../src/testing.rs"]
+mod testing;
+mod watertight;

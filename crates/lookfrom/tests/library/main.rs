@@ -1,0 +1,36 @@
+//! The library as a program uses it: scenes in; pictures, films and reasons out.
+//!
+//! One program for all files, since each would compile and link the renderer for itself.
+
+mod analytic;
+mod architecture;
+mod area_lights;
+mod bump_maps;
+mod coated_lamps;
+mod denoise;
+mod dispersion;
+mod enough;
+mod films;
+mod gltf_and_pbrt;
+mod inspect;
+mod inspect_lifts;
+mod inspect_lights;
+mod inspect_microfacets;
+mod inspect_numbers;
+mod layers;
+mod light_paths;
+mod media;
+mod nested;
+mod path;
+mod portal;
+mod references;
+mod robust;
+mod same_bits;
+mod sensor;
+mod session;
+mod shapes;
+mod sides;
+mod smooth_meshes;
+mod support;
+mod surfaces;
+mod warnings;
