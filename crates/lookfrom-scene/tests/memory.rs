@@ -1,5 +1,7 @@
 //! One budget for all that a file makes us allocate: what damaged headers claim is refused before it is allocated, what was
 //! reserved is given back, and what fits is read.
+//!
+//! A program of its own, since it watches the most memory that its process has had.
 
 use std::path::Path;
 

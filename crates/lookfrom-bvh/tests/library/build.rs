@@ -135,7 +135,7 @@ fn long_thin_triangles_and_sizes_that_double() {
     built_soon("doubling", &doubling);
 }
 
-/// `cargo test --release -p lookfrom-bvh --test build -- --ignored --nocapture`: two gigabytes, and some seconds.
+/// `cargo test --release -p lookfrom-bvh ten_million -- --ignored --nocapture`: two gigabytes, and some seconds.
 #[test]
 #[ignore = "takes two gigabytes"]
 fn ten_million_triangles() {

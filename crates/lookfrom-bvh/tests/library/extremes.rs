@@ -1,6 +1,6 @@
 //! Sizes and distances up to 10³² apart: do trees still answer as their primitives do, one by one?
 //!
-//! `LOOKFROM_ROUNDS=2000 cargo test --release --test extremes` tries more. (Beyond 2¹²⁰ the f32 reciprocals of the box test leave
+//! `LOOKFROM_ROUNDS=2000 cargo test --release -p lookfrom-bvh extremes` tries more. (Beyond 2¹²⁰ the f32 reciprocals of the box test leave
 //! their range: of 600 000 rays among exponents of 10 up to ±20, one was answered otherwise by one tree than by another.)
 
 use lookfrom_bvh::{Builder, Bvh, Hit, Quality, Ray, Sphere, Triangles};

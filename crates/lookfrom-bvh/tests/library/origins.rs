@@ -1,6 +1,6 @@
 //! Do rays that leave a surface ever meet the primitive they left?
 //!
-//! `LOOKFROM_RAYS=10000000 cargo test --release --test origins -- --nocapture` tries more and prints counts.
+//! `LOOKFROM_RAYS=10000000 cargo test --release -p lookfrom-bvh origins -- --nocapture` tries more and prints counts.
 
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Does any ray slip through a closed mesh?
 //!
 //! Rays go through corners and through points on edges of closed meshes near and far from the origin, from inside and from
-//! outside. `LOOKFROM_RAYS=3400000 cargo test --release -p lookfrom-bvh --test watertight -- --nocapture` sends 10⁸ of them
+//! outside. `LOOKFROM_RAYS=3400000 cargo test --release -p lookfrom-bvh watertight -- --nocapture` sends 10⁸ of them
 //! in a few minutes, and prints counts.
 
 use std::collections::HashMap;
