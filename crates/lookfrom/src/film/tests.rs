@@ -403,20 +403,6 @@ fn edges_and_lamps_are_no_fireflies() {
     assert_eq!(film.fireflies(), []);
 }
 
-/// Not a check but a measurement: `cargo test --release -p lookfrom film -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn time_of_add() {
-    const N: u32 = 20_000_000;
-    let mut tile = FilmTile::new(PixelBounds { x0: 0, y0: 0, x1: 16, y1: 16 }).unwrap();
-    let start = std::time::Instant::now();
-    for i in 0..N {
-        tile.add(i & 15, i >> 4 & 15, i, [i as f32 * 1e-5, 0.5, -1e-7]);
-    }
-    let nanoseconds = start.elapsed().as_secs_f64() * 1e9 / f64::from(N);
-    println!("{nanoseconds:.2} ns ({:?})", tile.pixels[7].mean());
-}
-
 #[test]
 fn channels_have_their_variance() {
     use lookfrom_scene::settings::Sensor;

@@ -131,21 +131,6 @@ fn patterns_shine_as_bright_as_they_are_found_by_chance() {
 }
 
 #[test]
-#[ignore = "measures time"]
-fn time_of_a_million_triangles_that_shine() {
-    for (name, side) in [("one texel of 16²", 16), ("one of 1", 1)] {
-        let scene =
-            under_lamp(708, |scene| Color::Texture(picture_of(scene, spot(side), Channel::Rgb, Mapping::UV)));
-        let start = std::time::Instant::now();
-        let world = compiled(scene);
-        println!("{name}: {:?} for {} lights", start.elapsed(), world.lights().len());
-    }
-    let start = std::time::Instant::now();
-    compiled(under_lamp(708, |_| Color::BLACK));
-    println!("dark: {:?}", start.elapsed());
-}
-
-#[test]
 fn triangles_of_a_pattern_are_asked_where_it_shines() {
     let world = compiled(under_lamp(32, |scene| {
         Color::Texture(picture_of(scene, spot(16), Channel::Rgb, Mapping::UV))

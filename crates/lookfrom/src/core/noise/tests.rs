@@ -164,13 +164,3 @@ fn bits_are_pinned() {
         [0xbe81_cc00, 0xbe5c_042f, 0x3eac_2452]
     );
 }
-
-/// Not a check but a measurement: `cargo test --release -p lookfrom noise -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn time_of_noise() {
-    const N: u32 = 5_000_000;
-    let start = std::time::Instant::now();
-    let sum: f32 = (0..N).map(|i| noise(Vec3::new(i as f32 * 0.37, 0.5, i as f32 * 0.11))).sum();
-    println!("{:.2} ns ({sum})", start.elapsed().as_secs_f64() * 1e9 / f64::from(N));
-}

@@ -340,15 +340,3 @@ fn bits_are_pinned() {
         [[0x3ed4_3434, 0x3f34_513d], [0x3f65_9337, 0x3f53_6ead], [0x3e4c_9000, 0x3dcc_1ca8]]
     );
 }
-
-/// Not a check but a measurement: `cargo test --release -p lookfrom sampler -- --ignored --nocapture`.
-#[test]
-#[ignore = "measures time"]
-fn time_of_two() {
-    for (name, sampler) in ["sobol", "independent"].iter().zip(both_kinds()) {
-        const N: u32 = 20_000_000;
-        let start = std::time::Instant::now();
-        let sum: f32 = (0..N).map(|i| sampler.two([i & 1023, i >> 10], i & 63, 3)).map(|[x, y]| x - y).sum();
-        println!("{name}: {:.2} ns ({sum})", start.elapsed().as_secs_f64() * 1e9 / f64::from(N));
-    }
-}

@@ -95,28 +95,6 @@ fn probabilities_sum_to_one_and_are_those_of_samples() {
     }
 }
 
-/// Prints nanoseconds per choice, and seconds per build.
-#[test]
-#[ignore = "a measurement: cargo test --release -p lookfrom light::tree -- --ignored --nocapture"]
-fn speed() {
-    for count in [1, 2, 10, 1000, 100_000, 1_000_000] {
-        let lights = bundles(count);
-        let start = std::time::Instant::now();
-        let tree = Tree::new(&lights, count as usize);
-        let build = start.elapsed();
-        let start = std::time::Instant::now();
-        const TIMES: u32 = 200_000;
-        let mut sum = 0.0;
-        for k in 0..TIMES {
-            let u = (k as f32 + 0.5) / TIMES as f32;
-            let p = Vec3::new(10.0 * u, 10.0 * (1.0 - u), (k % 16) as f32);
-            sum += tree.sample(p, Vec3::Y, u).map_or(0.0, |chosen| chosen.probability);
-        }
-        let each = start.elapsed() / TIMES;
-        println!("{count} lights: {each:?} a choice, built in {build:?}, sum {sum}");
-    }
-}
-
 #[test]
 fn near_lights_are_chosen_more_often() {
     let at = |x: f32| LightBounds {

@@ -337,45 +337,6 @@ fn nothing_is_nan_anywhere() {
     }
 }
 
-#[test]
-#[ignore = "measures time"]
-fn time_of_look_ups() {
-    let texels = (0..1 << 12).map(|i| [0.1, 0.2 + i as f32 * 1e-9, 0.7]).collect();
-    let bytes = (0..1 << 12).map(|i| [90, 120, (i % 256) as u8, 255]).collect();
-    let images =
-        [Image::from_linear("", 64, 64, texels), Image::from_bytes("", 64, 64, bytes, Encoding::Srgb)];
-    let lanes = SpectralMode::Spectral(Wavelengths::sample_visible(0.3));
-    for (wrap, reach) in [(Wrap::Repeat, 1.0), (Wrap::Repeat, 9.0), (Wrap::Mirror, 9.0), (Wrap::Black, 1.0)] {
-        for (channel, name, image, lanes) in [
-            (Channel::Rgb, "rgb", 0, &SpectralMode::Rgb),
-            (Channel::Rgb, "rgb of bytes", 1, &SpectralMode::Rgb),
-            (Channel::Green, "green of bytes", 1, &SpectralMode::Rgb),
-            (Channel::Rgb, "spectral", 0, &lanes),
-        ] {
-            let kind = TextureKind::Image {
-                image: ImageId(image),
-                mapping: Mapping::UV,
-                wrap: [wrap; 2],
-                filter: TexelFilter::Bilinear,
-                channel,
-                scale: 1.0,
-                invert: false,
-            };
-            let textures = textures_of(&[kind], images.to_vec(), vec![]);
-            let start = std::time::Instant::now();
-            let mut sum = Spectrum::BLACK;
-            let count = 1 << 21;
-            for i in 0..count {
-                let [u, v] = [i % 512, i / 512 % 512].map(|k| k as f32 * reach / 512.0);
-                let point = at(u, v);
-                sum += textures.spectrum_of(Color::Texture(FIRST), SpectrumType::Albedo, &point, lanes);
-            }
-            let ns = start.elapsed().as_nanos() as f64 / f64::from(count);
-            println!("{wrap:?} over {reach}, {name}: {ns:.1} ns ({:.3})", sum.max_lane() / count as f32);
-        }
-    }
-}
-
 fn affine(set: u32, matrix: [[f32; 3]; 2]) -> Mapping {
     Mapping::Affine { set, matrix }
 }
