@@ -72,8 +72,9 @@ fn picture(path: &Path, samples: u32) -> Sampled {
 }
 
 #[test]
+#[ignore = "needs LOOKFROM_SHARED"]
 fn pictures_are_pbrts() {
-    let Some(shared) = lookfrom_test_data::shared("") else { return };
+    let shared = lookfrom_test_data::shared("");
     let mut faults = Vec::new();
     for &(scene, name, reference_samples, samples, most) in SCENES {
         let ours = picture(&shared.join(format!("scenes/{scene}.pbrt")), samples);
@@ -120,8 +121,9 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 }
 
 #[test]
+#[ignore = "needs LOOKFROM_SHARED"]
 fn normals_are_pbrts() {
-    let Some(shared) = lookfrom_test_data::shared("") else { return };
+    let shared = lookfrom_test_data::shared("");
     // That of the sensor has no `Ns`.
     for (scene, name, ..) in SCENES.iter().filter(|(_, name, ..)| *name != "cornell-sensor") {
         let reference = shared.join(format!("reference/{name}.exr"));

@@ -94,8 +94,9 @@ fn damaged_streams_give_errors_or_other_numbers_but_never_a_panic() {
 }
 
 #[test]
+#[ignore = "needs LOOKFROM_SHARED"]
 fn a_model_of_the_corpus_is_the_same_with_and_without() {
-    let Some(corpus) = lookfrom_test_data::shared("corpus/assimp/glTF2") else { return };
+    let corpus = lookfrom_test_data::shared("corpus/assimp/glTF2");
     let paths = ["draco/2CylinderEngine.gltf", "2CylinderEngine-glTF-Binary/2CylinderEngine.glb"];
     let [packed, plain] = paths.map(|name| {
         let mut context = LoadContext::new(&Disk);
