@@ -55,3 +55,39 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     #[cfg(not(target_arch = "x86_64"))]
     fearless_simd::dispatch!(level, simd => kernel.run(simd))
 }
+
+/// Whether [`dispatch_wide`] runs kernels at a level.
+#[inline]
+pub fn is_wide(level: Level) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return level.as_avx2().is_some();
+    #[cfg(not(target_arch = "x86_64"))]
+    return {
+        let _ = level;
+        true
+    };
+}
+
+/// As [`dispatch`], for large kernels, which are not compiled for SSE2: eight lanes in its sixteen registers of four would
+/// be most of their code, for machines before 2013. `None` at that level; callers go one by one there.
+#[inline(always)]
+pub fn dispatch_wide<K: Kernel>(level: Level, kernel: K) -> Option<K::Output> {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if let Some(simd) = level.as_avx512() {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                move || kernel.run(simd),
+            ));
+        }
+        if let Some(simd) = level.as_avx2() {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                move || kernel.run(simd),
+            ));
+        }
+        None
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    Some(dispatch(level, kernel))
+}

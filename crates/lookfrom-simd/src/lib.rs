@@ -7,7 +7,7 @@ mod level;
 mod real;
 mod transpose;
 
-pub use dispatch::{Kernel, dispatch};
+pub use dispatch::{Kernel, dispatch, dispatch_wide, is_wide};
 pub use fearless_simd::{
     Level, Simd, f32x4, f32x8, f32x16, f64x4, f64x8, i32x8, mask32x8, mask64x8, prelude, u32x4, u32x8, u64x8,
 };

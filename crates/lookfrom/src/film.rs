@@ -39,11 +39,13 @@ pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
 use self::tile::Kinds;
 
+use std::ops::Range;
+
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
-use std::cmp::Ordering;
-use std::ops::Range;
+
+pub use crate::core::sampler::SampleId;
 
 /// Maximum number of pixels of a picture: 2³⁰.
 pub const MOST_PIXELS: u64 = lookfrom_scene::settings::MOST_PIXELS;
@@ -71,28 +73,6 @@ pub struct Film {
     dropped: u64,
     first_dropped: Option<SampleId>,
     ledger: SampleLedger,
-}
-
-/// Identifies a sample of a pixel. The order is by row, column, sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SampleId {
-    /// Column and row from the top left.
-    pub pixel: [u32; 2],
-    /// Number of the sample in its pixel.
-    pub sample: u32,
-}
-
-impl Ord for SampleId {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let in_order = |id: &Self| (id.pixel[1], id.pixel[0], id.sample);
-        in_order(self).cmp(&in_order(other))
-    }
-}
-
-impl PartialOrd for SampleId {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
 }
 
 /// Linear light, row by row from the top left.

@@ -44,6 +44,7 @@ pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
 pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
+pub use sample_streams::BatchStreams;
 use shadow::ShadowLight;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use shadow::{Shadow, ShadowTransparency, Shadows};
@@ -79,14 +80,14 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        stream: impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         paths: &[Path],
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
         for (path, hit) in paths.iter().zip(hits) {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-            self.step(world, &stream(path), path, hit, output);
+            self.step(world, &streams.of(path), path, hit, output);
         }
     }
 }

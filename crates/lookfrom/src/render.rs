@@ -33,7 +33,7 @@ use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
 use crate::film::{FEATURE_SAMPLES, FilmTile, FirstHitSums, SampleSums};
 use crate::integrator::{
-    Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues, SampleStream,
+    BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues,
     StepOutput, resolve_shadows,
 };
 use crate::shading::interior_stack::InteriorStack;
@@ -323,6 +323,7 @@ impl Renderer {
             light_path,
         }));
 
+        let streams = BatchStreams { sampler: &self.sampler, ids };
         let mut are_from_camera = true;
         while !output.queues.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
@@ -343,11 +344,7 @@ impl Renderer {
             first_hits.note(paths, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
-            let numbers = |path: &Path| {
-                let SampleId { pixel, sample } = ids[path.slot as usize];
-                SampleStream { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
-            };
-            integrator.step_all(&self.world, numbers, paths, hits, &mut output);
+            integrator.step_all(&self.world, &streams, paths, hits, &mut output);
 
             // Occluded: trace shadow rays and add unoccluded light.
             rays_traced.shadow += resolve_shadows(&self.world, integrator.shadow_transparency(), &mut output);

@@ -1,7 +1,7 @@
 //! Eight paths side by side: arrays by lane, and their gathering into vectors.
 
 use lookfrom_bvh::Ray;
-use lookfrom_simd::{Simd, f32x4, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Kernel, Simd, dispatch_wide, f32x4, f32x8, f64x8, is_wide, level, prelude::*};
 
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -34,6 +34,18 @@ pub(crate) fn filled<'a, T: Copy>(items: &'a [T], memory: &'a mut Option<[T; LAN
         Some(eight) => eight,
         None => memory.insert(by_lane!(lane => items[lane.min(items.len() - 1)])),
     }
+}
+
+/// Whether paths are shaded side by side on this machine: kernels that shade are not compiled for the least level of x86-64.
+#[inline]
+pub(crate) fn are_shaded_together() -> bool {
+    is_wide(level())
+}
+
+/// Runs a kernel that shades, where [`are_shaded_together`].
+#[inline(always)]
+pub(crate) fn shade_together<K: Kernel>(kernel: K) -> K::Output {
+    dispatch_wide(level(), kernel).expect("paths are shaded one by one at this level")
 }
 
 /// The components of something in eight lanes: for each component the numbers of the lanes.

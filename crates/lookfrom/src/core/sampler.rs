@@ -20,6 +20,8 @@
 
 pub(crate) mod lanes;
 
+use std::cmp::Ordering;
+
 use lookfrom_scene::settings::Sampler as Kind;
 use lookfrom_simd::{Bits, Mask, Real};
 
@@ -30,6 +32,28 @@ pub(crate) const PIXEL: u32 = 0;
 
 /// The largest f32 below 1, and the largest number of a sampler: 1 − 2⁻²⁴.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// Identifies a sample of a pixel. The order is by row, column, sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+}
+
+impl Ord for SampleId {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let in_order = |id: &Self| (id.pixel[1], id.pixel[0], id.sample);
+        in_order(self).cmp(&in_order(other))
+    }
+}
+
+impl PartialOrd for SampleId {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 /// A source of random numbers in [0, 1).
 #[derive(Clone, Copy, Debug)]

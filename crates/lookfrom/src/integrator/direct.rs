@@ -14,7 +14,10 @@ mod waiting;
 use glam::DVec3;
 use lookfrom_bvh::Hit;
 
-use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::core::lanes::are_shaded_together;
+use crate::integrator::{
+    BatchStreams, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term,
+};
 use crate::light::{IncompletePdf, LightSampleContext};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, albedo_of_coefficients};
@@ -35,13 +38,14 @@ const TOGETHER: usize = 512;
 pub(super) fn step_all<I: Integrator, P: Probe>(
     integrator: &I,
     world: &World,
-    stream: impl Fn(&Path) -> SampleStream,
+    streams: &BatchStreams<'_>,
     paths: &[Path],
     hits: &[Hit],
     output: &mut StepOutput<'_, P>,
     grow: impl Fn(&Path, &PlainBranch, &mut Vec<Path>),
 ) {
-    let in_lanes = !P::LISTENS && output.light_paths.is_none() && PlainSteps::are_for(world);
+    let in_lanes =
+        !P::LISTENS && output.light_paths.is_none() && PlainSteps::are_for(world) && are_shaded_together();
     let mut steps = std::mem::take(&mut output.queues.plain_steps);
     // Of samples with several paths, light is added in the order of the paths. Others need no results but those at hand.
     let in_any_order = in_lanes && steps.are_of_different_samples(paths);
@@ -56,7 +60,7 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
     for (paths, hits) in paths.chunks(together).zip(hits.chunks(together)) {
         steps.clear(paths.len());
         if in_lanes {
-            steps.compute(world, &stream, (paths, hits), output, |steps, indices, output| {
+            steps.compute(world, streams, (paths, hits), output, |steps, indices, output| {
                 if in_any_order {
                     for index in indices.iter().map(|&index| index as usize) {
                         use_step(steps, &paths[index], &hits[index], index, output);
@@ -74,7 +78,7 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
                 output.add_surroundings_behind_medium(world, path, even_sky);
             } else {
                 output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-                integrator.step(world, &stream(path), path, hit, output);
+                integrator.step(world, &streams.of(path), path, hit, output);
             }
         }
     }

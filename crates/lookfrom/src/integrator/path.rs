@@ -11,9 +11,12 @@ use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use lanes::{HitBatch, Waiting};
 
+use crate::core::lanes::are_shaded_together;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::integrator::{
+    BatchStreams, Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term,
+};
 use crate::light::{ChosenLight, IncompletePdf, LightSampleContext};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::lobes::Lobes;
@@ -115,25 +118,26 @@ impl Integrator for PathTracer {
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        stream: impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         paths: &[Path],
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        let in_lanes =
-            self.light_sampling == LightSampling::MultipleImportance && output.light_paths.is_none();
+        let in_lanes = self.light_sampling == LightSampling::MultipleImportance
+            && output.light_paths.is_none()
+            && are_shaded_together();
         let mut waiting = Waiting::default();
-        let batch = HitBatch { world, paths, hits, stream };
+        let batch = HitBatch { world, paths, hits, streams };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
             let is_plain = batch.is_plain(index);
             if !in_lanes {
-                self.step(world, &(batch.stream)(path), path, hit, output);
+                self.step(world, &streams.of(path), path, hit, output);
             } else if is_plain && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
             } else if is_plain && let Some(class) = batch.mesh_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
-            } else if let Some(vertex) = self.arrive(world, &(batch.stream)(path), path, hit, output)
+            } else if let Some(vertex) = self.arrive(world, &streams.of(path), path, hit, output)
                 && let Some(vertex) = waiting.push_vertex(self, world, vertex, output)
             {
                 self.scatter_vertex(world, &vertex, output);

@@ -3,7 +3,9 @@
 use lookfrom_bvh::Hit;
 
 use crate::integrator::direct::{self, local_light};
-use crate::integrator::{Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput};
+use crate::integrator::{
+    BatchStreams, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
+};
 use crate::world::World;
 
 /// Ray casting.
@@ -25,12 +27,12 @@ impl Integrator for Raycast {
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        stream: impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         paths: &[Path],
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        direct::step_all(self, world, stream, paths, hits, output, |_, _, _| {});
+        direct::step_all(self, world, streams, paths, hits, output, |_, _, _| {});
     }
 
     fn step<P: Probe>(

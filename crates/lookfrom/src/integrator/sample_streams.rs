@@ -1,11 +1,30 @@
-//! The random numbers of eight rays side by side.
+//! The random numbers of the rays of a batch, and those of eight rays side by side.
 
 use lookfrom_simd::{Simd, f32x8, mask32x8, prelude::*, u32x8, u64x8};
 
 use crate::core::hash;
 use crate::core::lanes::{LANES, bitmask, by_lane};
 use crate::core::sampler::lanes::PixelSamplers;
+use crate::core::sampler::{SampleId, Sampler};
 use crate::integrator::{Path, SampleStream};
+
+/// The random numbers of the paths of a batch.
+#[derive(Clone, Copy, Debug)]
+pub struct BatchStreams<'a> {
+    /// The sampler of the picture.
+    pub(crate) sampler: &'a Sampler,
+    /// The samples of the batch, by slot.
+    pub(crate) ids: &'a [SampleId],
+}
+
+impl BatchStreams<'_> {
+    /// Those of a path.
+    #[inline(always)]
+    pub fn of(&self, path: &Path) -> SampleStream {
+        let SampleId { pixel, sample } = self.ids[path.slot as usize];
+        SampleStream { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
+    }
+}
 
 /// [`SampleStream`] in lanes.
 pub(in crate::integrator) struct SampleStreams<S: Simd> {

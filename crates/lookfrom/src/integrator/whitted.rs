@@ -10,7 +10,7 @@ use lookfrom_bvh::{Hit, Ray};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::direct::{self, PlainBranch, local_light, same_side};
 use crate::integrator::{
-    Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
+    BatchStreams, Branch, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
@@ -43,12 +43,12 @@ impl Integrator for Whitted {
     fn step_all<P: Probe>(
         &self,
         world: &World,
-        stream: impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         paths: &[Path],
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        direct::step_all(self, world, stream, paths, hits, output, |path, branch, paths| {
+        direct::step_all(self, world, streams, paths, hits, output, |path, branch, paths| {
             if self.cut(path, branch.beta).is_none() {
                 paths.push(self.grown(world, path, branch));
             }

@@ -23,7 +23,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("color", &["math", "spectrum"]),
     ("sampler", &["hash", "lanes"]),
     ("bsdf", &["elementary", "hash", "lanes", "math", "optics", "sampler", "spectrum", "vector", "warp"]),
-    ("film", &["hash", "lanes", "parallel", "spectrum"]),
+    ("film", &["hash", "lanes", "parallel", "sampler", "spectrum"]),
     ("denoise", &["film", "parallel"]),
     ("develop", &["film"]),
     ("exposure", &["film", "math"]),

@@ -13,7 +13,7 @@ use crate::core::math;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::sample_streams::SampleStreams;
-use crate::integrator::{FirstSurfaceColumns, Path, SampleStream, SpectralModes};
+use crate::integrator::{BatchStreams, FirstSurfaceColumns, Path, SpectralModes};
 use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -42,10 +42,10 @@ impl Eight<'_> {
 }
 
 /// Computes the next group.
-pub(super) struct PlainKernel<'a, F> {
+pub(super) struct PlainKernel<'a> {
     pub(super) world: &'a World,
     pub(super) eight: &'a Eight<'a>,
-    pub(super) stream: &'a F,
+    pub(super) streams: &'a BatchStreams<'a>,
     /// By slot.
     pub(super) modes: &'a SpectralModes,
     pub(super) groups: &'a mut Groups,
@@ -53,12 +53,12 @@ pub(super) struct PlainKernel<'a, F> {
     pub(super) first: Option<&'a mut FirstSurfaceColumns>,
 }
 
-impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
+impl Kernel for PlainKernel<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, stream, modes, groups, first } = self;
+        let Self { world, eight, streams, modes, groups, first } = self;
         let (group, mut lights) = groups.next();
         let modes = Modes::of(eight, modes);
         // Of spheres they are costly.
@@ -87,8 +87,8 @@ impl<F: Fn(&Path) -> SampleStream> Kernel for PlainKernel<'_, F> {
         group.lights = [lights.count(); 2];
         for (index, source) in world.lights.iter().enumerate() {
             let streams = || {
-                let streams = by_lane!(lane => stream(eight.paths[lane]));
-                SampleStreams::new(simd, &by_lane!(lane => &streams[lane]))
+                let alone = by_lane!(lane => streams.of(eight.paths[lane]));
+                SampleStreams::new(simd, &by_lane!(lane => &alone[lane]))
             };
             let Some(Arriving { wi, li, exists, target }) =
                 Arriving::from(simd, (source, index as u32), world, streams, points.position, &modes)

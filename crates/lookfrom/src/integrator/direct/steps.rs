@@ -2,16 +2,15 @@
 //! results become shadow rays and further paths one by one.
 
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
-use lookfrom_simd::{dispatch, level};
 
 use super::groups::{FromLight, Group, Groups};
 use super::lanes::{Eight, PlainKernel};
 use super::plain::PlainHits;
 use super::waiting::{Chosen, Waiting};
-use crate::core::lanes::{LANES, by_lane, filled};
+use crate::core::lanes::{LANES, by_lane, filled, shade_together};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{
-    Branch, FirstSurfaces, Path, Probe, Queues, SampleStream, Shadow, SpectralModes, StepOutput, Term,
+    BatchStreams, Branch, FirstSurfaces, Path, Probe, Queues, Shadow, SpectralModes, StepOutput, Term,
 };
 use crate::light::Light;
 use crate::shading::interior_stack::InteriorStack;
@@ -88,7 +87,7 @@ impl PlainSteps {
     pub(in crate::integrator) fn compute<'a, P: Probe>(
         &mut self,
         world: &World,
-        stream: &impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         (paths, hits): (&[Path], &[Hit]),
         output: &mut StepOutput<'a, P>,
         mut finish: impl FnMut(&mut Self, &[u32], &mut StepOutput<'a, P>),
@@ -96,7 +95,7 @@ impl PlainSteps {
         let mut waiting = std::mem::take(&mut self.waiting);
         let mut shade = |chosen: &Chosen<'_>| {
             let Queues { lanes, first_surfaces, .. } = &mut output.queues;
-            self.shade(world, stream, (paths, hits), chosen, lanes, first_surfaces);
+            self.shade(world, streams, (paths, hits), chosen, lanes, first_surfaces);
             finish(self, chosen.paths, output);
         };
         for (index, hit) in hits.iter().enumerate() {
@@ -113,7 +112,7 @@ impl PlainSteps {
     fn shade(
         &mut self,
         world: &World,
-        stream: &impl Fn(&Path) -> SampleStream,
+        streams: &BatchStreams<'_>,
         (paths, hits): (&[Path], &[Hit]),
         chosen: &Chosen<'_>,
         modes: &SpectralModes,
@@ -132,7 +131,7 @@ impl PlainSteps {
         let eight = Eight { paths, plain: PlainHits { rays, hits, are_on_spheres }, materials };
         let mut left = eight.left(world, chosen.paths.len(), modes, first_surfaces);
         let (groups, first) = (&mut self.groups, left.as_mut().map(|left| &mut *left.first));
-        dispatch(level(), PlainKernel { world, eight: &eight, stream, modes, groups, first });
+        shade_together(PlainKernel { world, eight: &eight, streams, modes, groups, first });
         if let Some(left) = left {
             left.set_other_albedos(world, &eight);
         }

@@ -25,7 +25,7 @@ use surfaces::SurfaceColumns;
 use super::{PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::integrator::{Bounce, Event, Path, Probe, Shadow, StepOutput, Term};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
@@ -80,7 +80,7 @@ impl Waiting {
     pub(super) fn push_escaped<P: Probe>(
         &mut self,
         tracer: &PathTracer,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         index: usize,
         output: &mut StepOutput<'_, P>,
     ) {
@@ -95,7 +95,7 @@ impl Waiting {
     pub(super) fn push_hit<P: Probe>(
         &mut self,
         tracer: &PathTracer,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         (class, index): (BsdfClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
@@ -130,7 +130,7 @@ impl Waiting {
     pub(super) fn flush<P: Probe>(
         mut self,
         tracer: &PathTracer,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
         tracer.escape(batch, &self.escaped, output);

@@ -1,10 +1,10 @@
 //! The shading frames of eight hits on glTF's material: bent by normal maps, and such that reflections stay outside.
 
 use glam::DVec3;
-use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, mask32x8, prelude::*};
+use lookfrom_simd::{Kernel, Simd, f32x8, mask32x8, prelude::*};
 
 use super::surfaces::SurfaceColumns;
-use crate::core::lanes::{Columns, LANES, load, row, set_row};
+use crate::core::lanes::{Columns, LANES, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::material::{Bending, frame_about};
@@ -67,7 +67,7 @@ impl BentFrames {
 
 #[inline(never)]
 fn bend(kernel: BendKernel<'_>) {
-    dispatch(level(), kernel);
+    shade_together(kernel);
 }
 
 struct BendKernel<'a> {

@@ -1,12 +1,12 @@
 //! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
 //! rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Real, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8};
+use lookfrom_simd::{Float, Kernel, Mask, Real, Simd, f32x8, mask32x8, prelude::*, u32x8};
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
 use crate::core::lanes::{
-    Columns, LANES, by_lane, gather_spectrum, load, load_spectrum, store, store_spectrum,
+    Columns, LANES, by_lane, gather_spectrum, load, load_spectrum, shade_together, store, store_spectrum,
 };
 use crate::core::math::power_heuristic;
 use crate::core::points::Exits;
@@ -266,7 +266,7 @@ impl<B: RowBsdf> ScatterKernel<'_, B> {
     /// Runs at the machine's level. Not inlined, so that a class is compiled once, whatever the probe.
     #[inline(never)]
     pub(super) fn scatter(self) {
-        dispatch(level(), self);
+        shade_together(self);
     }
 }
 

@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
-use lookfrom_simd::{Float, Kernel, LaneMask, Simd, dispatch, f32x8, level, prelude::*};
+use lookfrom_simd::{Float, Kernel, LaneMask, Simd, f32x8, prelude::*};
 
 use super::bent_frames::BentFrames;
 use super::kernel::{LanePaths, ScatterKernel};
 use super::surfaces::SurfaceColumns;
 use super::{Item, Memory};
-use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, store};
+use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, shade_together, store};
 use crate::core::points::{Lift, StoredPlacement};
 use crate::core::vector::Vector;
 use crate::integrator::path::{PathTracer, dimension};
-use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput};
 use crate::primitive::{Mesh, VertexData, points_on_meshes};
 use crate::shading::bsdf::lanes::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
@@ -20,15 +20,14 @@ use crate::shading::texture::TexturePoint;
 use crate::world::World;
 
 /// A batch of paths and what they have hit.
-pub(in crate::integrator::path) struct HitBatch<'a, F> {
+pub(in crate::integrator::path) struct HitBatch<'a> {
     pub(in crate::integrator::path) world: &'a World,
     pub(in crate::integrator::path) paths: &'a [Path],
     pub(in crate::integrator::path) hits: &'a [Hit],
-    /// The random numbers of a path.
-    pub(in crate::integrator::path) stream: F,
+    pub(in crate::integrator::path) streams: &'a BatchStreams<'a>,
 }
 
-impl<'a, F: Fn(&Path) -> SampleStream> HitBatch<'a, F> {
+impl<'a> HitBatch<'a> {
     /// Whether a path travels in no medium and comes from no shadow catcher.
     #[inline]
     pub(in crate::integrator::path) fn is_plain(&self, index: usize) -> bool {
@@ -81,7 +80,7 @@ impl PathTracer {
     /// Scatters up to eight paths of a batch that met meshes of one class.
     pub(super) fn scatter_mesh_hits<B: MaterialRow, P: Probe>(
         &self,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         indices: &[u32],
         memory: &mut Memory,
         output: &mut StepOutput<'_, P>,
@@ -108,7 +107,7 @@ impl PathTracer {
         for (lane, index) in indices.iter().enumerate() {
             if hits[lane].passes_back_faces() && front & 1 << lane == 0 {
                 let (path, hit) = (&batch.paths[*index as usize], &batch.hits[*index as usize]);
-                self.step(batch.world, &(batch.stream)(path), path, hit, output);
+                self.step(batch.world, &batch.streams.of(path), path, hit, output);
                 active &= !(1 << lane);
             } else if P::LISTENS {
                 self.notice_shading::<B, P>(batch, *index, output);
@@ -146,7 +145,7 @@ impl PathTracer {
                 throughput: &mut throughput,
                 interior: path.interior,
                 u: 0.0,
-                seed: seed_of_walks::<B>(&(batch.stream)(path)),
+                seed: seed_of_walks::<B>(&batch.streams.of(path)),
             };
             let mut row: Option<B> = if material.bends_in_lanes() {
                 if smooth & 1 << lane != 0 || material.has_bumps() {
@@ -186,7 +185,7 @@ impl PathTracer {
         let Some(first) = &rows[0] else { return };
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
 
-        let streams = by_lane!(lane => (batch.stream)(hits[lane].path));
+        let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
         let paths = LanePaths {
             paths: by_lane!(lane => hits[lane].path),
             streams: by_lane!(lane => &streams[lane]),
@@ -206,7 +205,7 @@ impl PathTracer {
     #[cold]
     fn notice_shading<B: MaterialRow, P: Probe>(
         &self,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         index: u32,
         output: &mut StepOutput<'_, P>,
     ) {
@@ -218,7 +217,7 @@ impl PathTracer {
             throughput: &mut beta,
             interior: path.interior,
             u: 0.0,
-            seed: seed_of_walks::<B>(&(batch.stream)(path)),
+            seed: seed_of_walks::<B>(&batch.streams.of(path)),
         };
         let Some(mut shading) = batch.world.shading(&surface, arrival) else { return };
         if self.regularize && path.previous.blurred {
@@ -299,7 +298,7 @@ struct MeshKernel<'a> {
 impl MeshKernel<'_> {
     #[inline(never)]
     fn set_points(self) {
-        dispatch(level(), self);
+        shade_together(self);
     }
 }
 

@@ -5,14 +5,14 @@ use glam::Vec3;
 use super::mesh_hits::HitBatch;
 use crate::core::lanes::by_lane;
 use crate::integrator::path::PathTracer;
-use crate::integrator::{Path, Probe, SampleStream, StepOutput};
+use crate::integrator::{Path, Probe, StepOutput};
 use crate::light::Light;
 
 impl PathTracer {
     /// Adds the light of the environments to up to eight paths of a batch that hit nothing, in no medium.
     pub(super) fn escape<P: Probe>(
         &self,
-        batch: &HitBatch<'_, impl Fn(&Path) -> SampleStream>,
+        batch: &HitBatch<'_>,
         indices: &[u32],
         output: &mut StepOutput<'_, P>,
     ) {
