@@ -25,7 +25,7 @@ const OF_RING: usize = 64;
 pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u64) -> Result<LobeAnswer> {
     let mut events = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);
-    let lanes = traced[0].lanes;
+    let mode = traced[0].mode;
     let vertex = events.iter().find_map(|event| Balloon::of(event, address));
     let Some(balloon) = vertex else {
         return Err(refused(format!("ray {address} of this sample meets no surface that scatters")));
@@ -38,7 +38,7 @@ pub(crate) fn answer(renderer: &Renderer, request: u64, id: SampleId, address: u
     let normal = balloon.normal();
     let tangents = normal.any_orthonormal_pair();
     let directions: Vec<Vec3> = (0..RINGS).flat_map(|ring| of_ring(ring, normal, tangents)).collect();
-    let values = balloon.values(&directions, |light| luminance(renderer.rgb(light, &lanes)));
+    let values = balloon.values(&directions, |light| luminance(renderer.rgb(light, &mode)));
     let point = DVec3::from_array(surface.point.position) + renderer.world().origin();
     Ok(LobeAnswer {
         id: request,

@@ -60,7 +60,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
     let mut events: Vec<Event> = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);
     let traced = traced[0];
-    let wavelengths = match traced.lanes {
+    let wavelengths = match traced.mode {
         SpectralMode::Rgb => None,
         SpectralMode::Spectral(wavelengths) => Some(WavelengthsReport {
             lambda: wavelengths.lambda,
@@ -69,10 +69,10 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         }),
     };
 
-    let mut log = TraceLogBuilder::new(renderer, traced.lanes, with_tests);
+    let mut log = TraceLogBuilder::new(renderer, traced.mode, with_tests);
     events.iter().for_each(|event| log.record(event));
     let told = log.end();
-    let film = renderer.rgb(told.sum * traced.weight, &traced.lanes);
+    let film = renderer.rgb(told.sum * traced.weight, &traced.mode);
     let mut inspection = Inspection {
         pixel: id.pixel,
         sample: id.sample,
@@ -86,7 +86,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         radiance: told.radiance,
         additions: told.additions,
         weight: traced.weight,
-        sensor: sensor(renderer, told.sum * traced.weight, &traced.lanes),
+        sensor: sensor(renderer, told.sum * traced.weight, &traced.mode),
         development: development(&renderer.view().image),
         alpha: traced.alpha,
         film: traced.rgb,
@@ -97,18 +97,18 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
     inspection
 }
 
-fn sensor(renderer: &Renderer, light: Spectrum, lanes: &SpectralMode) -> SensorReport {
+fn sensor(renderer: &Renderer, light: Spectrum, mode: &SpectralMode) -> SensorReport {
     let settings = &renderer.view().image.sensor;
     // The one factor of all channels, by the brightest.
     let brightest = |rgb: [f32; 3]| rgb.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
-    let [measured, limited] = [renderer.measured(light, lanes), renderer.rgb(light, lanes)].map(brightest);
+    let [measured, limited] = [renderer.measured(light, mode), renderer.rgb(light, mode)].map(brightest);
     let changes =
         settings.camera.is_some() || settings.imaging_ratio != 1.0 || settings.white_balance.is_some();
     SensorReport {
         camera: settings.camera.map(CameraSensor::name),
         imaging_ratio: settings.imaging_ratio,
         white_balance: settings.white_balance,
-        matrix: (changes && matches!(lanes, SpectralMode::Rgb)).then(|| *renderer.sensor().balanced_matrix()),
+        matrix: (changes && matches!(mode, SpectralMode::Rgb)).then(|| *renderer.sensor().balanced_matrix()),
         max_component: settings.max_component,
         scaled_by: if measured == limited { 1.0 } else { limited / measured },
     }

@@ -135,11 +135,11 @@ impl Path {
 
     /// The same path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
     /// to infinity.
-    fn absorbed(&self, world: &World, hit: &Hit, lanes: &SpectralMode) -> Self {
+    fn absorbed(&self, world: &World, hit: &Hit, mode: &SpectralMode) -> Self {
         if self.interior.is_empty() {
             return *self;
         }
-        let transmittance = world.transmittance(self.interior, self.length_to(hit), lanes);
+        let transmittance = world.transmittance(self.interior, self.length_to(hit), mode);
         Self { beta: self.beta * transmittance, ..*self }
     }
 
@@ -203,7 +203,7 @@ pub struct Queues {
     /// Light gathered so far, by slot.
     pub radiance: Vec<Spectrum>,
     /// The spectral mode, by slot.
-    pub lanes: SpectralModes,
+    pub modes: SpectralModes,
     /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
     /// Paths to be traced next.
@@ -228,7 +228,7 @@ impl Queues {
     pub fn start(&mut self, count: usize, modes: impl Iterator<Item = SpectralMode>) {
         self.radiance.clear();
         self.radiance.resize(count, Spectrum::BLACK);
-        self.lanes.start(modes);
+        self.modes.start(modes);
         self.alpha.clear();
         self.alpha.resize(count, Alpha::Opaque);
         self.paths.clear();
@@ -260,21 +260,21 @@ pub struct StepOutput<'a, P: Probe> {
 
 impl<P: Probe> StepOutput<'_, P> {
     /// The spectral mode of a path.
-    fn lanes(&self, path: &Path) -> SpectralMode {
-        self.queues.lanes[path.slot as usize]
+    fn mode(&self, path: &Path) -> SpectralMode {
+        self.queues.modes[path.slot as usize]
     }
 
     /// [`Path::absorbed`], and tells the probe.
     fn absorbed(&mut self, world: &World, path: &Path, hit: &Hit) -> Path {
-        let lanes = self.lanes(path);
-        let absorbed = path.absorbed(world, hit, &lanes);
+        let mode = self.mode(path);
+        let absorbed = path.absorbed(world, hit, &mode);
         let length = || path.length_to(hit);
         self.probe.notice_some(|| {
             (!path.interior.is_empty()).then(|| Event::Absorbed {
                 address: path.address,
                 interior: path.interior,
                 length: length(),
-                transmittance: world.transmittance(path.interior, length(), &lanes),
+                transmittance: world.transmittance(path.interior, length(), &mode),
                 beta: absorbed.beta,
             })
         });

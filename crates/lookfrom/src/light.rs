@@ -97,13 +97,13 @@ pub struct EmissionSpectrum {
 impl EmissionSpectrum {
     /// The emission at a point, in radiometric units.
     #[inline]
-    pub fn at(&self, textures: &Textures, point: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
-        textures.spectrum(&self.color, point, lanes) * self.scale
+    pub fn at(&self, textures: &Textures, point: &TexturePoint, mode: &SpectralMode) -> Spectrum {
+        textures.spectrum(&self.color, point, mode) * self.scale
     }
 
     /// The emission of a colour that is the same everywhere.
-    pub fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Spectrum {
-        self.at(textures, &TexturePoint::NOWHERE, lanes)
+    pub fn even(&self, textures: &Textures, mode: &SpectralMode) -> Spectrum {
+        self.at(textures, &TexturePoint::NOWHERE, mode)
     }
 
     /// The same for eight samples, of colours that do not vary.
@@ -195,18 +195,18 @@ impl Light {
         textures: &Textures,
         at: &LightSampleContext,
         u: [f32; 2],
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
         incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         let from = at.point;
         match self {
             Self::Point { position, intensity, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
-                let li = intensity.even(textures, lanes) * fade::<f32>(*falloff, distance);
+                let li = intensity.even(textures, mode) * fade::<f32>(*falloff, distance);
                 Some(LightSample::of_point(wi, li, *position))
             }
             Self::Distant { toward, irradiance } => {
-                let li = irradiance.even(textures, lanes);
+                let li = irradiance.even(textures, mode);
                 Some(LightSample { wi: *toward, li, pdf: 1.0, target: Target::Infinity })
             }
             Self::Spot { position, axis, intensity, cos_outer, cos_inner, falloff } => {
@@ -215,13 +215,13 @@ impl Light {
                 if cone <= 0.0 {
                     return None;
                 }
-                let li = intensity.even(textures, lanes) * (fade::<f32>(*falloff, distance) * cone);
+                let li = intensity.even(textures, mode) * (fade::<f32>(*falloff, distance) * cone);
                 Some(LightSample::of_point(wi, li, *position))
             }
-            Self::Projection(projection) => projection.sample(textures, from, lanes),
-            Self::Goniometric(goniometric) => goniometric.sample(textures, from, lanes),
-            Self::Area(light) => light.sample(textures, from, u, lanes),
-            Self::Environment(environment) => environment.sample(textures, at, u, lanes, incomplete_pdf),
+            Self::Projection(projection) => projection.sample(textures, from, mode),
+            Self::Goniometric(goniometric) => goniometric.sample(textures, from, mode),
+            Self::Area(light) => light.sample(textures, from, u, mode),
+            Self::Environment(environment) => environment.sample(textures, at, u, mode, incomplete_pdf),
         }
     }
 

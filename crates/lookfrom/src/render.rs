@@ -119,7 +119,7 @@ pub struct Traced {
     /// The sum over the tree of rays.
     pub radiance: Spectrum,
     /// The spectral mode of `radiance`.
-    pub lanes: SpectralMode,
+    pub mode: SpectralMode,
     /// The filter's weight: 1 for filters without negative lobes.
     pub weight: f32,
     /// Alpha, not multiplied by the filter weight.
@@ -311,10 +311,10 @@ impl Renderer {
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
         output.queues.first_surfaces.start(first_hits.are_wanted());
-        let Queues { paths: started, lanes, .. } = &mut output.queues;
+        let Queues { paths: started, modes, .. } = &mut output.queues;
         started.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             ray: *ray,
-            beta: lanes[slot].one(),
+            beta: modes[slot].one(),
             slot: slot as u32,
             depth: 0,
             address: Path::ROOT,

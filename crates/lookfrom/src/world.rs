@@ -295,50 +295,50 @@ impl World {
     /// The BSDF of a surface: see [`material::shading`].
     pub fn shading(&self, surface: &SurfaceInteraction, arrival: ShadingContext<'_>) -> Option<Shading> {
         if self.is_catcher(surface) {
-            return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.lanes)));
+            return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.mode)));
         }
         let point = self.texture_point(surface);
         material::shading(&self.materials, self.relief(), surface, &point, arrival)
     }
 
     /// Radiance that a surface emits toward `wo`.
-    pub fn emitted(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
+    pub fn emitted(&self, surface: &SurfaceInteraction, mode: &SpectralMode) -> Spectrum {
         match surface.light.map(|index| &self.lights[index as usize]) {
             Some(Light::Area(light)) => {
                 let cos = || surface.ns.dot(surface.wo);
-                light.emitted(&self.textures, &self.texture_point(surface), surface.front, cos, lanes)
+                light.emitted(&self.textures, &self.texture_point(surface), surface.front, cos, mode)
             }
             _ => Spectrum::BLACK,
         }
     }
 
     /// The constant radiance of an unlit material; `None` for all others.
-    pub fn unlit(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Option<Spectrum> {
+    pub fn unlit(&self, surface: &SurfaceInteraction, mode: &SpectralMode) -> Option<Spectrum> {
         let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;
         };
-        Some(self.textures.spectrum(color, &self.texture_point(surface), lanes))
+        Some(self.textures.spectrum(color, &self.texture_point(surface), mode))
     }
 
     /// Radiance that arrives along a ray that hits nothing.
-    pub fn sky(&self, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
-        self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, lanes))
+    pub fn sky(&self, ray: &Ray, mode: &SpectralMode) -> Spectrum {
+        self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, mode))
     }
 
     /// The same where it is the same along all rays.
-    pub(crate) fn even_sky(&self, lanes: &SpectralMode) -> Option<Spectrum> {
+    pub(crate) fn even_sky(&self, mode: &SpectralMode) -> Option<Spectrum> {
         self.environments.iter().try_fold(Spectrum::BLACK, |sum, &index| match &self.lights[index as usize] {
-            Light::Environment(environment) => Some(sum + environment.even(&self.textures, lanes)?),
+            Light::Environment(environment) => Some(sum + environment.even(&self.textures, mode)?),
             _ => Some(sum + Spectrum::BLACK),
         })
     }
 
     /// Radiance of one environment, by its light's index, along a ray that hits nothing.
-    pub fn sky_of(&self, index: u32, ray: &Ray, lanes: &SpectralMode) -> Spectrum {
+    pub fn sky_of(&self, index: u32, ray: &Ray, mode: &SpectralMode) -> Spectrum {
         let [origin, direction] = [ray.origin, ray.direction].map(Vec3::from_array);
         match &self.lights[index as usize] {
             Light::Environment(environment) => {
-                environment.radiance(&self.textures, origin.as_dvec3(), direction.normalize(), lanes)
+                environment.radiance(&self.textures, origin.as_dvec3(), direction.normalize(), mode)
             }
             _ => Spectrum::BLACK,
         }
@@ -364,24 +364,24 @@ impl World {
     /// an absorbing medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its
     /// surface.
     #[inline]
-    pub fn transmittance(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
-        if media.is_empty() { lanes.one() } else { self.transmittance_inside(media, distance, lanes) }
+    pub fn transmittance(&self, media: InteriorStack, distance: f32, mode: &SpectralMode) -> Spectrum {
+        if media.is_empty() { mode.one() } else { self.transmittance_inside(media, distance, mode) }
     }
 
     #[inline(never)]
-    fn transmittance_inside(&self, media: InteriorStack, distance: f32, lanes: &SpectralMode) -> Spectrum {
-        let Some((sigma, scale)) = self.absorption(media, lanes) else { return lanes.one() };
+    fn transmittance_inside(&self, media: InteriorStack, distance: f32, mode: &SpectralMode) -> Spectrum {
+        let Some((sigma, scale)) = self.absorption(media, mode) else { return mode.one() };
         if scale == 0.0 || distance.is_infinite() && media.space().is_none() {
-            return lanes.one();
+            return mode.one();
         }
         let length = scale * distance;
-        lanes.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
+        mode.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
     }
 
     /// The absorption coefficient of the medium that a ray is in, and a factor of it; `None` where nothing is absorbed.
-    pub(crate) fn absorption(&self, media: InteriorStack, lanes: &SpectralMode) -> Option<(Spectrum, f32)> {
+    pub(crate) fn absorption(&self, media: InteriorStack, mode: &SpectralMode) -> Option<(Spectrum, f32)> {
         let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize))?;
-        Some((self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, lanes), medium.scale))
+        Some((self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, mode), medium.scale))
     }
 
     /// The same world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,
@@ -400,13 +400,13 @@ impl World {
     }
 
     /// Whitted's `I_a`.
-    pub fn ambient(&self, lanes: &SpectralMode) -> Spectrum {
-        self.textures.spectrum(&self.ambient, &TexturePoint::NOWHERE, lanes)
+    pub fn ambient(&self, mode: &SpectralMode) -> Spectrum {
+        self.textures.spectrum(&self.ambient, &TexturePoint::NOWHERE, mode)
     }
 
     /// The illuminant spectrum of a colour.
-    pub fn light_of(&self, rgb: [f32; 3], lanes: &SpectralMode) -> Spectrum {
-        spectrum_of(rgb, SpectrumType::Illuminant, lanes)
+    pub fn light_of(&self, rgb: [f32; 3], mode: &SpectralMode) -> Spectrum {
+        spectrum_of(rgb, SpectrumType::Illuminant, mode)
     }
 }
 

@@ -27,7 +27,7 @@ pub(super) struct TraceLogBuilder<'a> {
     renderer: &'a Renderer,
     world: &'a World,
     /// The spectral mode at the end of the sample.
-    lanes: SpectralMode,
+    mode: SpectralMode,
     /// Whether the tests of primitives are reported.
     with_tests: bool,
     rays: BTreeMap<u64, RayReport>,
@@ -58,11 +58,11 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> TraceLogBuilder<'a> {
     /// An empty log.
-    pub(super) fn new(renderer: &'a Renderer, lanes: SpectralMode, with_tests: bool) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, mode: SpectralMode, with_tests: bool) -> Self {
         Self {
             renderer,
             world: renderer.world(),
-            lanes,
+            mode,
             with_tests,
             rays: BTreeMap::new(),
             added: BTreeMap::new(),
@@ -83,7 +83,7 @@ impl<'a> TraceLogBuilder<'a> {
                 self.hits.insert(path.address, (*path, surface));
             }
             Event::Absorbed { address, interior, length, transmittance, beta } => {
-                let Some((sigma, scale)) = self.world.absorption(*interior, &self.lanes) else { return };
+                let Some((sigma, scale)) = self.world.absorption(*interior, &self.mode) else { return };
                 let material =
                     interior.material().map(|index| self.world.names.materials[index as usize].clone());
                 let report = AbsorptionReport {
@@ -274,14 +274,14 @@ impl<'a> TraceLogBuilder<'a> {
 
     /// The lanes that are in use.
     fn factor(&self, value: Spectrum) -> Factor {
-        match self.lanes {
+        match self.mode {
             SpectralMode::Rgb => value.rgb().to_vec(),
             SpectralMode::Spectral(_) => value.0.to_vec(),
         }
     }
 
     fn amount(&self, value: Spectrum) -> Amount {
-        Amount { lanes: self.factor(value), rgb: self.renderer.measured(value, &self.lanes) }
+        Amount { lanes: self.factor(value), rgb: self.renderer.measured(value, &self.mode) }
     }
 
     fn add(&mut self, address: u64, term: Term, value: Spectrum) {

@@ -40,7 +40,7 @@ impl<P: Probe> StepOutput<'_, P> {
             self.add(
                 path,
                 Term::Sky,
-                path.beta * world.sky(&path.ray, &self.queues.lanes[path.slot as usize]),
+                path.beta * world.sky(&path.ray, &self.queues.modes[path.slot as usize]),
             );
         }
     }

@@ -55,7 +55,7 @@ pub(super) fn step_all<I: Integrator, P: Probe>(
             plain.add_light(world, path, hit, output);
             plain.for_each_branch(|branch| grow(path, &branch, &mut output.queues.paths));
         };
-    let even_sky = output.queues.lanes.of_all().and_then(|mode| world.even_sky(mode));
+    let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
     let together = if in_any_order { paths.len() } else { TOGETHER };
     for (paths, hits) in paths.chunks(together).zip(hits.chunks(together)) {
         steps.clear(paths.len());
@@ -93,9 +93,9 @@ pub(super) fn local_light<P: Probe>(
     surface: &SurfaceInteraction,
     output: &mut StepOutput<'_, P>,
 ) -> Coefficients {
-    let lanes = output.lanes(path);
+    let mode = output.mode(path);
     let material = &world.materials[surface.material as usize].whitted;
-    let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface), &lanes);
+    let coefficients = Coefficients::at(material, &world.textures, &world.texture_point(surface), &mode);
     output.probe.notice(|| Event::Surface {
         address: path.address,
         surface: Box::new(*surface),
@@ -103,13 +103,13 @@ pub(super) fn local_light<P: Probe>(
     });
     output.leave_first_surface(world, path, surface, || {
         let Coefficients { diffuse, mirror, transmission, .. } = coefficients;
-        let is_known = matches!(lanes, SpectralMode::Rgb)
+        let is_known = matches!(mode, SpectralMode::Rgb)
             && world.materials[surface.material as usize].has_albedo_of_coefficients();
         is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });
-    let emits = world.emitted(surface, &lanes) + world.unlit(surface, &lanes).unwrap_or_default();
+    let emits = world.emitted(surface, &mode) + world.unlit(surface, &mode).unwrap_or_default();
     output.add(path, Term::Emission, path.beta * emits);
-    output.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&lanes));
+    output.add(path, Term::Ambient, path.beta * coefficients.ambient * world.ambient(&mode));
     if !coefficients.is_lit() {
         return coefficients;
     }
@@ -119,7 +119,7 @@ pub(super) fn local_light<P: Probe>(
         let at = LightSampleContext { point: DVec3::from_array(surface.point.position), n };
         let is_random = light.illuminates() && !light.is_delta();
         let u = if is_random { stream.two_with_pixel(index) } else { [0.0; 2] };
-        let sample = light.sample(&world.textures, &at, u, &lanes, IncompletePdf::Forbidden);
+        let sample = light.sample(&world.textures, &at, u, &mode, IncompletePdf::Forbidden);
         // Light from behind the surface does not reach its front, whatever the interpolated normal says.
         let sample = sample.filter(|sample| !surface.crosses(sample.wi));
         let (diffuse, specular) =

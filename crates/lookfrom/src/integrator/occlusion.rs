@@ -53,7 +53,7 @@ impl Integrator for AmbientOcclusion {
         };
         let wi = Vec3::normalize(wi);
         let ray = Ray { t_max: self.distance, ..Ray::new(surface.origin(wi), wi.to_array()) };
-        let white = world.light_of([1.0; 3], &output.lanes(path));
+        let white = world.light_of([1.0; 3], &output.mode(path));
         let contribution = path.beta * white * weight;
         output.queues.shadows.push(Shadow {
             ray,

@@ -219,14 +219,14 @@ impl PathTracer {
 
         // Add the surface's emission.
         self.add_emission(world, &path, &surface, output);
-        if let Some(radiance) = world.unlit(&surface, &output.lanes(&path)) {
+        if let Some(radiance) = world.unlit(&surface, &output.mode(&path)) {
             output.add(&path, Term::Emission, path.beta * radiance);
         }
 
         // Evaluate the material; dispersion leaves one wavelength, or one colour.
-        let lanes = &mut output.queues.lanes[path.slot as usize];
+        let mode = &mut output.queues.modes[path.slot as usize];
         let seed = if world.takes_seed(&surface) { stream.two(dimension::WALK)[0] } else { 0.0 };
-        let arrival = ShadingContext { lanes, throughput: &mut path.beta, interior: path.interior, u, seed };
+        let arrival = ShadingContext { mode, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(mut shading) = world.shading(&surface, arrival) else {
             let direction = Vec3::from_array(path.ray.direction);
             let interior = path.interior.leaving(&world.materials, &surface, direction, true);
@@ -328,7 +328,7 @@ impl PathTracer {
             if path.previous.blurred && !world.lights[index as usize].illuminates() {
                 continue;
             }
-            let radiance = world.sky_of(index, &path.ray, &output.lanes(path));
+            let radiance = world.sky_of(index, &path.ray, &output.mode(path));
             let pdf = || world.light_pdf(index, &path.light_context(), direction, None);
             self.add_found(path, index, radiance, pdf, output);
         }
@@ -342,7 +342,7 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let Some(light) = surface.light else { return };
-        let radiance = world.emitted(surface, &output.lanes(path));
+        let radiance = world.emitted(surface, &output.mode(path));
         if radiance.is_black() {
             return;
         }
@@ -400,7 +400,7 @@ impl PathTracer {
         let ChosenLight { light: index, probability, rest } = chosen;
         let light = &world.lights[index as usize];
         let sample =
-            light.sample(&world.textures, &from, [rest, v], &output.lanes(path), IncompletePdf::Allowed);
+            light.sample(&world.textures, &from, [rest, v], &output.mode(path), IncompletePdf::Allowed);
         let in_vain =
             |sample| Event::LightSampleFailed { address: path.address, light: index, probability, sample };
         let Some(sample) = sample else {

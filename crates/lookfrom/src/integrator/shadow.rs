@@ -155,14 +155,14 @@ pub(crate) fn resolve<P: Probe>(
 
 /// Traces shadow rays that any hit blocks completely.
 fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
-    let Queues { shadows, lanes, blocked, .. } = queues;
+    let Queues { shadows, modes, blocked, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     // All are replaced.
     blocked.resize(rays.len(), false);
     world.bvh.query().origins(origin_primitives).occluded_many(rays, blocked);
     for (index, (light, blocked)) in lights.iter_mut().zip(&*blocked).enumerate() {
-        let lanes = &lanes[light.slot as usize];
-        let passed = if *blocked { Spectrum::BLACK } else { light.reached(world, &rays[index], lanes) };
+        let mode = &modes[light.slot as usize];
+        let passed = if *blocked { Spectrum::BLACK } else { light.reached(world, &rays[index], mode) };
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {
             let shadow = light.of(rays[index], origin_primitives[index]);

@@ -197,12 +197,12 @@ impl AreaLight {
         at: &TexturePoint,
         front: bool,
         cos: impl FnOnce() -> f32,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Spectrum {
         if !front && !self.two_sided {
             return Spectrum::BLACK;
         }
-        let radiance = self.radiance.at(textures, at, lanes);
+        let radiance = self.radiance.at(textures, at, mode);
         match self.coat {
             None => radiance,
             Some(amount) => {
@@ -218,7 +218,7 @@ impl AreaLight {
         textures: &Textures,
         from: DVec3,
         u: [f32; 2],
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Option<LightSample> {
         let light_point = self.sample_point(from, u)?;
         let LightPoint { point, normal, wi, pdf, .. } = light_point;
@@ -226,7 +226,7 @@ impl AreaLight {
         let at = self.texture_point(&light_point);
         let there = self.alpha.map_or(1.0, |alpha| textures.float(alpha, &at).clamp(0.0, 1.0));
         let cos = || self.shading_normal(&light_point).dot(wi.as_dvec3()) as f32;
-        let li = self.emitted(textures, &at, front, cos, lanes) * there;
+        let li = self.emitted(textures, &at, front, cos, mode) * there;
         (!li.is_black()).then_some(LightSample { wi, li, pdf, target: Target::Surface(point, normal) })
     }
 

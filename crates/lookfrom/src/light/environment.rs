@@ -91,35 +91,35 @@ impl Environment {
         textures: &Textures,
         from: DVec3,
         direction: Vec3,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Spectrum {
         match &self.portal {
             Some(portal) if !portal.is_seen(from, direction) => Spectrum::BLACK,
-            _ => self.color(textures, direction, lanes),
+            _ => self.color(textures, direction, mode),
         }
     }
 
     /// The radiance, where it is the same from everywhere.
-    pub(crate) fn even(&self, textures: &Textures, lanes: &SpectralMode) -> Option<Spectrum> {
+    pub(crate) fn even(&self, textures: &Textures, mode: &SpectralMode) -> Option<Spectrum> {
         match (&self.sky, &self.portal) {
-            (Sky::Constant(emission_spectrum), None) => Some(emission_spectrum.even(textures, lanes)),
+            (Sky::Constant(emission_spectrum), None) => Some(emission_spectrum.even(textures, mode)),
             _ => None,
         }
     }
 
     /// Radiance from a unit direction, ignoring the portal.
-    fn color(&self, textures: &Textures, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
+    fn color(&self, textures: &Textures, direction: Vec3, mode: &SpectralMode) -> Spectrum {
         match &self.sky {
-            Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, lanes),
+            Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, mode),
             Sky::Gradient { zenith, horizon, nadir } => {
                 let y = direction.y.clamp(-1.0, 1.0);
                 let end = if y >= 0.0 { zenith } else { nadir };
-                horizon.even(textures, lanes) * (1.0 - y.abs()) + end.even(textures, lanes) * y.abs()
+                horizon.even(textures, mode) * (1.0 - y.abs()) + end.even(textures, mode) * y.abs()
             }
             Sky::Image(sky) => {
                 let through = self.portal.as_ref().and_then(|portal| portal.texel(direction));
                 let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction).0));
-                sky.radiance(rgb, lanes)
+                sky.radiance(rgb, mode)
             }
         }
     }
@@ -173,7 +173,7 @@ impl Environment {
         textures: &Textures,
         at: &LightSampleContext,
         u: [f32; 2],
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
         incomplete_pdf: IncompletePdf,
     ) -> Option<LightSample> {
         if !self.illuminates {
@@ -182,18 +182,18 @@ impl Environment {
         let (wi, pdf, li) = match (&self.portal, &self.sky, incomplete_pdf) {
             (Some(portal), ..) => {
                 let (wi, pdf) = portal.sample(at.point, u)?;
-                (wi, pdf, self.color(textures, wi, lanes))
+                (wi, pdf, self.color(textures, wi, mode))
             }
             (None, Sky::Image(sky), _) => {
                 let (uv, pdf) = sky.choice(incomplete_pdf).sample(u);
-                let li = sky.radiance(sky.texel(textures, uv), lanes);
+                let li = sky.radiance(sky.texel(textures, uv), mode);
                 let (wi, per_solid_angle) = sky.direction(uv);
                 (wi, pdf * per_solid_angle, li)
             }
             (None, _, IncompletePdf::Allowed) => return None,
             (None, _, IncompletePdf::Forbidden) => {
                 let wi = warp::cosine_hemisphere(u, at.n);
-                (wi, warp::cosine_hemisphere_pdf(at.n.dot(wi)), self.color(textures, wi, lanes))
+                (wi, warp::cosine_hemisphere_pdf(at.n.dot(wi)), self.color(textures, wi, mode))
             }
         };
         let usable = pdf > 0.0 && pdf.is_finite() && !li.is_black();
@@ -270,9 +270,9 @@ impl SkyImage {
         }
     }
 
-    fn radiance(&self, rgb: [f32; 3], lanes: &SpectralMode) -> Spectrum {
+    fn radiance(&self, rgb: [f32; 3], mode: &SpectralMode) -> Spectrum {
         let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
-        texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes)
+        texture::spectrum_of(rgb, SpectrumType::Illuminant, mode)
     }
 
     /// The (u, v) of a unit direction, and the factor there from a density over the unit square to one over solid angle.

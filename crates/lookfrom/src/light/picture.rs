@@ -28,7 +28,7 @@ impl Projection {
         &self,
         textures: &Textures,
         from: DVec3,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Option<LightSample> {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
@@ -42,7 +42,7 @@ impl Projection {
         // rows run down
         let st = [0.5 + 0.5 * s, 0.5 - 0.5 * t];
         let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
-        let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, lanes);
+        let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, mode);
         let li = white * (self.scale / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
@@ -77,7 +77,7 @@ impl Goniometric {
         &self,
         textures: &Textures,
         from: DVec3,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Option<LightSample> {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
@@ -85,7 +85,7 @@ impl Goniometric {
         let [r, g, b] =
             texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let brightness = (r + g + b) / 3.0;
-        let li: Spectrum = self.intensity.even(textures, lanes) * (brightness / (distance * distance) as f32);
+        let li: Spectrum = self.intensity.even(textures, mode) * (brightness / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 }

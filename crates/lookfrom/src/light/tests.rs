@@ -240,14 +240,14 @@ fn directions_to_environments_are_as_dense_as_they_say() {
 #[test]
 fn portals_are_sampled_in_all_wavelengths() {
     for around in environments().iter().filter(|around| around.has_portal) {
-        let lanes = SpectralMode::Spectral(Wavelengths::sample_visible(0.4));
+        let mode = SpectralMode::Spectral(Wavelengths::sample_visible(0.4));
         let light = &around.world.lights[0];
         let Light::Environment(sky) = light else { panic!("a sky") };
         let at = places()[0];
         let mut bright = 0;
         for i in 0..1000 {
             let textures = &around.world.textures;
-            let sample = light.sample(textures, &at, random(i), &lanes, IncompletePdf::Allowed);
+            let sample = light.sample(textures, &at, random(i), &mode, IncompletePdf::Allowed);
             let Some(sample) = sample else { continue };
             bright += 1;
             assert_eq!(
@@ -255,7 +255,7 @@ fn portals_are_sampled_in_all_wavelengths() {
                 light.pdf(&at, sample.wi, None, IncompletePdf::Allowed)
             );
             assert!(sample.li.0.iter().all(|lane| lane.is_finite() && *lane >= 0.0));
-            let seen = sky.radiance(textures, at.point, sample.wi, &lanes);
+            let seen = sky.radiance(textures, at.point, sample.wi, &mode);
             assert!((seen.0[0] - sample.li.0[0]).abs() <= 1e-3 * seen.0[0] || seen.is_black());
         }
         assert!(bright > 900, "{}: {bright}", around.name);

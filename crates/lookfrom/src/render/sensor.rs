@@ -11,12 +11,12 @@ use crate::shading::texture::SpectralMode;
 impl Renderer {
     /// The samples of a batch that was traced.
     pub(super) fn traced(&self, batch: &Batch) -> impl Iterator<Item = Traced> {
-        let Batch { queues: Queues { radiance, lanes, alpha, .. }, start, .. } = batch;
+        let Batch { queues: Queues { radiance, modes, alpha, .. }, start, .. } = batch;
         let samples = radiance.iter().zip(alpha).zip(&start.weights).enumerate();
         samples.map(|(slot, ((&radiance, &alpha), &weight))| {
-            let lanes = lanes[slot];
-            let (rgb, alpha) = self.with_alpha(radiance, weight, &lanes, alpha);
-            Traced { rgb, radiance, lanes, weight, alpha }
+            let mode = modes[slot];
+            let (rgb, alpha) = self.with_alpha(radiance, weight, &mode, alpha);
+            Traced { rgb, radiance, mode, weight, alpha }
         })
     }
 
@@ -47,10 +47,10 @@ impl Renderer {
         let Queues { layers, alpha, .. } = &batch.queues;
         let count = self.light_paths.as_ref().map_or(0, |light_paths| light_paths.count());
         let is_seen = alpha[slot] == Alpha::Opaque || self.image().background == Background::Environment;
-        let whole = self.measured(traced.radiance * traced.weight, &traced.lanes);
+        let whole = self.measured(traced.radiance * traced.weight, &traced.mode);
         let limit = self.limit(whole);
         layers[slot * count..][..count].iter().map(move |light| match is_seen {
-            true => self.measured(*light * traced.weight, &traced.lanes).map(|c| c * limit),
+            true => self.measured(*light * traced.weight, &traced.mode).map(|c| c * limit),
             false => [0.0; 3],
         })
     }
@@ -66,26 +66,26 @@ impl Renderer {
         &self,
         radiance: Spectrum,
         weight: f32,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
         alpha: Alpha,
     ) -> ([f32; 3], f32) {
         match alpha {
             Alpha::Transparent => ([0.0; 3], 0.0),
             Alpha::Shadow if self.image().background != Background::Environment => {
-                ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, lanes)))
+                ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, mode)))
             }
-            Alpha::Shadow | Alpha::Opaque => (self.rgb(radiance * weight, lanes), 1.0),
+            Alpha::Shadow | Alpha::Opaque => (self.rgb(radiance * weight, mode), 1.0),
         }
     }
 
     /// The colour that the sensor measures: linear Rec. 709.
-    pub fn rgb(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
-        self.limited(self.measured(light, lanes))
+    pub fn rgb(&self, light: Spectrum, mode: &SpectralMode) -> [f32; 3] {
+        self.limited(self.measured(light, mode))
     }
 
     /// The same without the maximum component value.
-    pub(crate) fn measured(&self, light: Spectrum, lanes: &SpectralMode) -> [f32; 3] {
-        match lanes {
+    pub(crate) fn measured(&self, light: Spectrum, mode: &SpectralMode) -> [f32; 3] {
+        match mode {
             SpectralMode::Rgb if self.keeps_rgb => light.rgb(),
             SpectralMode::Rgb => self.sensor.balanced(light.rgb()),
             SpectralMode::Spectral(wavelengths) => self.sensor.rgb(light, wavelengths),

@@ -209,7 +209,7 @@ impl Scattering<'_> {
 #[derive(Debug)]
 pub struct ShadingContext<'a> {
     /// Meaning of the lanes. Where wavelengths are dispersed, only the first is kept.
-    pub lanes: &'a mut SpectralMode,
+    pub mode: &'a mut SpectralMode,
     /// The path throughput. In RGB mode, where colours are dispersed, one of its primaries is kept, weighted
     /// to stand for all.
     pub throughput: &'a mut Spectrum,
@@ -313,7 +313,7 @@ pub(crate) struct Evaluator<'a> {
     materials: &'a [Material],
     textures: &'a Textures,
     point: &'a TexturePoint<'a>,
-    lanes: &'a mut SpectralMode,
+    mode: &'a mut SpectralMode,
     throughput: &'a mut Spectrum,
     interior: InteriorStack,
     u: f32,
@@ -327,8 +327,8 @@ impl<'a> Evaluator<'a> {
         point: &'a TexturePoint,
         context: ShadingContext<'a>,
     ) -> Self {
-        let ShadingContext { lanes, throughput, interior, u, seed } = context;
-        Self { materials, textures, point, lanes, throughput, interior, u, seed }
+        let ShadingContext { mode, throughput, interior, u, seed } = context;
+        Self { materials, textures, point, mode, throughput, interior, u, seed }
     }
 }
 
@@ -336,7 +336,7 @@ impl Evaluator<'_> {
     fn bsdf(&mut self, material: &Material) -> Option<Bsdf> {
         Some(match &material.kind {
             MaterialKind::Whitted(whitted) => {
-                let k = Coefficients::at(whitted, self.textures, self.point, self.lanes);
+                let k = Coefficients::at(whitted, self.textures, self.point, self.mode);
                 Bsdf::Whitted(WhittedBsdf {
                     diffuse: k.diffuse,
                     specular: k.specular,
@@ -350,7 +350,7 @@ impl Evaluator<'_> {
             MaterialKind::Diffuse { reflectance } => Bsdf::Diffuse(self.diffuse(reflectance)),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
-                    let color = self.textures.spectrum(color, self.point, self.lanes);
+                    let color = self.textures.spectrum(color, self.point, self.mode);
                     (color * *scale).map(|lane| lane.clamp(0.0, 1.0))
                 });
                 Bsdf::diffuse_transmission(reflected, transmitted)
@@ -404,7 +404,7 @@ impl Evaluator<'_> {
     }
 
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
-        self.textures.albedo(color, self.point, self.lanes)
+        self.textures.albedo(color, self.point, self.mode)
     }
 
     fn float(&self, texture: FloatTexture) -> f32 {
@@ -413,7 +413,7 @@ impl Evaluator<'_> {
 
     /// η and k.
     fn indices(&self, metal: &Metal) -> (Spectrum, Spectrum) {
-        let spectrum = |texture| self.textures.spectrum(texture, self.point, self.lanes);
+        let spectrum = |texture| self.textures.spectrum(texture, self.point, self.mode);
         match metal {
             Metal::Indices { eta, k } => (spectrum(eta), spectrum(k)),
             Metal::Reflectance(color) => fresnel::conductor_of_reflectance(spectrum(color)),
@@ -424,7 +424,7 @@ impl Evaluator<'_> {
     fn ior(&mut self, ior: &Ior) -> f32 {
         match ior {
             Ior::Value(eta) => *eta,
-            Ior::Curve(curve) => ior_at(*curve, self.textures, self.lanes),
+            Ior::Curve(curve) => ior_at(*curve, self.textures, self.mode),
         }
     }
 
@@ -446,8 +446,8 @@ impl Evaluator<'_> {
 
 /// The index of refraction of a curve: at the first wavelength, the only one kept afterwards; in RGB mode at
 /// sodium's yellow line.
-fn ior_at(curve: CurveId, textures: &Textures, lanes: &mut SpectralMode) -> f32 {
-    let nm = match lanes {
+fn ior_at(curve: CurveId, textures: &Textures, mode: &mut SpectralMode) -> f32 {
+    let nm = match mode {
         SpectralMode::Rgb => [589.3; 4],
         SpectralMode::Spectral(wavelengths) => {
             wavelengths.terminate_secondary();

@@ -115,8 +115,8 @@ impl SpectralMode {
 
 /// The spectrum of a colour that is not known before it is evaluated, such as a texel's.
 #[inline]
-pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, lanes: &SpectralMode) -> Spectrum {
-    match lanes {
+pub fn spectrum_of(rgb: [f32; 3], spectrum_type: SpectrumType, mode: &SpectralMode) -> Spectrum {
+    match mode {
         SpectralMode::Rgb => RgbEvaluation(spectrum_type).color(rgb),
         SpectralMode::Spectral(wavelengths) => SpectralEvaluation { spectrum_type, wavelengths }.color(rgb),
     }
@@ -168,28 +168,23 @@ impl Textures {
     /// The spectrum at a point, in the lanes of a sample. Never negative unless a texture scales by less than 0 or
     /// extrapolates a mix.
     #[inline(always)]
-    pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
+    pub fn spectrum(&self, texture: &SpectrumTexture, at: &TexturePoint, mode: &SpectralMode) -> Spectrum {
         // The most frequent case needs no call.
-        match lanes {
+        match mode {
             SpectralMode::Rgb if !texture.varies() => texture.rgb,
-            _ => self.spectrum_of_any(texture, at, lanes),
+            _ => self.spectrum_of_any(texture, at, mode),
         }
     }
 
     /// The same for a reflectance: within 0 … 1 in every lane.
     #[inline(always)]
-    pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, lanes: &SpectralMode) -> Spectrum {
-        self.spectrum(texture, at, lanes).map(|lane| lane.clamp(0.0, 1.0))
+    pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, mode: &SpectralMode) -> Spectrum {
+        self.spectrum(texture, at, mode).map(|lane| lane.clamp(0.0, 1.0))
     }
 
-    fn spectrum_of_any(
-        &self,
-        texture: &SpectrumTexture,
-        at: &TexturePoint,
-        lanes: &SpectralMode,
-    ) -> Spectrum {
+    fn spectrum_of_any(&self, texture: &SpectrumTexture, at: &TexturePoint, mode: &SpectralMode) -> Spectrum {
         let SpectrumTexture { input, spectrum_type, .. } = texture;
-        match lanes {
+        match mode {
             SpectralMode::Rgb => self.read(input, at, &RgbEvaluation(*spectrum_type)),
             SpectralMode::Spectral(wavelengths) => {
                 self.read(input, at, &SpectralEvaluation { spectrum_type: *spectrum_type, wavelengths })

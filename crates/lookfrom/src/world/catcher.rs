@@ -50,20 +50,20 @@ impl World {
     }
 
     /// The floor's reflectance, with which it looks like the environment behind it, within physical limits (at most 1).
-    pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, lanes: &SpectralMode) -> Spectrum {
-        self.reflectance_seen_along(-surface.wo, lanes)
+    pub(super) fn catcher_reflectance(&self, surface: &SurfaceInteraction, mode: &SpectralMode) -> Spectrum {
+        self.reflectance_seen_along(-surface.wo, mode)
     }
 
     /// Factor of the floor's light for camera rays: with it, the unshadowed floor looks like `behind` instead of what
     /// its reflectance in the path tracer yields; `direction` is the camera ray's, of any length.
-    pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, lanes: &SpectralMode) -> Spectrum {
-        let irradiance = self.light_of(self.catcher_irradiance.unwrap_or_default(), lanes);
-        let reflected = self.reflectance_seen_along(direction.normalize(), lanes) * irradiance;
+    pub fn catcher_correction(&self, direction: Vec3, behind: Spectrum, mode: &SpectralMode) -> Spectrum {
+        let irradiance = self.light_of(self.catcher_irradiance.unwrap_or_default(), mode);
+        let reflected = self.reflectance_seen_along(direction.normalize(), mode) * irradiance;
         let pi_behind = behind * std::f32::consts::PI;
         pi_behind.zip(reflected, |behind, reflected| if reflected > 0.0 { behind / reflected } else { 0.0 })
     }
 
-    fn reflectance_seen_along(&self, direction: Vec3, lanes: &SpectralMode) -> Spectrum {
+    fn reflectance_seen_along(&self, direction: Vec3, mode: &SpectralMode) -> Spectrum {
         let e0 = self.catcher_irradiance.unwrap_or_default();
         let ray = Ray::new([0.0; 3], direction.to_array());
         let sky = self.sky(&ray, &SpectralMode::Rgb).rgb();
@@ -71,6 +71,6 @@ impl World {
             let rho = if e0[c] > 0.0 { std::f32::consts::PI * sky[c] / e0[c] } else { 0.0 };
             rho.clamp(LEAST_REFLECTANCE, 1.0)
         });
-        spectrum_of(rho, SpectrumType::Albedo, lanes)
+        spectrum_of(rho, SpectrumType::Albedo, mode)
     }
 }

@@ -51,7 +51,7 @@ fn brightness_is_limited_in_the_sensors_channels() {
         let mut darkened = 0;
         for (limited, free) in limited.iter().zip(&free) {
             assert_eq!(limited.radiance, free.radiance);
-            let xyz = match free.lanes {
+            let xyz = match free.mode {
                 SpectralMode::Spectral(wavelengths) => xyz_of(free.radiance, &wavelengths),
                 SpectralMode::Rgb => lookfrom::core::color::xyz_from_rgb(free.rgb),
             };

@@ -75,12 +75,12 @@ impl TraceLogBuilder<'_> {
         incomplete_pdf: IncompletePdf,
     ) -> Vec<Derivation> {
         let light = &self.world.lights[light as usize];
-        light.derivations(&self.world.textures, at, sample, &self.lanes, incomplete_pdf)
+        light.derivations(&self.world.textures, at, sample, &self.mode, incomplete_pdf)
     }
 
     /// How the radiance of an area light comes about.
     pub(super) fn emission(&self, light: u32, radiance: Spectrum) -> Option<Derivation> {
-        self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.lanes)
+        self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.mode)
     }
 
     /// How light sampling at the surface before finds the light that a ray hit.

@@ -85,7 +85,7 @@ impl TraceLogBuilder<'_> {
     pub(super) fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
         let report = scatter::scattering(shading, |value| self.factor(value));
         let throughput = self.factor(beta);
-        let only = match self.lanes {
+        let only = match self.mode {
             SpectralMode::Rgb => beta.only_lane().map(|lane| ["red", "green", "blue", ""][lane]),
             SpectralMode::Spectral(_) => None,
         };

@@ -94,8 +94,8 @@ impl PlainSteps {
     ) {
         let mut waiting = std::mem::take(&mut self.waiting);
         let mut shade = |chosen: &Chosen<'_>| {
-            let Queues { lanes, first_surfaces, .. } = &mut output.queues;
-            self.shade(world, streams, (paths, hits), chosen, lanes, first_surfaces);
+            let Queues { modes, first_surfaces, .. } = &mut output.queues;
+            self.shade(world, streams, (paths, hits), chosen, modes, first_surfaces);
             finish(self, chosen.paths, output);
         };
         for (index, hit) in hits.iter().enumerate() {

@@ -25,17 +25,17 @@ impl PathTracer {
         path: &mut Path,
         output: &mut StepOutput<'_, P>,
     ) {
-        let lanes = output.lanes(path);
+        let mode = output.mode(path);
         output.queues.alpha[path.slot as usize] = Alpha::Shadow;
         let behind = match output.background {
-            Background::Environment => world.sky(&path.ray, &lanes),
+            Background::Environment => world.sky(&path.ray, &mode),
             // White: the light of the sample is the unshadowed part.
-            Background::Color(_) | Background::Transparent => world.light_of([1.0; 3], &lanes),
+            Background::Color(_) | Background::Transparent => world.light_of([1.0; 3], &mode),
         };
         if self.has_control_variate() {
             output.add(path, Term::Sky, path.beta * behind);
         }
-        path.beta *= world.catcher_correction(Vec3::from_array(path.ray.direction), behind, &lanes);
+        path.beta *= world.catcher_correction(Vec3::from_array(path.ray.direction), behind, &mode);
     }
 
     /// Subtracts the unoccluded contribution of an infinite light that was sampled at a catcher.
@@ -55,7 +55,7 @@ impl PathTracer {
     /// Subtracts the light that a path leaving a catcher finds if nothing is in the way.
     pub(super) fn expect_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
         if self.has_control_variate() {
-            let expected = sky_found(world, path, &output.lanes(path));
+            let expected = sky_found(world, path, &output.mode(path));
             output.add(path, Term::Sky, expected * -1.0);
         }
     }
@@ -72,13 +72,13 @@ impl PathTracer {
 }
 
 /// The light of the environments that a path adds if it hits nothing.
-fn sky_found(world: &World, path: &Path, lanes: &SpectralMode) -> Spectrum {
+fn sky_found(world: &World, path: &Path, mode: &SpectralMode) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
     let at = path.light_context();
     let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());
     lit.fold(Spectrum::BLACK, |sum, &index| {
         let light_pdf = world.light_pdf(index, &at, direction, None);
         let weight = power_heuristic(path.previous.pdf, light_pdf);
-        sum + path.beta * world.sky_of(index, &path.ray, lanes) * weight
+        sum + path.beta * world.sky_of(index, &path.ray, mode) * weight
     })
 }

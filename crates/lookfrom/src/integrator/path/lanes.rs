@@ -194,7 +194,7 @@ impl PathTracer {
         let paths = LanePaths {
             paths: by_lane!(lane => &vertices[lane].path),
             streams: by_lane!(lane => &vertices[lane].stream),
-            modes: by_lane!(lane => &output.queues.lanes[vertices[lane].path.slot as usize]),
+            modes: by_lane!(lane => &output.queues.modes[vertices[lane].path.slot as usize]),
         };
         ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
         let item = |lane: usize| Item {

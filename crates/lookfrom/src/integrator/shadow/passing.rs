@@ -24,7 +24,7 @@ pub(super) fn let_through<P: Probe>(
     queues: &mut Queues,
     probe: &mut P,
 ) -> u64 {
-    let Queues { shadows, lanes: modes, hits, .. } = queues;
+    let Queues { shadows, modes, hits, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     let mut traced = 0;
     // The lights of the rays that are left.

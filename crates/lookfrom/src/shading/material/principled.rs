@@ -35,10 +35,10 @@ pub(super) fn disperses(look: &PrincipledMaterial) -> bool {
 }
 
 /// The index of refraction for the one wavelength or colour that is kept; the nominal one where there are more.
-fn index_of(look: &PrincipledMaterial, lanes: &SpectralMode, share: Spectrum) -> f32 {
+fn index_of(look: &PrincipledMaterial, mode: &SpectralMode, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
-    match lanes {
+    match mode {
         SpectralMode::Spectral(wavelengths) if wavelengths.secondary_terminated() => {
             let [lambda, ..] = wavelengths.lambda;
             let bent = 523_655.0 / (lambda * lambda) - 1.5168;
@@ -65,10 +65,10 @@ pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option
     }
     let surface =
         ShadingGeometry { ng: Vec3::Z, ns: Vec3::Z, dpdu: Vec3::X, dpdv: Vec3::Y, wo: Vec3::Z, front: true };
-    let (mut lanes, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
+    let (mut mode, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
     let interior = InteriorStack::default();
     let context =
-        ShadingContext { lanes: &mut lanes, throughput: &mut throughput, interior, u: 0.0, seed: 0.0 };
+        ShadingContext { mode: &mut mode, throughput: &mut throughput, interior, u: 0.0, seed: 0.0 };
     let mut evaluator = Evaluator::new(&[], textures, &TexturePoint::NOWHERE, context);
     Some(evaluator.principled(look, 0, &surface, bump::plain(&surface)).0)
 }
@@ -192,7 +192,7 @@ impl Evaluator<'_> {
 
     /// The wavelengths of the sample's lanes; `None` in RGB.
     fn wavelengths(&self) -> Option<[f32; 4]> {
-        match &*self.lanes {
+        match &*self.mode {
             SpectralMode::Rgb => None,
             SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
         }
@@ -201,7 +201,7 @@ impl Evaluator<'_> {
     /// The weights of the lanes in the choice of lobes: the path's throughput, so that a lobe whose colour can no longer
     /// matter is seldom chosen.
     fn lane_weights(&self) -> Spectrum {
-        if let SpectralMode::Spectral(wavelengths) = &self.lanes
+        if let SpectralMode::Spectral(wavelengths) = &self.mode
             && wavelengths.secondary_terminated()
         {
             return Spectrum([1.0, 0.0, 0.0, 0.0]);
@@ -216,11 +216,11 @@ impl Evaluator<'_> {
         if !disperses(look) || !(passing > 0.0) {
             return look.ior;
         }
-        match self.lanes {
+        match self.mode {
             SpectralMode::Spectral(wavelengths) => wavelengths.terminate_secondary(),
             SpectralMode::Rgb => self.throughput.leave_one(self.u),
         }
-        index_of(look, self.lanes, *self.throughput)
+        index_of(look, self.mode, *self.throughput)
     }
 
     /// The index of refraction on the other side of a surface of a material; `None` where the surface is hidden
@@ -234,7 +234,7 @@ impl Evaluator<'_> {
         let around = outside.material().map(|index| &self.materials[index as usize].kind);
         Some(match around {
             Some(MaterialKind::Principled(body)) if body.ior > 0.0 => {
-                index_of(body, self.lanes, *self.throughput)
+                index_of(body, self.mode, *self.throughput)
             }
             _ => 1.0,
         })
@@ -246,11 +246,11 @@ impl Evaluator<'_> {
             return (Spectrum([1.0; 4]), 1.0);
         }
         let rgb = self.textures.rgb(color, self.point);
-        let lanes = match self.lanes {
+        let spectrum = match self.mode {
             SpectralMode::Rgb => Spectrum::from_rgb(rgb),
-            SpectralMode::Spectral(_) => self.textures.spectrum(color, self.point, self.lanes),
+            SpectralMode::Spectral(_) => self.textures.spectrum(color, self.point, self.mode),
         };
-        (lanes, rgb.into_iter().fold(0.0, f32::max))
+        (spectrum, rgb.into_iter().fold(0.0, f32::max))
     }
 }
 
@@ -320,15 +320,15 @@ mod tests {
                 wo: Vec3::Z,
                 front: true,
             };
-            let mut lanes = match mode {
+            let mut mode = match mode {
                 ColorMode::Rgb => SpectralMode::Rgb,
                 ColorMode::Spectral => SpectralMode::Spectral(Wavelengths::sample_visible(number())),
             };
             let throughput = Spectrum([number(), number(), number(), number()]);
             let mut evaluate = |look: &PrincipledMaterial| {
                 let (interior, mut throughput) = (InteriorStack::default(), throughput);
-                let (lanes, throughput) = (&mut lanes, &mut throughput);
-                let context = ShadingContext { lanes, throughput, interior, u: 0.5, seed: 0.0 };
+                let (mode, throughput) = (&mut mode, &mut throughput);
+                let context = ShadingContext { mode, throughput, interior, u: 0.5, seed: 0.0 };
                 let mut evaluator = Evaluator::new(&[], &textures, &point, context);
                 evaluator.principled(look, 0, &surface, bump::plain(&surface)).0
             };

@@ -58,8 +58,8 @@ pub struct Branches {
 
 impl Coefficients {
     /// The material's coefficients at a point.
-    pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, lanes: &SpectralMode) -> Self {
-        let color = |texture: &SpectrumTexture| textures.spectrum(texture, point, lanes);
+    pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, mode: &SpectralMode) -> Self {
+        let color = |texture: &SpectrumTexture| textures.spectrum(texture, point, mode);
         let diffuse = color(&material.diffuse);
         Self {
             ambient: material.ambient.as_ref().map_or(diffuse, color),

@@ -22,9 +22,9 @@ impl Textures {
         color: Color,
         of: SpectrumType,
         at: &TexturePoint,
-        lanes: &SpectralMode,
+        mode: &SpectralMode,
     ) -> Spectrum {
-        self.spectrum(&self.spectrum_texture(color, of), at, lanes)
+        self.spectrum(&self.spectrum_texture(color, of), at, mode)
     }
 
     fn scalar(&self, scalar: Scalar, at: &TexturePoint) -> f32 {
@@ -241,8 +241,8 @@ fn spectra_seen_in_daylight_have_their_colors() {
     let textures = textures_of(&[picture(TexelFilter::Nearest, 1.0, false)], vec![image], vec![]);
     let curve_of = |color, usage, at: &TexturePoint| -> Vec<f32> {
         let spectral = |nm: &f32| {
-            let lanes = SpectralMode::Spectral(Wavelengths::new([*nm; 4], [1.0; 4]));
-            textures.spectrum_of(color, usage, at, &lanes).0[2]
+            let mode = SpectralMode::Spectral(Wavelengths::new([*nm; 4], [1.0; 4]));
+            textures.spectrum_of(color, usage, at, &mode).0[2]
         };
         lambda.iter().map(spectral).collect()
     };
@@ -265,7 +265,7 @@ fn spectra_seen_in_daylight_have_their_colors() {
 
 #[test]
 fn spectra_are_blended_and_curves_read() {
-    let lanes = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
+    let mode = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
     let curves = vec![
         Curve::Constant(0.5),
         Curve::Tabulated { wavelengths: vec![400.0, 600.0], values: vec![0.0, 1.0] },
@@ -274,7 +274,7 @@ fn spectra_are_blended_and_curves_read() {
     let ramp = Color::Curve(CurveId(1));
     let kinds = vec![TextureKind::Mix { low: red, high: ramp, amount: Scalar::Value(0.25) }];
     let textures = textures_of(&kinds, vec![], curves);
-    let spectrum = |color| textures.spectrum_of(color, SpectrumType::Albedo, &at(0.0, 0.0), &lanes);
+    let spectrum = |color| textures.spectrum_of(color, SpectrumType::Albedo, &at(0.0, 0.0), &mode);
     let expected = spectrum(red) * 0.75 + Spectrum([0.25, 0.5, 0.75, 1.0]) * 0.25;
     assert_eq!(spectrum(Color::Texture(FIRST)), expected);
     // A grey needs no table and stays exact; a curve keeps its value in RGB, too.
@@ -387,8 +387,8 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
     assert_eq!(textures.rgb_of(of_colors, SpectrumType::Albedo, &here), [0.25, 0.25, 0.0]);
     assert_eq!(textures.scalar(Scalar::Texture(TextureId(2)), &here), 3.0);
 
-    let lanes = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
-    let spectrum = |color, usage| textures.spectrum_of(color, usage, &here, &lanes);
+    let mode = SpectralMode::Spectral(Wavelengths::new([450.0, 500.0, 550.0, 600.0], [1.0; 4]));
+    let spectrum = |color, usage| textures.spectrum_of(color, usage, &here, &mode);
     for usage in [SpectrumType::Unbounded, SpectrumType::Illuminant] {
         let six = spectrum(Color::gray(6.0), usage);
         assert_eq!(spectrum(of_grays, usage), six, "{usage:?}");

@@ -141,7 +141,7 @@ impl PathTracer {
             let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
             let mut throughput = path.beta;
             let context = ShadingContext {
-                lanes: &mut output.queues.lanes[path.slot as usize],
+                mode: &mut output.queues.modes[path.slot as usize],
                 throughput: &mut throughput,
                 interior: path.interior,
                 u: 0.0,
@@ -189,7 +189,7 @@ impl PathTracer {
         let paths = LanePaths {
             paths: by_lane!(lane => hits[lane].path),
             streams: by_lane!(lane => &streams[lane]),
-            modes: by_lane!(lane => &output.queues.lanes[hits[lane].path.slot as usize]),
+            modes: by_lane!(lane => &output.queues.modes[hits[lane].path.slot as usize]),
         };
         ScatterKernel { world, surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
         let item = |lane: usize| Item {
@@ -211,9 +211,9 @@ impl PathTracer {
     ) {
         let (path, hit) = (&batch.paths[index as usize], &batch.hits[index as usize]);
         let surface = batch.world.surface(&path.ray, hit);
-        let (mut mode, mut beta) = (output.queues.lanes[path.slot as usize], path.beta);
+        let (mut mode, mut beta) = (output.queues.modes[path.slot as usize], path.beta);
         let arrival = ShadingContext {
-            lanes: &mut mode,
+            mode: &mut mode,
             throughput: &mut beta,
             interior: path.interior,
             u: 0.0,

@@ -35,7 +35,7 @@ impl PathTracer {
             }
             let Some(sky) = environment.map_in_lanes() else {
                 for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
-                    let radiance = world.sky_of(index, &path.ray, &output.lanes(path));
+                    let radiance = world.sky_of(index, &path.ray, &output.mode(path));
                     let pdf = || world.light_pdf(index, &path.light_context(), directions[lane], None);
                     self.add_found(path, index, radiance, pdf, output);
                 }
@@ -46,7 +46,7 @@ impl PathTracer {
                 let is_weighted = P::LISTENS || !path.previous.pdf.is_infinite();
                 with_density |= u32::from(is_weighted && environment.illuminates) << lane & lanes;
             }
-            let modes = by_lane!(lane => &output.queues.lanes[paths[lane].slot as usize]);
+            let modes = by_lane!(lane => &output.queues.modes[paths[lane].slot as usize]);
             let seen = sky.seen(&world.textures, &directions, &modes, with_density);
             for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
                 let pdf = || world.light_choice.probability(&path.light_context(), index) * seen.pdf[lane];
