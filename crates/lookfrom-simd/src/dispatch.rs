@@ -33,61 +33,64 @@ pub trait Kernel {
 /// no scalar level.
 #[inline(always)]
 pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if let Some(simd) = level.as_avx512() {
-            return simd.vectorize(
-                #[inline(always)]
-                move || kernel.run(simd),
-            );
-        }
-        if let Some(simd) = level.as_avx2() {
-            return simd.vectorize(
-                #[inline(always)]
-                move || kernel.run(simd),
-            );
-        }
-        if let Some(simd) = level.as_sse2() {
-            return kernel.run(simd);
-        }
-        unreachable!("x86-64 has SSE2")
+    match run_wide(level, kernel) {
+        Ok(output) => output,
+        Err(kernel) => run_narrow(level, kernel),
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    fearless_simd::dispatch!(level, simd => kernel.run(simd))
-}
-
-/// Whether [`dispatch_wide`] runs kernels at a level.
-#[inline]
-pub fn is_wide(level: Level) -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return level.as_avx2().is_some();
-    #[cfg(not(target_arch = "x86_64"))]
-    return {
-        let _ = level;
-        true
-    };
 }
 
 /// As [`dispatch`], for large kernels, which are not compiled for SSE2: eight lanes in its sixteen registers of four would
 /// be most of their code, for machines before 2013. `None` at that level; callers go one by one there.
 #[inline(always)]
 pub fn dispatch_wide<K: Kernel>(level: Level, kernel: K) -> Option<K::Output> {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if let Some(simd) = level.as_avx512() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                move || kernel.run(simd),
-            ));
-        }
-        if let Some(simd) = level.as_avx2() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                move || kernel.run(simd),
-            ));
-        }
-        None
+    run_wide(level, kernel).ok()
+}
+
+/// Whether [`dispatch_wide`] runs kernels at a level.
+#[cfg(target_arch = "x86_64")]
+pub fn is_wide(level: Level) -> bool {
+    level.as_avx2().is_some()
+}
+
+/// Whether [`dispatch_wide`] runs kernels at a level.
+#[cfg(not(target_arch = "x86_64"))]
+pub fn is_wide(_: Level) -> bool {
+    true
+}
+
+/// Runs a kernel at all levels but SSE2, where it is given back.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn run_wide<K: Kernel>(level: Level, kernel: K) -> Result<K::Output, K> {
+    if let Some(simd) = level.as_avx512() {
+        return Ok(simd.vectorize(
+            #[inline(always)]
+            move || kernel.run(simd),
+        ));
     }
-    #[cfg(not(target_arch = "x86_64"))]
-    Some(dispatch(level, kernel))
+    if let Some(simd) = level.as_avx2() {
+        return Ok(simd.vectorize(
+            #[inline(always)]
+            move || kernel.run(simd),
+        ));
+    }
+    Err(kernel)
+}
+
+/// Runs a kernel at every level.
+#[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
+fn run_wide<K: Kernel>(level: Level, kernel: K) -> Result<K::Output, K> {
+    Ok(fearless_simd::dispatch!(level, simd => kernel.run(simd)))
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn run_narrow<K: Kernel>(level: Level, kernel: K) -> K::Output {
+    kernel.run(level.as_sse2().expect("x86-64 has SSE2"))
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn run_narrow<K: Kernel>(_: Level, _: K) -> K::Output {
+    unreachable!("all levels are wide")
 }
