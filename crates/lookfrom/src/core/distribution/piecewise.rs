@@ -182,7 +182,8 @@ fn goal(u: f32) -> u32 {
 /// The first and the last entry that may contain a goal, by the guide table.
 #[inline]
 fn range(guide: &[u32], goal: u32) -> [usize; 2] {
-    let part = goal as usize * (guide.len() - 1) / ONE as usize;
+    // In 64 bits, since the product is too large for the indices of 32-bit machines.
+    let part = (u64::from(goal) * (guide.len() as u64 - 1) / u64::from(ONE)) as usize;
     [guide[part] as usize, guide[part + 1] as usize]
 }
 
