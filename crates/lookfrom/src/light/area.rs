@@ -36,7 +36,7 @@ use quadric::{SphereLights, gather_spheres};
 pub struct AreaLight {
     /// Emitted radiance.
     pub radiance: EmissionSpectrum,
-    /// What its scale follows from.
+    /// The operands of its scale.
     pub written: Scale,
     /// Alpha; `None` is opaque.
     pub alpha: Option<FloatTexture>,
@@ -293,7 +293,7 @@ impl AreaLight {
         if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
     }
 
-    /// How the density of a sampled point of the light comes about, as seen from `from`.
+    /// The formula of a sampled point's density, as seen from `from`, with operands.
     pub(crate) fn density(&self, from: DVec3, point: DVec3) -> AreaDensity {
         match &self.shape {
             LightShape::Quadric(light) => match light.cone(from) {

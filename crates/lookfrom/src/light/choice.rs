@@ -155,7 +155,7 @@ impl LightChoice {
         }
     }
 
-    /// How the probability of a light at a point comes about: its formula, and then those of its operands.
+    /// The formula of a light's probability at a point, and then those of its operands.
     pub(crate) fn derivations(
         &self,
         lights: &[Light],

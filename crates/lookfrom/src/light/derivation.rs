@@ -83,7 +83,7 @@ impl Light {
         of_light.into_iter().collect()
     }
 
-    /// How the radiance `li` of an area light comes about.
+    /// The formula of the radiance `li` of an area light, with operands.
     pub(crate) fn emission(
         &self,
         textures: &Textures,

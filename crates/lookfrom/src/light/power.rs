@@ -42,7 +42,7 @@ impl Powers {
         if power > 0.0 { ((power / self.greatest) as f32).max(1e-30) } else { 0.0 }
     }
 
-    /// How [`Powers::relative`] comes about; `None` where no light has any power.
+    /// The formula of [`Powers::relative`], with operands; `None` where no light has any power.
     pub(super) fn derivation(&self, textures: &Textures, index: u32, light: &Light) -> Option<Derivation> {
         if self.greatest == 0.0 {
             return None;

@@ -1,6 +1,6 @@
 //! The scale of a light's colour, by the brightness that is written for it.
 
-/// How bright a light is written to be: what [`Scale::value`] is computed from.
+/// The brightness that is written for a light: the operands of [`Scale::value`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// The factor of its colour or power.

@@ -332,12 +332,7 @@ impl Textures {
         if amount == 1.0 {
             return self.read(high, at, evaluation);
         }
-        let below = self.read(low, at, evaluation);
-        let above = match (low, high) {
-            (Input::Texture(a), Input::Texture(b)) if a == b => below,
-            _ => self.read(high, at, evaluation),
-        };
-        below * (1.0 - amount) + above * amount
+        self.read(low, at, evaluation) * (1.0 - amount) + self.read(high, at, evaluation) * amount
     }
 }
 

@@ -46,7 +46,7 @@ impl TraceLogBuilder<'_> {
         }
     }
 
-    /// How a light's sample comes about at the hit of a ray.
+    /// The formulas of a light's sample at the hit of a ray.
     fn derivations(&self, address: u64, light: u32, sample: &LightSample) -> Vec<Derivation> {
         let Some((at, incomplete_pdf)) = self.light_context(address) else { return Vec::new() };
         let of_sample = self.derivations_at(&at, light, sample, incomplete_pdf);
@@ -78,7 +78,7 @@ impl TraceLogBuilder<'_> {
         light.derivations(&self.world.textures, at, sample, &self.mode, incomplete_pdf)
     }
 
-    /// How the radiance of an area light comes about.
+    /// The formula of an area light's radiance.
     pub(super) fn emission(&self, light: u32, radiance: Spectrum) -> Option<Derivation> {
         self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.mode)
     }
@@ -119,7 +119,7 @@ impl TraceLogBuilder<'_> {
         })
     }
 
-    /// How the probability of a light comes about at the hit of a ray.
+    /// The formulas of a light's probability at the hit of a ray.
     fn choice(&self, address: u64, light: u32) -> Vec<Derivation> {
         self.light_context(address).map(|(at, _)| self.choice_at(&at, light)).unwrap_or_default()
     }

@@ -59,7 +59,7 @@ impl TraceLogBuilder<'_> {
         }
     }
 
-    /// How the origin of a ray follows from the hit of another.
+    /// The step from the hit of a ray to the origin of another.
     pub(super) fn departure(&self, address: u64, ray: &Ray) -> Option<Departure> {
         let (_, Some(surface)) = self.hits.get(&address)? else { return None };
         let direction = Vec3::from_array(ray.direction);

@@ -9,7 +9,7 @@ use crate::light::{EmissionSpectrum, LightSample, Target, Total};
 use crate::shading::texture::{SpectralMode, TexturePoint, Textures};
 
 impl AreaLight {
-    /// How the radiance `li` that leaves it toward a point comes about.
+    /// The formula of the radiance `li` that leaves it toward a point, with operands.
     pub(in crate::light) fn of_radiance(
         &self,
         textures: &Textures,
@@ -37,7 +37,7 @@ impl AreaLight {
         Derivation::new(format!("{product} {sides}: C {of_color}, s {of_scale}"), numbers)
     }
 
-    /// What the scale of the radiance follows from.
+    /// The formula of the radiance's scale, with operands.
     fn of_scale(&self) -> (&'static str, Vec<(&'static str, Vec<f64>)>) {
         let one = |x: f32| vec![f64::from(x)];
         let factor = ("k", one(self.written.factor));
@@ -59,7 +59,7 @@ impl AreaLight {
         }
     }
 
-    /// How the density of a sampled point comes about, as seen from `from`.
+    /// The formula of a sampled point's density, as seen from `from`, with operands.
     pub(in crate::light) fn of_density(&self, from: DVec3, sample: &LightSample) -> Option<Derivation> {
         let Target::Surface(point, normal) = sample.target else { return None };
         let to = DVec3::from_array(point.position) - from;

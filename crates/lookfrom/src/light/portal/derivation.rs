@@ -7,7 +7,7 @@ use crate::light::derivation::{Derivation, as_spectrum, cell_of_density, color_o
 use crate::shading::texture::SpectralMode;
 
 impl Portal {
-    /// How the density and the radiance of a direction come about; `scale` is that of the environment map.
+    /// The formulas of a direction's density and radiance, with operands; `scale` is that of the environment map.
     pub(in crate::light) fn derivations(
         &self,
         from: DVec3,

@@ -78,7 +78,7 @@ pub struct DiffuseInterior<R = f32> {
 }
 
 impl DiffuseInterior {
-    /// What is known, or nothing.
+    /// The interior of a coat; unknown for `None`.
     pub(crate) fn new(known: Option<CoatInterior>) -> Self {
         let transmission = known.and_then(|known| known.transmission);
         Self {
