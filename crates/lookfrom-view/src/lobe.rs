@@ -104,10 +104,10 @@ impl<'a> Balloon<'a> {
         luminance: impl Fn(lookfrom::core::spectrum::Spectrum) -> f32,
     ) -> Vec<f32> {
         match *self {
-            Self::Bsdf(surface, shading) => shading.scattering(surface.wo, |scattering| {
-                let value = |wi: &Vec3| luminance(scattering.f_and_pdf(*wi).0 * shading.cos(*wi).abs());
-                directions.iter().map(value).collect()
-            }),
+            Self::Bsdf(surface, shading) => {
+                let f = shading.f_toward(surface.wo);
+                directions.iter().map(|wi| luminance(f(*wi) * shading.cos(*wi).abs())).collect()
+            }
             Self::Whitted(surface, coefficients) => {
                 let n = surface.ns_facing();
                 let value = |wi: &Vec3| {

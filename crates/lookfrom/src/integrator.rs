@@ -6,7 +6,6 @@
 //! sample are added in one fixed order, whatever else is in the batch.
 
 mod background;
-mod direct;
 mod event;
 mod first_hit;
 mod first_surface;
@@ -15,6 +14,7 @@ mod occlusion;
 mod path;
 mod raycast;
 mod sample_streams;
+mod scratch;
 mod shadow;
 mod spectral_modes;
 mod whitted;
@@ -34,7 +34,6 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 pub use background::Alpha;
-use direct::PlainSteps;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
 pub use first_hit::FirstHit;
 pub(crate) use first_surface::FirstSurfaceColumns;
@@ -45,6 +44,7 @@ pub use occlusion::AmbientOcclusion;
 pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
+use scratch::Scratch;
 use shadow::ShadowLight;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use shadow::{Shadow, ShadowTransparency, Shadows};
@@ -219,8 +219,8 @@ pub struct Queues {
     /// The hits of shadow rays, and whether they are blocked: memory that is reused.
     hits: Vec<Hit>,
     blocked: Vec<bool>,
-    /// Steps that were computed side by side: likewise.
-    plain_steps: PlainSteps,
+    /// Memory of the integrator: likewise.
+    scratch: Scratch,
 }
 
 impl Queues {

@@ -24,6 +24,7 @@ use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
 use cone::Cone;
@@ -288,8 +289,17 @@ impl Light {
 
 /// The unit direction and the distance, or `None` between equal points.
 fn toward(from: DVec3, to: DVec3) -> Option<(Vec3, f64)> {
-    let distance = (to - from).length();
-    (distance > 0.0).then(|| (((to - from) / distance).as_vec3(), distance))
+    let (wi, distance) = ways::<f32>(from.into(), to.into());
+    (distance > 0.0).then(|| (wi.into(), distance))
+}
+
+/// Unit directions and distances; NaN between equal points.
+#[inline(always)]
+pub(crate) fn ways<R: Real>(from: Vector<R::Double>, to: Vector<R::Double>) -> (Vector<R>, R::Double) {
+    let way = to - from;
+    let distance = way.length();
+    let wi = Vector { x: way.x / distance, y: way.y / distance, z: way.z / distance };
+    (Vector::narrow(wi), distance)
 }
 
 /// The attenuation of a light at a distance.

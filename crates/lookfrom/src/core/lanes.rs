@@ -1,10 +1,13 @@
 //! Eight paths side by side: arrays by lane, and their gathering into vectors.
 
+pub(crate) mod width;
+
 use lookfrom_bvh::Ray;
 use lookfrom_simd::{Kernel, Simd, dispatch_wide, f32x4, f32x8, f64x8, is_wide, level, prelude::*};
 
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use width::{Double, Lanes, WideLanes, Width};
 
 /// Number of paths in a vector.
 pub(crate) const LANES: usize = 8;
@@ -67,49 +70,44 @@ pub(crate) fn set_row<const N: usize, T: Copy>(columns: &mut Columns<N, T>, lane
 
 /// Vectors from their columns.
 #[inline(always)]
-pub(crate) fn load<S: Simd>(simd: S, [x, y, z]: &Columns<3>) -> Vector<f32x8<S>> {
-    Vector { x: f32x8::load_array(simd, *x), y: f32x8::load_array(simd, *y), z: f32x8::load_array(simd, *z) }
+pub(crate) fn load<W: Width>(width: W, [x, y, z]: &Columns<3>) -> Vector<W::Real> {
+    Vector { x: width.load_f32(x), y: width.load_f32(y), z: width.load_f32(z) }
 }
 
 /// Vectors of double precision from their columns.
 #[inline(always)]
-pub(crate) fn load_f64<S: Simd>(simd: S, [x, y, z]: &Columns<3, f64>) -> Vector<f64x8<S>> {
-    Vector { x: f64x8::load_array(simd, *x), y: f64x8::load_array(simd, *y), z: f64x8::load_array(simd, *z) }
+pub(crate) fn load_f64<W: Width>(width: W, [x, y, z]: &Columns<3, f64>) -> Vector<Double<W>> {
+    Vector { x: width.load_f64(x), y: width.load_f64(y), z: width.load_f64(z) }
 }
 
 /// Spectra from their columns.
 #[inline(always)]
-pub(crate) fn load_spectrum<S: Simd>(simd: S, [a, b, c, d]: &Columns<4>) -> Spectrum<f32x8<S>> {
-    Spectrum([
-        f32x8::load_array(simd, *a),
-        f32x8::load_array(simd, *b),
-        f32x8::load_array(simd, *c),
-        f32x8::load_array(simd, *d),
-    ])
+pub(crate) fn load_spectrum<W: Width>(width: W, [a, b, c, d]: &Columns<4>) -> Spectrum<W::Real> {
+    Spectrum([width.load_f32(a), width.load_f32(b), width.load_f32(c), width.load_f32(d)])
 }
 
 /// The same spectrum in each lane.
 #[inline(always)]
-pub(crate) fn splat_spectrum<S: Simd>(simd: S, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<f32x8<S>> {
-    Spectrum([f32x8::splat(simd, a), f32x8::splat(simd, b), f32x8::splat(simd, c), f32x8::splat(simd, d)])
+pub(crate) fn splat_spectrum<W: Width>(width: W, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<W::Real> {
+    Spectrum([width.splat(a), width.splat(b), width.splat(c), width.splat(d)])
 }
 
 /// The columns of vectors.
 #[inline(always)]
-pub(crate) fn store<S: Simd>(v: Vector<f32x8<S>>) -> Columns<3> {
-    [v.x.into(), v.y.into(), v.z.into()]
+pub(crate) fn store<R: Lanes>(v: Vector<R>) -> Columns<3> {
+    [v.x.column(), v.y.column(), v.z.column()]
 }
 
 /// The columns of vectors of double precision.
 #[inline(always)]
-pub(crate) fn store_f64<S: Simd>(v: Vector<f64x8<S>>) -> Columns<3, f64> {
-    [v.x.into(), v.y.into(), v.z.into()]
+pub(crate) fn store_f64<F: WideLanes>(v: Vector<F>) -> Columns<3, f64> {
+    [v.x.column(), v.y.column(), v.z.column()]
 }
 
 /// The columns of spectra.
 #[inline(always)]
-pub(crate) fn store_spectrum<S: Simd>(s: Spectrum<f32x8<S>>) -> Columns<4> {
-    [s.0[0].into(), s.0[1].into(), s.0[2].into(), s.0[3].into()]
+pub(crate) fn store_spectrum<R: Lanes>(s: Spectrum<R>) -> Columns<4> {
+    [s.0[0].column(), s.0[1].column(), s.0[2].column(), s.0[3].column()]
 }
 
 /// The answers of the lanes: that of lane i in bit i.

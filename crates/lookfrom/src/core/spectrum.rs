@@ -30,11 +30,6 @@ impl Spectrum {
         [r, g, b]
     }
 
-    /// The share that this is of a whole, 0 … 1 by lane; 0 of nothing.
-    pub fn share_of(self, whole: Self) -> Self {
-        self.zip(whole, |part, whole| if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { 0.0 })
-    }
-
     /// The only lane that is not 0; `None` where there are several or none.
     pub fn only_lane(self) -> Option<usize> {
         let mut lanes = (0..4).filter(|&lane| self.0[lane] != 0.0);
@@ -75,6 +70,19 @@ impl<R: Real> Spectrum<R> {
     #[inline(always)]
     pub(crate) fn splat(value: R) -> Self {
         Self([value; 4])
+    }
+
+    /// The share that this is of a whole, 0 … 1 by lane; 0 of nothing.
+    #[inline(always)]
+    pub fn share_of(self, whole: Self) -> Self {
+        self.zip(
+            whole,
+            #[inline(always)]
+            |part, whole| {
+                let zero = whole.like(0.0);
+                R::select(whole.gt(zero), Float::clamp(part / whole, 0.0, 1.0), zero)
+            },
+        )
     }
 
     /// The largest lane.

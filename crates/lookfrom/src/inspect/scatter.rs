@@ -9,10 +9,8 @@ use super::microfacets::MicrofacetReport;
 use super::report::{Amount, Factor, ShadowReport};
 use crate::core::spectrum::Spectrum;
 use crate::light::derivation::Derivation;
-use crate::shading::bsdf::Bsdf;
-use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::{Description, Parameter};
 use crate::shading::material::Shading;
 
 /// A BSDF at a point.
@@ -155,95 +153,12 @@ pub struct BounceReport {
 
 /// The report on a BSDF; `factor` keeps the lanes that are in use.
 pub(super) fn scattering(shading: &Shading, factor: impl Fn(Spectrum) -> Factor) -> ScatteringReport {
-    let alpha = |roughness: TrowbridgeReitz| ("alpha", vec![roughness.alpha_x, roughness.alpha_y]);
-    let metal =
-        |bsdf: &Conductor| vec![("eta", factor(bsdf.eta)), ("k", factor(bsdf.k)), alpha(bsdf.roughness)];
-    let coat = |eta: f32, roughness: TrowbridgeReitz, thickness: f32, albedo: Spectrum| {
-        vec![
-            ("coat eta", vec![eta]),
-            ("coat alpha", vec![roughness.alpha_x, roughness.alpha_y]),
-            ("coat thickness", vec![thickness]),
-            ("coat albedo", factor(albedo)),
-        ]
+    let Description { kind, does, numbers } = shading.bsdf.description();
+    let number = |(name, parameter)| match parameter {
+        Parameter::Numbers(numbers) => (name, numbers),
+        Parameter::Spectrum(spectrum) => (name, factor(spectrum)),
     };
-    let (kind, does, numbers) = match &shading.bsdf {
-        Bsdf::Diffuse(bsdf) => (
-            "diffuse",
-            "Lambertian: equally bright from all directions, f = reflectance / π",
-            vec![("reflectance", factor(bsdf.reflectance))],
-        ),
-        Bsdf::DiffuseTransmission(bsdf) => (
-            "diffuse transmission",
-            "Lambertian on both sides, like paper: f = reflectance / π or transmittance / π",
-            vec![("reflectance", factor(bsdf.reflectance)), ("transmittance", factor(bsdf.transmittance))],
-        ),
-        Bsdf::Conductor(bsdf) if bsdf.roughness.is_smooth() => {
-            ("conductor", "smooth metal: specular reflection, tinted by Fresnel's equations", metal(bsdf))
-        }
-        Bsdf::Conductor(bsdf) => ("conductor", "rough metal: microfacets of roughness alpha", metal(bsdf)),
-        Bsdf::Dielectric(bsdf) => (
-            "dielectric",
-            match bsdf.roughness.is_smooth() {
-                true => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
-                false => "rough glass: microfacets of roughness alpha that reflect and refract",
-            },
-            vec![("eta", vec![bsdf.eta]), alpha(bsdf.roughness)],
-        ),
-        Bsdf::ThinDielectric(bsdf) => (
-            "thin dielectric",
-            "a thin pane: reflects light, or transmits it straight on",
-            vec![("eta", vec![bsdf.eta])],
-        ),
-        Bsdf::CoatedDiffuse(bsdf) => (
-            "coated diffuse",
-            "diffuse under a clear coat: a random walk between the two layers",
-            [
-                coat(bsdf.coat.eta, bsdf.coat.roughness, bsdf.thickness, bsdf.albedo),
-                vec![("reflectance", factor(bsdf.base.reflectance))],
-            ]
-            .concat(),
-        ),
-        Bsdf::CoatedConductor(bsdf) => (
-            "coated conductor",
-            "metal under a clear coat: a random walk between the two layers",
-            [coat(bsdf.coat.eta, bsdf.coat.roughness, bsdf.thickness, bsdf.albedo), metal(&bsdf.base)]
-                .concat(),
-        ),
-        Bsdf::Whitted(bsdf) => (
-            "whitted",
-            "the coefficients of Whitted's formula as a BSDF",
-            vec![
-                ("k_d", factor(bsdf.diffuse)),
-                ("k_s", factor(bsdf.specular)),
-                ("n", vec![bsdf.shininess]),
-                ("k_r", factor(bsdf.mirror)),
-                ("k_t", factor(bsdf.transmission)),
-                ("ior", vec![bsdf.ior]),
-            ],
-        ),
-        Bsdf::Principled(bsdf) => {
-            let p = bsdf.parameters();
-            (
-                "principled",
-                "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
-                vec![
-                    ("base color", factor(p.base_color)),
-                    ("metallic", vec![p.metallic]),
-                    alpha(p.roughness),
-                    ("eta", vec![p.eta]),
-                    ("f0", factor(p.f0)),
-                    ("specular", vec![p.f90]),
-                    ("transmission", vec![p.transmission]),
-                    ("diffuse transmission", vec![p.diffuse_transmission]),
-                    ("clearcoat", vec![p.clearcoat]),
-                    ("clearcoat alpha", vec![p.clearcoat_roughness.alpha_x]),
-                    ("sheen color", factor(p.sheen_color)),
-                    ("sheen roughness", vec![p.sheen_roughness]),
-                    ("iridescence", vec![p.iridescence]),
-                ],
-            )
-        }
-    };
+    let numbers = numbers.into_iter().map(number).collect();
     let lobes = shading.bsdf.lobes();
     let letters = match [Lobes::DIFFUSE, Lobes::GLOSSY].map(|lobe| lobes.intersects(lobe)) {
         [true, true] => "DG",

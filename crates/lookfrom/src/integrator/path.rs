@@ -6,22 +6,18 @@
 mod catcher;
 mod lanes;
 
-use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use glam::Vec3;
+use lookfrom_bvh::{Hit, OriginPrimitive};
 
-use lanes::{HitBatch, Waiting};
+use lanes::{HitBatch, Scattered, Waiting};
 
 use crate::core::lanes::are_shaded_together;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{
-    BatchStreams, Bounce, Event, Integrator, Path, Probe, SampleStream, Shadow, StepOutput, Term,
-};
-use crate::light::{ChosenLight, IncompletePdf, LightSampleContext};
-use crate::shading::bsdf::BsdfSample;
+use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput, Term};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::{Scattering, Shading, ShadingContext};
+use crate::shading::material::{Shading, ShadingContext};
 use crate::world::World;
 
 /// Dimensions of the random numbers at a surface.
@@ -123,24 +119,21 @@ impl Integrator for PathTracer {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        let in_lanes = self.light_sampling == LightSampling::MultipleImportance
-            && output.light_paths.is_none()
-            && are_shaded_together();
+        let in_lanes = self.light_sampling != LightSampling::None && are_shaded_together();
         let mut waiting = Waiting::default();
         let batch = HitBatch { world, paths, hits, streams };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
             let is_plain = batch.is_plain(index);
-            if !in_lanes {
-                self.step(world, &streams.of(path), path, hit, output);
-            } else if is_plain && !hit.is_hit() {
+            if in_lanes && is_plain && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
-            } else if is_plain && let Some(class) = batch.mesh_class(self, index) {
-                waiting.push_hit(self, &batch, (class, index), output);
-            } else if let Some(vertex) = self.arrive(world, &streams.of(path), path, hit, output)
-                && let Some(vertex) = waiting.push_vertex(self, world, vertex, output)
+            } else if in_lanes
+                && is_plain
+                && let Some(class) = batch.mesh_class(self, index)
             {
-                self.scatter_vertex(world, &vertex, output);
+                waiting.push_hit(self, &batch, (class, index), output);
+            } else if let Some(vertex) = self.arrive(world, &streams.of(path), path, hit, output) {
+                waiting.push_vertex(self, world, vertex, in_lanes, output);
             }
         }
         waiting.flush(self, &batch, output);
@@ -155,7 +148,8 @@ impl Integrator for PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         if let Some(vertex) = self.arrive(world, stream, path, hit, output) {
-            self.scatter_vertex(world, &vertex, output);
+            let mut scattered = Scattered::NONE;
+            self.scatter_vertex(world, &vertex, &mut scattered, output);
         }
     }
 }
@@ -251,76 +245,6 @@ impl PathTracer {
         Some(Vertex { path, surface, shading, stream: *stream, is_catcher })
     }
 
-    /// Scatters one path, by any BSDF.
-    fn scatter_vertex<P: Probe>(&self, world: &World, vertex: &Vertex, output: &mut StepOutput<'_, P>) {
-        vertex.shading.scattering(vertex.surface.wo, |scattering| {
-            self.scatter(world, vertex, scattering, output);
-        });
-    }
-
-    /// Samples one light, and continues the path in one direction.
-    fn scatter<P: Probe>(
-        &self,
-        world: &World,
-        vertex: &Vertex,
-        scattering: &Scattering<'_>,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let Vertex { path, surface, shading, stream, is_catcher } = vertex;
-
-        // Sample one light.
-        if self.light_sampling != LightSampling::None && shading.bsdf.lobes().is_non_specular() {
-            let u = stream.two_with_pixel(dimension::LIGHT);
-            self.sample_light(world, vertex, scattering, u, output);
-        }
-
-        // Go on in one direction.
-        let [which_lobe, _] = stream.two(dimension::LOBE);
-        let u = stream.two_with_pixel(dimension::DIRECTION);
-        let Some(sample) = self.direction(scattering, which_lobe, u) else { return };
-        let wi = sample.wi;
-        let cos = shading.cos(wi).abs();
-        let beta = path.beta * sample.f * (cos / sample.pdf);
-        let is_sharp = sample.lobe.is_specular();
-        let pdf = match (is_sharp, sample.pdf_is_proportional) {
-            (true, _) => f32::INFINITY,
-            (false, true) => scattering.pdf(wi),
-            (false, false) => sample.pdf,
-        };
-        let transmitted = sample.lobe.is_transmission();
-        let eta_scale = path.previous.eta_scale * if transmitted { sample.eta * sample.eta } else { 1.0 };
-
-        // End paths of small throughput by Russian roulette.
-        let depth = path.depth + 1;
-        let (survival, survives) = self.roulette(stream, beta, eta_scale, depth);
-        output.probe.notice(|| Event::Bounced {
-            address: path.address,
-            bounce: Box::new(Bounce { wi, cos, sample, beta, survival, survives }),
-        });
-        if !survives || beta.is_black() {
-            return;
-        }
-        let interior = path.interior.leaving(&world.materials, surface, wi, transmitted);
-        output.queues.paths.push(Path {
-            ray: Ray::new(surface.origin(wi), wi.to_array()),
-            beta: beta / survival,
-            slot: path.slot,
-            depth,
-            address: path.address + 1,
-            interior,
-            previous: PreviousVertex {
-                pdf,
-                origin_primitive: surface.origin_primitive,
-                point: DVec3::from_array(surface.point.position).as_vec3(),
-                n: shading.n(),
-                eta_scale,
-                blurred: path.previous.blurred || !is_sharp,
-                is_catcher: *is_catcher,
-            },
-            light_path: output.scattered(path, sample.lobe),
-        });
-    }
-
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
@@ -381,83 +305,5 @@ impl PathTracer {
             LightSampling::NextEventEstimation if light_pdf() > 0.0 => 0.0,
             LightSampling::NextEventEstimation | LightSampling::None => 1.0,
         }
-    }
-
-    fn sample_light<P: Probe>(
-        &self,
-        world: &World,
-        vertex: &Vertex,
-        scattering: &Scattering<'_>,
-        [which, v]: [f32; 2],
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let Vertex { path, surface, is_catcher, .. } = vertex;
-        let from = LightSampleContext {
-            point: DVec3::from_array(surface.point.position),
-            n: scattering.shading.n(),
-        };
-        let Some(chosen) = world.light_choice.sample(&from, which) else { return };
-        let ChosenLight { light: index, probability, rest } = chosen;
-        let light = &world.lights[index as usize];
-        let sample =
-            light.sample(&world.textures, &from, [rest, v], &output.mode(path), IncompletePdf::Allowed);
-        let in_vain =
-            |sample| Event::LightSampleFailed { address: path.address, light: index, probability, sample };
-        let Some(sample) = sample else {
-            output.probe.notice(|| in_vain(None));
-            return;
-        };
-        let (f, bsdf_pdf) = scattering.f_and_pdf(sample.wi);
-        let f = f * scattering.shading.cos(sample.wi).abs();
-        if f.is_black() {
-            output.probe.notice(|| in_vain(Some(sample)));
-            return;
-        }
-        let light_pdf = probability * sample.pdf;
-        let (weight, bsdf_pdf) = match (self.light_sampling, light.is_delta()) {
-            (LightSampling::MultipleImportance, false) => (power_heuristic(light_pdf, bsdf_pdf), bsdf_pdf),
-            _ => (1.0, 0.0),
-        };
-        let contribution = path.beta * f * sample.li * (weight / light_pdf);
-        output.probe.notice(|| Event::LightSampled {
-            address: path.address,
-            light: index,
-            sample,
-            probability,
-            bsdf_pdf,
-            weight,
-            f,
-        });
-        if !contribution.is_black() {
-            let crosses = surface.crosses(sample.wi);
-            let last_scattering =
-                output.last_scattering(path, crosses, || scattering.diffuse_share(sample.wi));
-            let shadow = Shadow::new(world, path, surface, &sample, index, contribution);
-            output.queues.shadows.push(Shadow { last_scattering, ..shadow });
-            if *is_catcher {
-                self.expect_light(light, path, contribution, output);
-            }
-        }
-    }
-
-    fn direction(&self, scattering: &Scattering<'_>, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
-        if self.light_sampling == LightSampling::None {
-            return Some(scattering.uniform(u));
-        }
-        let sample = scattering.sample(lobe, u)?;
-        (sample.pdf > 0.0).then_some(sample)
-    }
-
-    /// The survival probability of a path after its `depth`-th bounce, and whether it survives.
-    fn roulette(&self, stream: &SampleStream, beta: Spectrum, eta_scale: f32, depth: u32) -> (f32, bool) {
-        let survival = beta.max_lane() * eta_scale * SURVIVAL;
-        if self.light_sampling != LightSampling::MultipleImportance
-            || depth <= SAFE_BOUNCES
-            || survival >= 1.0
-        {
-            return (1.0, true);
-        }
-        let [u, _] = stream.two(dimension::ROULETTE);
-        (survival, u < survival)
     }
 }

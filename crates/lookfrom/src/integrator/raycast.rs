@@ -2,9 +2,8 @@
 
 use lookfrom_bvh::Hit;
 
-use crate::integrator::direct::{self, local_light};
 use crate::integrator::{
-    BatchStreams, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
+    BatchStreams, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, whitted,
 };
 use crate::world::World;
 
@@ -32,7 +31,7 @@ impl Integrator for Raycast {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        direct::step_all(self, world, streams, paths, hits, output, |_, _, _| {});
+        whitted::step_all(None, world, streams, paths, hits, output);
     }
 
     fn step<P: Probe>(
@@ -43,16 +42,6 @@ impl Integrator for Raycast {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        let path = &output.absorbed(world, path, hit);
-        if !hit.is_hit() {
-            output.add_surroundings(world, path);
-            return;
-        }
-        let surface = world.surface(&path.ray, hit);
-        if path.goes_through(world, &surface, stream.presence(world, &surface)) {
-            output.queues.paths.push(path.passed(&surface));
-            return;
-        }
-        local_light(world, stream, path, &surface, output);
+        whitted::step(None, world, stream, path, hit, &mut whitted::Steps::default(), output);
     }
 }

@@ -1,8 +1,9 @@
-//! The random numbers of the rays of a batch, and those of eight rays side by side.
+//! The random numbers of the rays of a batch, by path and at any width.
 
-use lookfrom_simd::{Simd, f32x8, mask32x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::Bits;
 
 use crate::core::hash;
+use crate::core::lanes::width::{Lanes, Width};
 use crate::core::lanes::{LANES, bitmask, by_lane};
 use crate::core::sampler::lanes::PixelSamplers;
 use crate::core::sampler::{SampleId, Sampler};
@@ -26,45 +27,44 @@ impl BatchStreams<'_> {
     }
 }
 
-/// [`SampleStream`] in lanes.
-pub(in crate::integrator) struct SampleStreams<S: Simd> {
-    samplers: PixelSamplers<S>,
-    sample: u32x8<S>,
+/// [`SampleStream`] at any width.
+pub(in crate::integrator) struct SampleStreams<R: Lanes> {
+    samplers: PixelSamplers<R>,
+    sample: R::Bits,
     /// Of the address, before the dimension.
-    mixed: u64x8<S>,
+    mixed: R::Bits64,
     /// The camera rays.
-    are_first: mask32x8<S>,
+    are_first: R::Mask,
 }
 
-impl<S: Simd> SampleStreams<S> {
+impl<R: Lanes> SampleStreams<R> {
     #[inline(always)]
-    pub(in crate::integrator) fn new(simd: S, streams: &[&SampleStream; LANES]) -> Self {
-        let address = u64x8::load_array(simd, by_lane!(lane => streams[lane].address));
+    pub(in crate::integrator) fn new(width: impl Width<Real = R>, streams: &[&SampleStream; LANES]) -> Self {
+        let address = width.load_u64(&by_lane!(lane => streams[lane].address));
+        let are_first = bitmask(&by_lane!(lane => streams[lane].address == Path::ROOT));
         Self {
-            samplers: PixelSamplers::new(simd, &by_lane!(lane => streams[lane].sampler)),
-            sample: u32x8::load_array(simd, by_lane!(lane => streams[lane].sample)),
-            mixed: hash::mix(address + hash::GOLDEN),
-            are_first: mask32x8::from_bitmask(
-                simd,
-                bitmask(&by_lane!(lane => streams[lane].address == Path::ROOT)).into(),
-            ),
+            samplers: PixelSamplers::new(width, &by_lane!(lane => streams[lane].sampler)),
+            sample: width.load_u32(&by_lane!(lane => streams[lane].sample)),
+            mixed: hash::mix(address.wrapping_add(address.like(hash::GOLDEN))),
+            are_first: width.mask(are_first),
         }
     }
 
     /// As [`SampleStream::two`].
     #[inline(always)]
-    pub(in crate::integrator) fn two(&self, dimension: u32) -> [f32x8<S>; 2] {
+    pub(in crate::integrator) fn two(&self, dimension: u32) -> [R; 2] {
         self.samplers.two(self.sample, self.hashed(dimension))
     }
 
     /// As [`SampleStream::two_with_pixel`].
     #[inline(always)]
-    pub(in crate::integrator) fn two_with_pixel(&self, dimension: u32) -> [f32x8<S>; 2] {
+    pub(in crate::integrator) fn two_with_pixel(&self, dimension: u32) -> [R; 2] {
         self.samplers.two_with_pixel(self.sample, self.hashed(dimension), self.are_first)
     }
 
     #[inline(always)]
-    fn hashed(&self, dimension: u32) -> u64x8<S> {
-        hash::mix(self.mixed ^ u64::from(dimension)) & u64::from(u32::MAX)
+    fn hashed(&self, dimension: u32) -> R::Bits64 {
+        let mixed = self.mixed;
+        hash::mix(mixed ^ mixed.like(u64::from(dimension))) & mixed.like(u64::from(u32::MAX))
     }
 }

@@ -8,12 +8,10 @@ mod lanes;
 mod passing;
 mod queue;
 
-use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
+use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Ray};
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
-use crate::light::{LightSample, Target};
-use crate::shading::interaction::SurfaceInteraction;
+use crate::integrator::{Event, Probe, Queues, StepOutput, Term};
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{Material, MaterialKind};
 use crate::world::World;
@@ -46,47 +44,6 @@ pub struct Shadow {
 impl Shadow {
     /// No number of [`Shadow::last_scattering`].
     pub const NO_SCATTERING: u32 = u32::MAX;
-
-    pub(super) fn new(
-        world: &World,
-        path: &Path,
-        surface: &SurfaceInteraction,
-        sample: &LightSample,
-        light: u32,
-        contribution: Spectrum,
-    ) -> Self {
-        let origin = surface.origin(sample.wi);
-        let ray = match sample.target {
-            Target::Infinity => Ray::new(origin, sample.wi.to_array()),
-            Target::Point(position) => toward(origin, position.to_array()),
-            Target::Surface(point, normal) => {
-                // The ray must end before the light's own surface although its direction is rounded: an error of at
-                // most 2⁻²⁴ of its length per component, here with a safety factor of two.
-                let length: f64 =
-                    (0..3).map(|k| (point.position[k] - f64::from(origin[k])).abs()).fold(0.0, f64::max);
-                let slack = length * f64::from(f32::EPSILON);
-                let guarded =
-                    Point { position: point.position, error: point.error.map(|error| error + slack) };
-                let back = sample.wi.to_array().map(|x| -f64::from(x));
-                toward(origin, guarded.leave(normal.to_array(), back).map(f64::from))
-            }
-        };
-        let Path { slot, address, interior, .. } = *path;
-        // A ray through the surface continues in the medium behind it.
-        let crosses = surface.crosses(sample.wi);
-        let interior = interior.leaving(&world.materials, surface, sample.wi, crosses);
-        let origin_primitive = surface.origin_primitive;
-        Self {
-            ray,
-            origin_primitive,
-            contribution,
-            slot,
-            address,
-            term: Term::Light(light),
-            interior,
-            last_scattering: Self::NO_SCATTERING,
-        }
-    }
 }
 
 /// The ray from `origin` to `target`, which is at t = 1.

@@ -1,7 +1,7 @@
 //! From surfaces in render space to AOVs in camera space, one by one or eight side by side.
 
 use glam::DVec3;
-use lookfrom_simd::{Float, Kernel, LaneMask, Real, Simd, dispatch, level};
+use lookfrom_simd::{Float, Kernel, LaneMask, Real, Simd, dispatch, f32x8, level};
 
 use super::Renderer;
 use crate::core::lanes::{LANES, load, load_f64, store};
@@ -93,7 +93,7 @@ impl Kernel for AovKernel<'_> {
                 albedo: eight.albedo,
                 ng,
                 ns,
-                position: store(space.position(load_f64(simd, &eight.position))),
+                position: store::<f32x8<S>>(space.position(load_f64(simd, &eight.position))),
                 uv: eight.uv,
                 hits: eight.lanes,
             };

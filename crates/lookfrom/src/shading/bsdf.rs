@@ -8,6 +8,7 @@
 //! Definitions and clamping follow pbrt-v4 (Pharr, Jakob & Humphreys 2023). glTF's material is in [`principled`].
 
 mod albedo;
+mod class;
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
@@ -17,8 +18,8 @@ pub mod henyey_greenstein;
 pub mod lanes;
 pub mod layered;
 pub mod lobes;
-mod local_scattering;
 pub mod microfacet;
+mod one;
 pub mod principled;
 pub mod whitted;
 
@@ -31,15 +32,15 @@ use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
-use lanes::{Kind, LaneBsdf, RowBsdf};
+use lanes::Kind;
 use layered::{CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
-use principled::Principled;
-use whitted::Whitted;
 
+pub use class::{Bsdf, BsdfClass, Description, Parameter, ScatteringFunction};
+pub(crate) use class::{Variant, bsdf_classes};
 pub use factors::MicrofacetFactors;
-pub use local_scattering::LocalScattering;
+pub(crate) use one::Uniform;
 
 /// The transported quantity: radiance on paths from the camera, importance on paths from lights (Veach 1997). Only
 /// refraction depends on it.
@@ -49,30 +50,6 @@ pub enum Mode {
     Radiance,
     /// Paths that start at lights.
     Importance,
-}
-
-/// A scattering function at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Bsdf {
-    /// Lambertian reflection.
-    Diffuse(Diffuse),
-    /// Lambertian reflection and transmission.
-    DiffuseTransmission(DiffuseTransmission),
-    /// Metal.
-    Conductor(Conductor),
-    /// The boundary of a dielectric.
-    Dielectric(Dielectric),
-    /// A thin dielectric sheet.
-    ThinDielectric(ThinDielectric),
-    /// Lambertian reflection under a dielectric coat.
-    CoatedDiffuse(Layered<Diffuse>),
-    /// A metal under a dielectric coat.
-    CoatedConductor(Layered<Conductor>),
-    /// Whitted's model.
-    Whitted(Whitted),
-    /// glTF's metallic-roughness material with its extensions.
-    Principled(Principled),
 }
 
 /// A direction sampled by [`Bsdf::sample`].
@@ -257,17 +234,7 @@ impl Bsdf {
     /// `wi`. Black for specular lobes and grazing directions.
     #[inline]
     pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        match self {
-            Self::Diffuse(bsdf) => bsdf.f(&wo.into(), wi.into()),
-            Self::DiffuseTransmission(bsdf) => bsdf.f(wo, wi),
-            Self::Conductor(bsdf) => bsdf.f(&wo.into(), wi.into()),
-            Self::Dielectric(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
-            Self::ThinDielectric(_) => Spectrum::BLACK,
-            Self::CoatedDiffuse(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
-            Self::CoatedConductor(bsdf) => bsdf.f(wo.into(), wi.into(), mode),
-            Self::Whitted(bsdf) => bsdf.f(wo, wi),
-            Self::Principled(bsdf) => bsdf.f(wo, wi, mode),
-        }
+        self.class().f(wo, wi, mode)
     }
 
     /// Density over solid angle with which [`Self::sample`] chooses `wi`, given the same `lobes`. Specular lobes
@@ -277,17 +244,7 @@ impl Bsdf {
         if !self.lobes().intersects(sides(lobes)) {
             return 0.0;
         }
-        match self {
-            Self::Diffuse(bsdf) => bsdf.pdf(&wo.into(), wi.into()),
-            Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi, lobes),
-            Self::Conductor(bsdf) => bsdf.pdf(&wo.into(), wi.into()),
-            Self::Dielectric(bsdf) => bsdf.pdf(wo.into(), wi.into(), lobes),
-            Self::ThinDielectric(_) => 0.0,
-            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo.into(), wi.into(), mode),
-            Self::CoatedConductor(bsdf) => bsdf.pdf(wo.into(), wi.into(), mode),
-            Self::Whitted(bsdf) => bsdf.pdf(wo, wi, lobes),
-            Self::Principled(bsdf) => bsdf.pdf(wo, wi, lobes),
-        }
+        self.class().pdf(wo, wi, mode, lobes)
     }
 
     /// Samples a direction with a density about proportional to `f |cos θ_i|`, by three numbers in [0, 1). `lobes`
@@ -298,54 +255,31 @@ impl Bsdf {
         if is_grazing(wo) || !self.lobes().intersects(sides(lobes)) {
             return None;
         }
-        match self {
-            Self::Diffuse(bsdf) => bsdf.sample(&wo.into(), 0.0, u).scalar(kind(bsdf)),
-            Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, uc, u, lobes),
-            Self::Conductor(bsdf) => bsdf.sample(&wo.into(), 0.0, u).scalar(kind(bsdf)),
-            Self::Dielectric(bsdf) => bsdf.sample(wo.into(), uc, u, mode, lobes).scalar(kind(bsdf)),
-            Self::ThinDielectric(bsdf) => bsdf.sample(wo, uc, lobes),
-            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo.into(), uc, u, mode).scalar(kind(bsdf)),
-            Self::CoatedConductor(bsdf) => bsdf.sample(wo.into(), uc, u, mode).scalar(kind(bsdf)),
-            Self::Whitted(bsdf) => bsdf.sample(wo, uc, u, lobes),
-            Self::Principled(bsdf) => bsdf.sample(wo, uc, u, mode, lobes),
-        }?
-        .if_useful()
+        self.class().sample(wo, uc, u, mode, lobes)?.if_useful()
     }
 
     /// The set of lobes that it has.
     #[inline]
     pub fn lobes(&self) -> Lobes {
-        match self {
-            Self::Diffuse(bsdf) => bsdf.lobes(),
-            Self::DiffuseTransmission(bsdf) => bsdf.lobes(),
-            Self::Conductor(bsdf) => bsdf.lobes(),
-            Self::Dielectric(bsdf) => bsdf.lobes(),
-            Self::ThinDielectric(bsdf) => bsdf.lobes(),
-            Self::CoatedDiffuse(bsdf) => bsdf.lobes(bsdf.base.lobes()),
-            Self::CoatedConductor(bsdf) => bsdf.lobes(bsdf.base.lobes()),
-            Self::Whitted(bsdf) => bsdf.lobes(),
-            Self::Principled(bsdf) => bsdf.lobes(),
-        }
+        self.class().lobes()
     }
 
     /// Increases the roughness of nearly specular lobes, for the later bounces of a path: less noise for a
     /// little blur.
     pub fn regularize(&mut self) {
-        match self {
-            Self::Conductor(bsdf) => bsdf.regularize(),
-            Self::Dielectric(bsdf) => bsdf.regularize(),
-            Self::CoatedDiffuse(bsdf) => bsdf.regularize(),
-            Self::CoatedConductor(bsdf) => bsdf.regularize(),
-            Self::Principled(bsdf) => bsdf.regularize(),
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::ThinDielectric(_) | Self::Whitted(_) => {}
-        }
+        self.class_mut().regularize();
     }
-}
 
-/// The properties of a BSDF's class.
-#[inline]
-fn kind<B: LaneBsdf<f32>>(_: &B) -> Kind {
-    B::KIND
+    /// The factors for light from `wi` to `wo`. `is_specular` asks for those of a direction that was sampled from a
+    /// smooth boundary, which has no value for any other.
+    pub fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        self.class().factors(wo, wi, is_specular)
+    }
+
+    /// Its name, what it does, and its numbers.
+    pub fn description(&self) -> Description {
+        self.class().description()
+    }
 }
 
 /// The sides (reflection, transmission) in a set.

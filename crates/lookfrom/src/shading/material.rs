@@ -21,14 +21,13 @@ use lookfrom_scene::scene::CurveId;
 
 use crate::core::points::Lift;
 use crate::core::spectrum::Spectrum;
-use crate::core::warp;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
-use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
-use crate::shading::bsdf::{self, Bsdf, BsdfSample, MicrofacetFactors, Mode, fresnel};
+use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{
@@ -118,6 +117,12 @@ impl Shading {
         }
     }
 
+    /// A BSDF at a surface in the frame of these axes, the third of which is the shading normal.
+    pub(crate) fn in_frame(surface: &SurfaceInteraction, axes: [[f32; 3]; 3], bsdf: Bsdf) -> Self {
+        let [s, t, n] = axes.map(Vec3::from);
+        Self { bsdf, frame: Frame { s, t, n }, ng: surface.ng.as_vec3(), lift: surface.lift() }
+    }
+
     /// The shading normal to the outside, unit length.
     pub fn n(&self) -> Vec3 {
         self.frame.n
@@ -150,58 +155,14 @@ impl Shading {
         all
     }
 
-    /// Calls `ask` with the BSDF for a fixed outgoing direction of unit length in render space.
-    #[inline]
-    pub fn scattering<R>(&self, wo: Vec3, ask: impl FnOnce(&Scattering<'_>) -> R) -> R {
-        self.bsdf.scattering(self.frame.local(wo), Mode::Radiance, Lobes::ALL, |bsdf| {
-            ask(&Scattering { shading: self, wo, bsdf })
-        })
-    }
-}
-
-/// The BSDF of a surface for a fixed outgoing direction ω_o. All directions have unit length and are in render
-/// space.
-pub struct Scattering<'a> {
-    /// The surface's BSDF and frame.
-    pub shading: &'a Shading,
-    wo: Vec3,
-    bsdf: &'a bsdf::LocalScattering<'a>,
-}
-
-impl Scattering<'_> {
-    /// The BSDF for light from `wi`, without a cosine, and where it is not black the density over solid angle with
-    /// which [`Scattering::sample`] chooses `wi`.
-    pub fn f_and_pdf(&self, wi: Vec3) -> (Spectrum, f32) {
-        if !self.shading.agrees(self.wo, wi) {
-            return (Spectrum::BLACK, 0.0);
+    /// The BSDF for a fixed outgoing direction `wo` as a function of the incident one, without a cosine. Both have unit
+    /// length and are in render space.
+    pub fn f_toward(&self, wo: Vec3) -> impl Fn(Vec3) -> Spectrum {
+        let view = self.bsdf.view(self.frame.local(wo).into());
+        move |wi| match self.agrees(wo, wi) {
+            true => LaneBsdf::f(&self.bsdf, &view, self.frame.local(wi).into()),
+            false => Spectrum::BLACK,
         }
-        self.bsdf.f_and_pdf(self.shading.frame.local(wi))
-    }
-
-    /// The density over solid angle with which [`Scattering::sample`] chooses `wi`.
-    pub fn pdf(&self, wi: Vec3) -> f32 {
-        self.bsdf.pdf(self.shading.frame.local(wi))
-    }
-
-    /// The share of diffuse lobes in the BSDF for light from `wi`, 0 … 1 by lane; the others are glossy.
-    pub fn diffuse_share(&self, wi: Vec3) -> Spectrum {
-        let Shading { bsdf, frame, .. } = self.shading;
-        bsdf.diffuse_share(frame.local(self.wo), frame.local(wi))
-    }
-
-    /// A direction by importance sampling.
-    pub fn sample(&self, lobe: f32, u: [f32; 2]) -> Option<BsdfSample> {
-        let sample = self.bsdf.sample(lobe, u)?;
-        let wi = self.shading.frame.render(sample.wi).normalize();
-        self.shading.agrees(self.wo, wi).then_some(BsdfSample { wi, ..sample })
-    }
-
-    /// A direction uniform over the sphere, whatever the material: to verify importance sampling.
-    pub fn uniform(&self, u: [f32; 2]) -> BsdfSample {
-        let wi = warp::uniform_sphere(u);
-        let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
-        let (f, _) = self.f_and_pdf(wi);
-        BsdfSample { wi, f, pdf: warp::UNIFORM_SPHERE_PDF, lobe, eta: 1.0, pdf_is_proportional: false }
     }
 }
 

@@ -7,7 +7,7 @@ use lookfrom_bvh::{Hit, NONE};
 use super::World;
 use crate::core::points::StoredPlacement;
 use crate::primitive::{MaterialBinding, Mesh, Primitives};
-use crate::shading::bsdf::lanes::BsdfClass;
+use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{Material, MaterialKind};
 
 /// The class of all hits on a geometry, by which integrator steps are sorted.

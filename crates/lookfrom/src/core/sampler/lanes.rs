@@ -1,46 +1,43 @@
-//! Random numbers of eight samples at once, one in each lane.
+//! Random numbers of as many samples as numbers have lanes.
 
 use lookfrom_scene::settings::Sampler as Kind;
-use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, mask32x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Bits, Kernel, Real, Simd, dispatch, f32x8, level, prelude::*, u32x8, u64x8};
 
 use super::{PixelSampler, Sampler, two, two_with_pixel};
 use crate::core::hash::mix;
+use crate::core::lanes::width::Width;
 use crate::core::lanes::{LANES, by_lane};
 
-/// The random numbers of eight pixels, which may be equal.
+/// The random numbers of a pixel in each lane; several may have the same.
 #[derive(Clone, Copy)]
-pub(crate) struct PixelSamplers<S: Simd> {
+pub(crate) struct PixelSamplers<R: Real> {
     kind: Kind,
-    keys: u64x8<S>,
+    keys: R::Bits64,
 }
 
-impl<S: Simd> PixelSamplers<S> {
-    /// Those of one render.
+impl<R: Real> PixelSamplers<R> {
+    /// From the samplers of one render.
     #[inline(always)]
-    pub(crate) fn new(simd: S, samplers: &[PixelSampler; LANES]) -> Self {
-        Self { kind: samplers[0].kind, keys: u64x8::load_array(simd, by_lane!(lane => samplers[lane].key)) }
+    pub(crate) fn new(width: impl Width<Real = R>, samplers: &[PixelSampler; LANES]) -> Self {
+        let keys = width.load_u64(&by_lane!(lane => samplers[lane].key));
+        Self { kind: samplers[0].kind, keys }
     }
 
-    /// Those of pixels, the columns in the lower halves and the rows in the upper ones.
+    /// Of pixels, their columns in the lower halves and their rows in the upper ones.
     #[inline(always)]
-    pub(crate) fn of_pixels(sampler: &Sampler, pixels: u64x8<S>) -> Self {
-        Self { kind: sampler.kind, keys: mix(pixels ^ sampler.key) }
+    pub(crate) fn of_pixels(sampler: &Sampler, pixels: R::Bits64) -> Self {
+        Self { kind: sampler.kind, keys: mix(pixels ^ pixels.like(sampler.key)) }
     }
 
     /// As [`PixelSampler::two`], for a sample and a dimension (below 2³²) in each lane.
     #[inline(always)]
-    pub(crate) fn two(&self, sample: u32x8<S>, dimension: u64x8<S>) -> [f32x8<S>; 2] {
+    pub(crate) fn two(&self, sample: R::Bits, dimension: R::Bits64) -> [R; 2] {
         two(self.kind, self.keys, sample, dimension)
     }
 
     /// As [`PixelSampler::two_with_pixel`] in the lanes of a mask, as [`PixelSampler::two`] in the others.
     #[inline(always)]
-    pub(crate) fn two_with_pixel(
-        &self,
-        sample: u32x8<S>,
-        dimension: u64x8<S>,
-        mask: mask32x8<S>,
-    ) -> [f32x8<S>; 2] {
+    pub(crate) fn two_with_pixel(&self, sample: R::Bits, dimension: R::Bits64, mask: R::Mask) -> [R; 2] {
         two_with_pixel(self.kind, self.keys, sample, dimension, mask)
     }
 }
@@ -80,7 +77,7 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
             let addresses = by_lane!(lane => address((first + lane).min(count - 1)));
             let pixels =
                 by_lane!(lane => u64::from(addresses[lane].0[0]) | u64::from(addresses[lane].0[1]) << 32);
-            let samplers = PixelSamplers::of_pixels(sampler, u64x8::load_array(simd, pixels));
+            let samplers = PixelSamplers::<f32x8<S>>::of_pixels(sampler, u64x8::load_array(simd, pixels));
             let sample = u32x8::load_array(simd, by_lane!(lane => addresses[lane].1));
             let [a, b] = samplers.two(sample, dimension);
             let (a, b): ([f32; LANES], [f32; LANES]) = (a.into(), b.into());
@@ -93,6 +90,8 @@ impl<F: Fn(usize) -> ([u32; 2], u32)> Kernel for Each<'_, F> {
 
 #[cfg(test)]
 mod tests {
+    use lookfrom_simd::mask32x8;
+
     use super::*;
     use crate::core::hash;
 

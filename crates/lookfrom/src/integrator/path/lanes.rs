@@ -1,7 +1,7 @@
 //! Path tracing eight paths at a time: paths wait until eight of them have met BSDFs of one class, and are then scattered
-//! side by side.
+//! side by side. Others are scattered alone, by the same code at width one.
 //!
-//! `kernel` computes in lanes (light samples, BSDF, densities, origins of rays); here its results become rays and events,
+//! `kernel` computes the numbers (light samples, BSDF, densities, origins of rays); here its results become rays and events,
 //! path by path. Which paths are together does not affect a result: lanes do not depend on one another.
 //!
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
@@ -17,23 +17,24 @@ use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
 use lookfrom_simd::LaneMask;
 
-use kernel::{LanePaths, ScatterKernel, Scattered};
+pub(super) use kernel::Scattered;
+use kernel::{ScatterKernel, Task};
 pub(super) use mesh_hits::HitBatch;
 use mesh_hits::MeshPoints;
 use surfaces::SurfaceColumns;
 
-use super::{PathTracer, PreviousVertex, Vertex};
+use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Bounce, Event, Path, Probe, Shadow, StepOutput, Term};
-use crate::shading::bsdf::BsdfSample;
+use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
-use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
+use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::{BsdfClass, BsdfSample, Uniform, bsdf_classes};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
@@ -62,15 +63,26 @@ impl Default for Memory {
 
 /// Calls a generic method of a path tracer with the BSDF of a class.
 macro_rules! with_class {
-    ($class:expr, $tracer:ident.$method:ident($($argument:expr),*)) => {
+    ($class:expr, $tracer:ident.$method:ident $arguments:tt) => {
+        bsdf_classes!(call_with_class($class, $tracer, $method, $arguments))
+    };
+}
+
+macro_rules! call_with_class {
+    (
+        ($class:expr, $tracer:ident, $method:ident, $arguments:tt)
+        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
+        one_by_one { $($rest:tt)* }
+    ) => {
         match $class {
-            BsdfClass::Diffuse => $tracer.$method::<Diffuse, P>($($argument),*),
-            BsdfClass::Conductor => $tracer.$method::<Conductor, P>($($argument),*),
-            BsdfClass::Dielectric => $tracer.$method::<Dielectric, P>($($argument),*),
-            BsdfClass::CoatedDiffuse => $tracer.$method::<Layered<Diffuse>, P>($($argument),*),
-            BsdfClass::CoatedConductor => $tracer.$method::<Layered<Conductor>, P>($($argument),*),
-            BsdfClass::Principled => $tracer.$method::<Principled, P>($($argument),*),
+            $(BsdfClass::$lane => call!($tracer, $method, $type, $arguments),)*
         }
+    };
+}
+
+macro_rules! call {
+    ($tracer:ident, $method:ident, $type:ty, ($($argument:expr),*)) => {
+        $tracer.$method::<$type, P>($($argument),*)
     };
 }
 
@@ -106,24 +118,26 @@ impl Waiting {
         }
     }
 
-    /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. Gives the vertex back where its BSDF
-    /// has no class.
+    /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. A vertex whose BSDF has no class is
+    /// scattered alone, as all are without lanes.
     #[inline]
     pub(super) fn push_vertex<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         world: &World,
         vertex: Vertex,
+        in_lanes: bool,
         output: &mut StepOutput<'_, P>,
-    ) -> Option<Vertex> {
-        let Some(class) = BsdfClass::of(&vertex.shading.bsdf) else { return Some(vertex) };
+    ) {
+        let scattered = &mut self.memory.scattered;
+        let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| in_lanes) else {
+            return tracer.scatter_vertex(world, &vertex, scattered, output);
+        };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
-            let scattered = &mut self.memory.scattered;
             with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
             vertices.clear();
         }
-        None
     }
 
     /// Scatters the paths that are left.
@@ -134,8 +148,7 @@ impl Waiting {
         output: &mut StepOutput<'_, P>,
     ) {
         tracer.escape(batch, &self.escaped, output);
-        for (class, (hits, vertices)) in
-            BsdfClass::ALL.into_iter().zip(self.mesh_hits.iter().zip(&self.vertices))
+        for (class, (hits, vertices)) in BsdfClass::ALL.iter().zip(self.mesh_hits.iter().zip(&self.vertices))
         {
             with_class!(class, tracer.scatter_mesh_hits(batch, hits, &mut self.memory, output));
             let (world, scattered) = (batch.world, &mut self.memory.scattered);
@@ -162,6 +175,15 @@ struct Item<'a> {
     /// The surface, where it may change what the path travels in.
     surface: Option<&'a SurfaceInteraction>,
     is_catcher: bool,
+}
+
+impl<'a> From<&'a Vertex> for Item<'a> {
+    #[inline]
+    fn from(vertex: &'a Vertex) -> Self {
+        let Vertex { path, surface, is_catcher, .. } = vertex;
+        let origin_primitive = surface.origin_primitive;
+        Self { path, origin_primitive, surface: Some(surface), is_catcher: *is_catcher }
+    }
 }
 
 impl Item<'_> {
@@ -191,19 +213,50 @@ impl PathTracer {
         let Some(last_bsdf) = B::of(&last.shading.bsdf) else { return };
         let bsdfs = by_lane!(lane => B::of(&vertices[lane].shading.bsdf).unwrap_or(last_bsdf));
         let surfaces = SurfaceColumns::of_vertices(&vertices);
-        let paths = LanePaths {
-            paths: by_lane!(lane => &vertices[lane].path),
-            streams: by_lane!(lane => &vertices[lane].stream),
-            modes: by_lane!(lane => &output.queues.modes[vertices[lane].path.slot as usize]),
-        };
-        ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
-        let item = |lane: usize| Item {
-            path: &vertices[lane].path,
-            origin_primitive: vertices[lane].surface.origin_primitive,
-            surface: Some(&vertices[lane].surface),
-            is_catcher: vertices[lane].is_catcher,
-        };
-        self.go_on(world, item, active, scattered, output);
+        let task = &self.task(
+            by_lane!(lane => &vertices[lane].path),
+            by_lane!(lane => &vertices[lane].stream),
+            output,
+        );
+        ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+        self.go_on(world, |lane| vertices[lane].into(), active, scattered, output);
+    }
+
+    /// Scatters one path by any BSDF.
+    pub(super) fn scatter_vertex<P: Probe>(
+        &self,
+        world: &World,
+        vertex: &Vertex,
+        scattered: &mut Scattered,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let surfaces = SurfaceColumns::of_vertices(&[vertex]);
+        let task = self.task([&vertex.path; LANES], [&vertex.stream; LANES], output);
+        let bsdf = &vertex.shading.bsdf;
+        match self.light_sampling {
+            LightSampling::None => {
+                let uniform = Uniform { bsdf, axes: vertex.shading.axes() };
+                task.scatter_one(world, &surfaces, &uniform, scattered);
+            }
+            _ => task.scatter_one(world, &surfaces, bsdf, scattered),
+        }
+        self.go_on(world, |_| vertex.into(), 1, scattered, output);
+    }
+
+    #[inline(always)]
+    fn task<'a, P: Probe>(
+        &self,
+        paths: [&'a Path; LANES],
+        streams: [&'a SampleStream; LANES],
+        output: &'a StepOutput<'_, P>,
+    ) -> Task<'a> {
+        Task {
+            light_sampling: self.light_sampling,
+            wants_shares: output.light_paths.is_some(),
+            paths,
+            streams,
+            modes: by_lane!(lane => &output.queues.modes[paths[lane].slot as usize]),
+        }
     }
 
     /// The shadow rays and further paths of scattered paths, in the lanes of a mask.
@@ -258,6 +311,8 @@ impl PathTracer {
         // Through the surface of a body it travels in what is behind.
         let wi = Vec3::from_array(row(&lights.wi, lane));
         let crosses = item.surface.is_some_and(|surface| surface.crosses(wi));
+        let share = || Spectrum(row(&connections.diffuse, lane));
+        let last_scattering = output.last_scattering(item.path, crosses, share);
         output.queues.shadows.push(Shadow {
             ray,
             origin_primitive: item.origin_primitive,
@@ -266,7 +321,7 @@ impl PathTracer {
             address,
             term: Term::Light(light),
             interior: item.interior(world, wi, crosses),
-            last_scattering: Shadow::NO_SCATTERING,
+            last_scattering,
         });
         if item.is_catcher {
             self.expect_light(&world.lights[light as usize], item.path, contribution, output);
@@ -287,12 +342,13 @@ impl PathTracer {
         let is = |mask: u32| mask & 1 << lane != 0;
         let (is_specular, is_transmission) = (is(scattered.is_specular), is(scattered.is_transmission));
         let wi = Vec3::from_array(row(&scattered.wi, lane));
+        let lobe = Lobes::sampled(is_specular, is(scattered.is_diffuse), is_transmission);
         if P::LISTENS && is(scattered.is_valid) {
             let sample = BsdfSample {
                 wi,
                 f: Spectrum(row(&scattered.f, lane)),
                 pdf: scattered.pdf[lane],
-                lobe: Lobes::sampled(is_specular, is(scattered.is_diffuse), is_transmission),
+                lobe,
                 eta: scattered.eta[lane],
                 pdf_is_proportional: scattered.kind.pdf_is_proportional,
             };
@@ -325,7 +381,7 @@ impl PathTracer {
                 blurred: path.previous.blurred || !is_specular,
                 is_catcher,
             },
-            light_path: path.light_path,
+            light_path: output.scattered(path, lobe),
         });
     }
 }

@@ -5,9 +5,9 @@ use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
 
 use super::ShadowLight;
-use crate::core::lanes::{LANES, by_lane, filled, scatter};
+use crate::core::lanes::{LANES, by_lane, filled, gather_rays, scatter};
 use crate::integrator::SpectralModes;
-use crate::integrator::direct::{PlainHits, SurfacePoints};
+use crate::integrator::whitted::{PlainHits, Surfaces};
 use crate::shading::material::MaterialKind;
 use crate::shading::texture::{SpectralMode, TexturePoint};
 use crate::world::World;
@@ -80,10 +80,10 @@ impl Kernel for GoOn<'_> {
             let hits = by_lane!(lane => &hits[eight[lane] as usize]);
             let plain =
                 PlainHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, are_on_spheres };
-            let SurfacePoints { direction, points, ng, front, .. } =
-                SurfacePoints::of(simd, world, &plain, false);
-            let origins = scatter(points.leave(ng, direction));
-            let front = front.to_bitmask();
+            let surfaces = Surfaces::of_eight(simd, world, &plain, false);
+            let [_, directions] = gather_rays(simd, &plain.rays);
+            let origins = scatter(surfaces.exits().toward(directions));
+            let front = surfaces.front.to_bitmask();
             for (lane, &place) in places.iter().enumerate() {
                 let (ray, hit) = (&mut rays[place as usize], hits[lane]);
                 let light = &mut lights[chosen[place as usize] as usize];
@@ -106,7 +106,8 @@ impl ShadowLight {
         let material = &world.materials[plain.material as usize];
         let transmission = &material.whitted.transmission;
         let transmission = world.textures.spectrum(transmission, &TexturePoint::NOWHERE, mode);
-        self.contribution *= transmission * self.transmittance(world, ray, hit.t, mode);
+        self.passed = transmission * self.transmittance(world, ray, hit.t, mode);
+        self.contribution *= self.passed;
         if material.is_body() {
             self.interior = match is_outside {
                 true => self.interior.entered(plain.material),

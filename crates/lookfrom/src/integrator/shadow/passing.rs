@@ -30,6 +30,8 @@ pub(super) fn let_through<P: Probe>(
     // The lights of the rays that are left.
     let mut left: Vec<u32> = (0..lights.len() as u32).collect();
     let mut crossings = Crossings::default();
+    // Rays that cross surfaces side by side, for a probe: as they arrive.
+    let mut crossing = Vec::new();
     for round in 0.. {
         hits.clear();
         hits.resize(rays.len(), Hit::MISS);
@@ -42,10 +44,10 @@ pub(super) fn let_through<P: Probe>(
             let (mut ray, mut origin_primitive, hit) = (rays[place], origin_primitives[place], hits[place]);
             let light = &mut lights[left[place] as usize];
             let is_blocked = round >= MOST_CROSSINGS || shadow_transparency.is_blocked(world, &hit);
-            if !P::LISTENS && is_blocked {
-                light.contribution *= Spectrum::BLACK;
-                continue;
-            } else if !P::LISTENS && crossings.take(world, count as u32, &hit) {
+            if !is_blocked && crossings.take(world, count as u32, &hit) {
+                if P::LISTENS {
+                    crossing.push((count, light.of(ray, origin_primitive)));
+                }
                 origin_primitive = OriginPrimitive::of(&hit);
             } else {
                 let mode = &modes[light.slot as usize];
@@ -66,6 +68,10 @@ pub(super) fn let_through<P: Probe>(
             count += 1;
         }
         let are_all_lit = crossings.go_on(world, modes, (rays, hits), lights, &left);
+        for (place, shadow) in crossing.drain(..) {
+            let passed = lights[left[place] as usize].passed;
+            probe.notice(|| Event::Shadow { shadow, hit: hits[place], passed });
+        }
         if !are_all_lit {
             let end = count;
             count = 0;

@@ -14,7 +14,8 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::albedo;
 use super::microfacet::TrowbridgeReitz;
 use super::{
-    DirectionSample, Lobes, fresnel, is_grazing,
+    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
+    is_grazing,
     lanes::{Kind, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
@@ -75,10 +76,42 @@ impl Conductor {
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }
     }
+}
 
-    /// The kinds of scattering.
-    pub(super) fn lobes(&self) -> Lobes {
+impl ScatteringFunction for Conductor {
+    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
+        LaneBsdf::f(self, &wo.into(), wi.into())
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
+        LaneBsdf::pdf(self, &wo.into(), wi.into())
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
+        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.kind())
+    }
+
+    fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | if self.roughness.is_smooth() { Lobes::SPECULAR } else { Lobes::GLOSSY }
+    }
+
+    fn regularize(&mut self) {
+        self.roughness.regularize();
+    }
+
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        self.factors(wo, wi, is_specular).into_iter().collect()
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "conductor",
+            does: match self.roughness.is_smooth() {
+                true => "smooth metal: specular reflection, tinted by Fresnel's equations",
+                false => "rough metal: microfacets of roughness alpha",
+            },
+            numbers: vec![("eta", self.eta.into()), ("k", self.k.into()), ("alpha", self.roughness.into())],
+        }
     }
 }
 
@@ -161,8 +194,12 @@ pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
 }
 
 impl<R: Real> LaneBsdf<R> for Conductor<R> {
-    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
     type View = Vector<R>;
+
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        Kind { needs_lobe: false, ..Kind::PLAIN }
+    }
 
     #[inline(always)]
     fn view(&self, wo: Vector<R>) -> Vector<R> {
@@ -207,6 +244,8 @@ impl<R: Real> LaneBsdf<R> for Conductor<R> {
 
 impl<R: Real> Base<R> for Conductor<R> {
     type Interior = ();
+    const COATED: [&str; 2] =
+        ["coated conductor", "metal under a clear coat: a random walk between the two layers"];
 
     #[inline(always)]
     fn is_specular(&self) -> R::Mask {

@@ -10,8 +10,12 @@ use glam::Vec3;
 use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::lanes::LaneBsdf;
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, DirectionSample, Lobes, Mode, across, fresnel, is_grazing};
+use super::{
+    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
+    fresnel, is_grazing,
+};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -53,13 +57,45 @@ impl Dielectric {
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }
     }
+}
 
-    /// The kinds of scattering. With equal indices nothing is reflected or refracted.
-    #[inline]
-    pub(super) fn lobes(&self) -> Lobes {
+impl ScatteringFunction for Dielectric {
+    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
+        self.f(wo.into(), wi.into(), mode)
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
+        self.pdf(wo.into(), wi.into(), lobes)
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
+        self.sample(wo.into(), uc, u, mode, lobes).scalar(self.kind())
+    }
+
+    /// With equal indices nothing is reflected or refracted.
+    fn lobes(&self) -> Lobes {
         let sides =
             if self.eta == 1.0 { Lobes::TRANSMISSION } else { Lobes::REFLECTION | Lobes::TRANSMISSION };
         sides | if self.is_specular() { Lobes::SPECULAR } else { Lobes::GLOSSY }
+    }
+
+    fn regularize(&mut self) {
+        self.roughness.regularize();
+    }
+
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        self.factors_of("dielectric", wo, wi, is_specular)
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "dielectric",
+            does: match self.roughness.is_smooth() {
+                true => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
+                false => "rough glass: microfacets of roughness alpha that reflect and refract",
+            },
+            numbers: vec![("eta", self.eta.into()), ("alpha", self.roughness.into())],
+        }
     }
 }
 
@@ -331,9 +367,18 @@ impl ThinDielectric {
         let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
         if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once }
     }
+}
 
-    #[inline]
-    pub(super) fn sample(&self, wo: Vec3, uc: f32, lobes: Lobes) -> Option<BsdfSample> {
+impl ScatteringFunction for ThinDielectric {
+    fn f(&self, _: Vec3, _: Vec3, _: Mode) -> Spectrum {
+        Spectrum::BLACK
+    }
+
+    fn pdf(&self, _: Vec3, _: Vec3, _: Mode, _: Lobes) -> f32 {
+        0.0
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, _: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
         let fresnel = self.reflectance(wo);
         let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
         if r + t == 0.0 {
@@ -349,7 +394,19 @@ impl ThinDielectric {
         Some(BsdfSample::new(wi, f, probability, side | Lobes::SPECULAR))
     }
 
-    pub(super) fn lobes(&self) -> Lobes {
+    fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR
+    }
+
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        self.factors(wo, wi, is_specular).into_iter().collect()
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "thin dielectric",
+            does: "a thin pane: reflects light, or transmits it straight on",
+            numbers: vec![("eta", self.eta.into())],
+        }
     }
 }

@@ -8,7 +8,7 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::{
-    BsdfSample, DirectionSample, Lobes, is_grazing,
+    BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, is_grazing,
     lanes::{Kind, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
@@ -29,16 +29,45 @@ impl Diffuse {
     pub fn new(reflectance: Spectrum) -> Self {
         Self { reflectance: reflectance.map(|r| r.clamp(0.0, 1.0)) }
     }
+}
 
-    /// The kinds of scattering.
-    pub(super) fn lobes(&self) -> Lobes {
+impl ScatteringFunction for Diffuse {
+    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
+        LaneBsdf::f(self, &wo.into(), wi.into())
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
+        LaneBsdf::pdf(self, &wo.into(), wi.into())
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
+        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.kind())
+    }
+
+    fn lobes(&self) -> Lobes {
         if self.reflectance.is_black() { Lobes::NONE } else { Lobes::REFLECTION | Lobes::DIFFUSE }
+    }
+
+    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
+        Spectrum([1.0; 4])
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "diffuse",
+            does: "Lambertian: equally bright from all directions, f = reflectance / π",
+            numbers: vec![("reflectance", self.reflectance.into())],
+        }
     }
 }
 
 impl<R: Real> LaneBsdf<R> for Diffuse<R> {
-    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false };
     type View = Vector<R>;
+
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        Kind { needs_lobe: false, ..Kind::PLAIN }
+    }
 
     #[inline(always)]
     fn view(&self, wo: Vector<R>) -> Vector<R> {
@@ -78,10 +107,17 @@ impl<R: Real> LaneBsdf<R> for Diffuse<R> {
     fn has_density(&self) -> R::Mask {
         !self.reflectance.is_black()
     }
+
+    #[inline(always)]
+    fn diffuse_share(&self, wo: &Vector<R>, _: Vector<R>, _: Spectrum<R>) -> Spectrum<R> {
+        Spectrum::splat(wo.z.like(1.0))
+    }
 }
 
 impl<R: Real> Base<R> for Diffuse<R> {
     type Interior = DiffuseInterior<R>;
+    const COATED: [&str; 2] =
+        ["coated diffuse", "diffuse under a clear coat: a random walk between the two layers"];
 
     #[inline(always)]
     fn is_specular(&self) -> R::Mask {
@@ -114,8 +150,16 @@ impl DiffuseTransmission {
         Self { reflectance, transmittance }
     }
 
+    /// The probability of reflection; `None` where no allowed side carries light.
     #[inline]
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn reflection_probability(&self, lobes: Lobes) -> Option<f32> {
+        let [r, t] = lobes.allowed([self.reflectance.max_lane(), self.transmittance.max_lane()]);
+        (r + t > 0.0).then(|| r / (r + t))
+    }
+}
+
+impl ScatteringFunction for DiffuseTransmission {
+    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
         if is_grazing(wo) || is_grazing(wi) {
             Spectrum::BLACK
         } else if same_side(wo, wi) {
@@ -125,15 +169,7 @@ impl DiffuseTransmission {
         }
     }
 
-    /// The probability of reflection; `None` where no allowed side carries light.
-    #[inline]
-    fn reflection_probability(&self, lobes: Lobes) -> Option<f32> {
-        let [r, t] = lobes.allowed([self.reflectance.max_lane(), self.transmittance.max_lane()]);
-        (r + t > 0.0).then(|| r / (r + t))
-    }
-
-    #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
         let Some(reflection) = self.reflection_probability(lobes) else { return 0.0 };
         if is_grazing(wo) || is_grazing(wi) {
             return 0.0;
@@ -142,8 +178,7 @@ impl DiffuseTransmission {
         probability * warp::cosine_hemisphere_pdf(wi.z.abs())
     }
 
-    #[inline]
-    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], lobes: Lobes) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
         let reflection = self.reflection_probability(lobes)?;
         let (side, probability, lobe) = if uc < reflection {
             (wo.z, reflection, Lobes::REFLECTION)
@@ -152,10 +187,10 @@ impl DiffuseTransmission {
         };
         let wi = Vec3::from(cosine_direction(u, side));
         let pdf = probability * warp::cosine_hemisphere_pdf(wi.z.abs());
-        Some(BsdfSample::new(wi, self.f(wo, wi), pdf, lobe | Lobes::DIFFUSE))
+        Some(BsdfSample::new(wi, self.f(wo, wi, mode), pdf, lobe | Lobes::DIFFUSE))
     }
 
-    pub(super) fn lobes(&self) -> Lobes {
+    fn lobes(&self) -> Lobes {
         let mut lobes = Lobes::NONE;
         if !self.reflectance.is_black() {
             lobes |= Lobes::REFLECTION | Lobes::DIFFUSE;
@@ -164,6 +199,21 @@ impl DiffuseTransmission {
             lobes |= Lobes::TRANSMISSION | Lobes::DIFFUSE;
         }
         lobes
+    }
+
+    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
+        Spectrum([1.0; 4])
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "diffuse transmission",
+            does: "Lambertian on both sides, like paper: f = reflectance / π or transmittance / π",
+            numbers: vec![
+                ("reflectance", self.reflectance.into()),
+                ("transmittance", self.transmittance.into()),
+            ],
+        }
     }
 }
 

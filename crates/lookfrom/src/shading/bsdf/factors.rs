@@ -5,15 +5,12 @@
 //!
 //! Cook & Torrance 1982 (reflection); Walter et al. 2007 (refraction).
 
-use std::f32::consts::FRAC_1_PI;
-
 use glam::Vec3;
 
 use super::conductor::{Conductor, MultipleScattering, try_half_vector};
 use super::dielectric::{Dielectric, ThinDielectric};
-use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
-use super::{Bsdf, Mode, fresnel, is_grazing, same_side};
+use super::{fresnel, is_grazing, same_side};
 use crate::core::spectrum::Spectrum;
 
 /// The factors of one boundary that scatters light from `wi` to `wo` by its microfacets.
@@ -92,48 +89,8 @@ impl MicrofacetFactors {
     }
 }
 
-impl Bsdf {
-    /// The factors for light from `wi` to `wo`. `is_specular` asks for those of a direction that was sampled from a
-    /// smooth boundary, which has no value for any other.
-    pub fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
-        let factors = match self {
-            Self::Conductor(bsdf) => bsdf.factors(wo, wi, is_specular),
-            Self::Dielectric(bsdf) => return bsdf.factors("dielectric", wo, wi, is_specular),
-            // A part of what is reflected is reflected by the coat; both sides scatter alike.
-            Self::CoatedDiffuse(bsdf) => return coat(&bsdf.coat, wo, wi),
-            Self::CoatedConductor(bsdf) => return coat(&bsdf.coat, wo, wi),
-            Self::Principled(look) if !is_specular => {
-                return look.scattering(wo, Lobes::ALL).factors(wi.into());
-            }
-            Self::ThinDielectric(bsdf) => bsdf.factors(wo, wi, is_specular),
-            Self::Principled(_) | Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Whitted(_) => None,
-        };
-        factors.into_iter().collect()
-    }
-
-    /// The share of diffuse lobes in the value for light from `wi`, 0 … 1 by lane; glossy ones have the rest. Sheen counts as
-    /// diffuse, and so does what is scattered between a coat and a diffuse base.
-    pub fn diffuse_share(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        let all = Spectrum([1.0; 4]);
-        let f = || self.f(wo, wi, Mode::Radiance);
-        match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) => all,
-            Self::Conductor(_) | Self::Dielectric(_) | Self::ThinDielectric(_) | Self::CoatedConductor(_) => {
-                Spectrum::BLACK
-            }
-            Self::Whitted(bsdf) => (bsdf.diffuse * FRAC_1_PI).share_of(f()),
-            Self::Principled(look) => look.scattering(wo, Lobes::ALL).diffuse_f(wi.into()).share_of(f()),
-            Self::CoatedDiffuse(_) => {
-                let factors = self.factors(wo, wi, false);
-                let glossy = factors.iter().fold(Spectrum::BLACK, |sum, factors| sum + factors.value());
-                all - glossy.share_of(f())
-            }
-        }
-    }
-}
-
 impl ThinDielectric {
-    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
+    pub(super) fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
         if !is_specular {
             return None;
         }
@@ -149,15 +106,8 @@ impl ThinDielectric {
     }
 }
 
-fn coat(boundary: &Dielectric, wo: Vec3, wi: Vec3) -> Vec<MicrofacetFactors> {
-    let up = |w: Vec3| if wo.z < 0.0 { -w } else { w };
-    let mut factors = boundary.factors("coat", up(wo), up(wi), false);
-    factors.retain(|factors| !factors.refracts);
-    factors.into_iter().map(|factors| MicrofacetFactors { wm: up(factors.wm), ..factors }).collect()
-}
-
 impl Conductor {
-    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
+    pub(super) fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
         let is_smooth = self.roughness.is_smooth();
         if !same_side(wo, wi) || is_smooth != is_specular {
             return None;
@@ -172,8 +122,16 @@ impl Conductor {
 }
 
 impl Dielectric {
+    /// As the outside of a coat, by the facets that reflect light.
+    pub(super) fn factors_of_coat(&self, wo: Vec3, wi: Vec3) -> Vec<MicrofacetFactors> {
+        let up = |w: Vec3| if wo.z < 0.0 { -w } else { w };
+        let mut factors = self.factors_of("coat", up(wo), up(wi), false);
+        factors.retain(|factors| !factors.refracts);
+        factors.into_iter().map(|factors| MicrofacetFactors { wm: up(factors.wm), ..factors }).collect()
+    }
+
     /// By its facet, and by the one to the wrong side.
-    fn factors(
+    pub(super) fn factors_of(
         &self,
         boundary: &'static str,
         wo: Vec3,

@@ -10,7 +10,7 @@ use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
 use super::principled::{Look, Principled};
-use super::{Bsdf, DirectionSample, Mode};
+use super::{DirectionSample, Mode, ScatteringFunction, Variant};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -27,13 +27,18 @@ pub struct Kind {
     pub needs_agreement: bool,
 }
 
+impl Kind {
+    /// Of most classes.
+    pub const PLAIN: Self = Self { pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
+}
+
 /// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`].
 pub trait LaneBsdf<R: Real> {
-    /// The properties of the class.
-    const KIND: Kind;
     /// What is computed once for an outgoing direction: that direction itself, where there is nothing to compute.
     type View;
 
+    /// The properties of the class.
+    fn kind(&self) -> Kind;
     /// The view from the outgoing direction `wo`, which the other methods take.
     fn view(&self, wo: Vector<R>) -> Self::View;
     /// As [`Bsdf::f`].
@@ -49,73 +54,30 @@ pub trait LaneBsdf<R: Real> {
     fn sample(&self, view: &Self::View, uc: R, u: [R; 2]) -> DirectionSample<R>;
     /// True if there is a lobe that is not specular.
     fn has_density(&self) -> R::Mask;
-}
-
-/// The classes of BSDFs that are computed in lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BsdfClass {
-    /// [`Diffuse`].
-    Diffuse,
-    /// [`Conductor`].
-    Conductor,
-    /// [`Dielectric`].
-    Dielectric,
-    /// [`Layered`], on a diffuse base.
-    CoatedDiffuse,
-    /// [`Layered`], on a conductor.
-    CoatedConductor,
-    /// [`Principled`].
-    Principled,
-}
-
-impl BsdfClass {
-    /// Number of classes.
-    pub(crate) const COUNT: usize = 6;
-
-    /// All of them, in their order.
-    pub(crate) const ALL: [Self; Self::COUNT] = [
-        Self::Diffuse,
-        Self::Conductor,
-        Self::Dielectric,
-        Self::CoatedDiffuse,
-        Self::CoatedConductor,
-        Self::Principled,
-    ];
-
-    /// The class of a BSDF, if it is computed in lanes.
-    #[inline]
-    pub(crate) fn of(bsdf: &Bsdf) -> Option<Self> {
-        match bsdf {
-            Bsdf::Diffuse(_) => Some(Self::Diffuse),
-            Bsdf::Conductor(_) => Some(Self::Conductor),
-            Bsdf::Dielectric(_) => Some(Self::Dielectric),
-            Bsdf::CoatedDiffuse(_) => Some(Self::CoatedDiffuse),
-            Bsdf::CoatedConductor(_) => Some(Self::CoatedConductor),
-            Bsdf::Principled(_) => Some(Self::Principled),
-            _ => None,
-        }
+    /// The share of diffuse lobes in the value `f` for light from `wi`, 0 … 1 by lane of the spectrum; glossy ones have the
+    /// rest. Sheen counts as diffuse, and so does what is scattered between a coat and a diffuse base.
+    #[inline(always)]
+    fn diffuse_share(&self, _view: &Self::View, wi: Vector<R>, _f: Spectrum<R>) -> Spectrum<R> {
+        Spectrum::splat(wi.z.like(0.0))
     }
 }
 
 /// A class of BSDFs, as scalars.
-pub(crate) trait RowBsdf: Copy {
+pub(crate) trait RowBsdf: Variant + ScatteringFunction {
     /// Eight of them.
     type Lanes<S: Simd>: LaneBsdf<f32x8<S>>;
-
-    /// The BSDF, if it is of this class.
-    fn of(bsdf: &Bsdf) -> Option<&Self>;
-
-    /// As [`Bsdf::regularize`].
-    fn regularize(&mut self);
 
     /// One in each lane.
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S>;
 }
 
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
-    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
     type View = Vector<R>;
 
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        Kind::PLAIN
+    }
     #[inline(always)]
     fn view(&self, wo: Vector<R>) -> Vector<R> {
         wo
@@ -139,9 +101,12 @@ impl<R: Real> LaneBsdf<R> for Dielectric<R> {
 }
 
 impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
-    const KIND: Kind = Kind { pdf_is_proportional: true, needs_lobe: true, needs_agreement: false };
     type View = Vector<R>;
 
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        Kind { pdf_is_proportional: true, ..Kind::PLAIN }
+    }
     #[inline(always)]
     fn view(&self, wo: Vector<R>) -> Vector<R> {
         wo
@@ -161,6 +126,12 @@ impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
     #[inline(always)]
     fn has_density(&self) -> R::Mask {
         self.has_density()
+    }
+    #[inline(always)]
+    fn diffuse_share(&self, &wo: &Vector<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
+        let below = self.base.diffuse_share(&self.base.view(wo), wi, f);
+        let glossy = Spectrum::splat(self.off_the_coat(wo, wi)).share_of(f);
+        below * (Spectrum::splat(wo.z.like(1.0)) - glossy)
     }
 }
 
@@ -190,12 +161,6 @@ fn gather_nothing<S: Simd>(_: S, _: &[&(); LANES]) {}
 impl RowBsdf for Diffuse {
     type Lanes<S: Simd> = Diffuse<f32x8<S>>;
 
-    fn of(bsdf: &Bsdf) -> Option<&Self> {
-        if let Bsdf::Diffuse(bsdf) = bsdf { Some(bsdf) } else { None }
-    }
-
-    fn regularize(&mut self) {}
-
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Diffuse { reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)) }
@@ -204,14 +169,6 @@ impl RowBsdf for Diffuse {
 
 impl RowBsdf for Conductor {
     type Lanes<S: Simd> = Conductor<f32x8<S>>;
-
-    fn of(bsdf: &Bsdf) -> Option<&Self> {
-        if let Bsdf::Conductor(bsdf) = bsdf { Some(bsdf) } else { None }
-    }
-
-    fn regularize(&mut self) {
-        self.roughness.regularize();
-    }
 
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
@@ -227,14 +184,6 @@ impl RowBsdf for Conductor {
 impl RowBsdf for Dielectric {
     type Lanes<S: Simd> = Dielectric<f32x8<S>>;
 
-    fn of(bsdf: &Bsdf) -> Option<&Self> {
-        if let Bsdf::Dielectric(bsdf) = bsdf { Some(bsdf) } else { None }
-    }
-
-    fn regularize(&mut self) {
-        self.roughness.regularize();
-    }
-
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Dielectric {
@@ -248,14 +197,6 @@ impl RowBsdf for Dielectric {
 impl RowBsdf for Principled {
     type Lanes<S: Simd> = Look<f32x8<S>>;
 
-    fn of(bsdf: &Bsdf) -> Option<&Self> {
-        if let Bsdf::Principled(bsdf) = bsdf { Some(bsdf) } else { None }
-    }
-
-    fn regularize(&mut self) {
-        self.regularize();
-    }
-
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Look::gather(simd, rows)
@@ -263,20 +204,9 @@ impl RowBsdf for Principled {
 }
 
 macro_rules! layered_class {
-    ($base:ident, $variant:ident, $unknown:expr, $gather:ident) => {
+    ($base:ident, $gather:ident) => {
         impl RowBsdf for Layered<$base> {
             type Lanes<S: Simd> = Layered<$base<f32x8<S>>, f32x8<S>>;
-
-            fn of(bsdf: &Bsdf) -> Option<&Self> {
-                if let Bsdf::$variant(bsdf) = bsdf { Some(bsdf) } else { None }
-            }
-
-            fn regularize(&mut self) {
-                self.coat.regularize();
-                self.base.regularize();
-                // It was that of a smoother coat.
-                self.interior = $unknown;
-            }
 
             #[inline(always)]
             fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
@@ -298,8 +228,8 @@ macro_rules! layered_class {
     };
 }
 
-layered_class!(Diffuse, CoatedDiffuse, DiffuseInterior::new(None), gather_interior);
-layered_class!(Conductor, CoatedConductor, (), gather_nothing);
+layered_class!(Diffuse, gather_interior);
+layered_class!(Conductor, gather_nothing);
 
 #[cfg(test)]
 mod tests;

@@ -27,6 +27,7 @@ mod walk;
 use std::f32::consts::FRAC_1_PI;
 use std::fmt;
 
+use glam::Vec3;
 use lookfrom_scene::material::CoatEstimate;
 use lookfrom_simd::{Float, Mask, Real};
 
@@ -37,7 +38,9 @@ use super::fresnel;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
 use super::microfacet::TrowbridgeReitz;
-use super::{DirectionSample, Lobes, Mode, is_grazing};
+use super::{
+    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, is_grazing,
+};
 use crate::core::elementary::exp;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
@@ -49,8 +52,10 @@ use walk::{Walk, surviving};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
 pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
-    /// What is known beforehand of the light between coat and base.
+    /// What is known beforehand of the light between coat and base; by default nothing.
     type Interior: Copy + fmt::Debug;
+    /// The name of such a base under a coat, and what it does.
+    const COATED: [&str; 2];
 
     /// True if it reflects in single directions.
     fn is_specular(&self) -> R::Mask;
@@ -125,10 +130,23 @@ impl<B: Base<f32>> Layered<B> {
             interior,
         }
     }
+}
 
-    /// The kinds of scattering, given the base's.
-    pub(super) fn lobes(&self, base: Lobes) -> Lobes {
-        let coat = self.coat.lobes();
+impl<B: Base<f32, Interior: Default> + ScatteringFunction> ScatteringFunction for Layered<B> {
+    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
+        self.f(wo.into(), wi.into(), mode)
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, _: Lobes) -> f32 {
+        self.pdf(wo.into(), wi.into(), mode)
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
+        self.sample(wo.into(), uc, u, mode).scalar(self.kind())
+    }
+
+    fn lobes(&self) -> Lobes {
+        let (coat, base) = (self.coat.lobes(), self.base.lobes());
         let mut lobes = Lobes::REFLECTION;
         if coat.is_specular() {
             lobes |= Lobes::SPECULAR;
@@ -140,6 +158,34 @@ impl<B: Base<f32>> Layered<B> {
         }
         lobes
     }
+
+    fn regularize(&mut self) {
+        self.coat.regularize();
+        self.base.regularize();
+        // It was that of a smoother coat.
+        self.interior = B::Interior::default();
+    }
+
+    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
+        LaneBsdf::diffuse_share(self, &wo.into(), wi.into(), f)
+    }
+
+    /// A part of what is reflected is reflected by the coat; both sides scatter alike.
+    fn factors(&self, wo: Vec3, wi: Vec3, _: bool) -> Vec<MicrofacetFactors> {
+        self.coat.factors_of_coat(wo, wi)
+    }
+
+    fn description(&self) -> Description {
+        let [kind, does] = B::COATED;
+        let mut numbers = vec![
+            ("coat eta", self.coat.eta.into()),
+            ("coat alpha", self.coat.roughness.into()),
+            ("coat thickness", self.thickness.into()),
+            ("coat albedo", self.albedo.into()),
+        ];
+        numbers.extend(self.base.description().numbers);
+        Description { kind, does, numbers }
+    }
 }
 
 impl<R: Real, B: Base<R>> Layered<B, R> {
@@ -147,6 +193,15 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
     #[inline(always)]
     pub(super) fn has_density(&self) -> R::Mask {
         self.base.has_density() | !self.albedo.is_black() | !self.coat.is_specular()
+    }
+
+    /// The part of [`Self::f`] that the outside of the coat reflects.
+    #[inline(always)]
+    pub(super) fn off_the_coat(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        let zero = wo.z.like(0.0);
+        let is_below = wo.z.lt(zero);
+        let (wo, wi) = (wo.negate_where(is_below), wi.negate_where(is_below));
+        R::select(wi.z.gt(zero), coat_f(&self.coat, wo, wi, Mode::Radiance), zero)
     }
 
     /// As [`super::Bsdf::f`].

@@ -50,7 +50,9 @@ use lookfrom_simd::Real;
 
 use super::lanes::{Kind, LaneBsdf};
 use super::microfacet::TrowbridgeReitz;
-use super::{BsdfSample, DirectionSample, Lobes, Mode, fresnel};
+use super::{
+    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
+};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use film::Film;
@@ -294,31 +296,26 @@ impl Principled {
         }
     }
 
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.scattering(wo, Lobes::ALL).f(wi.into(), mode)
-    }
-
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        self.scattering(wo, lobes).pdf(wi.into())
-    }
-
-    pub(super) fn sample(
-        &self,
-        wo: Vec3,
-        uc: f32,
-        u: [f32; 2],
-        mode: Mode,
-        lobes: Lobes,
-    ) -> Option<BsdfSample> {
-        self.scattering(wo, lobes).sample_one(uc, u, mode)
-    }
-
     /// The surface for a fixed outgoing direction.
     pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering {
         LocalScattering::new(&Look::new(self), wo.into(), lobes)
     }
+}
 
-    pub(super) fn lobes(&self) -> Lobes {
+impl ScatteringFunction for Principled {
+    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
+        self.scattering(wo, Lobes::ALL).f(wi.into(), mode)
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
+        self.scattering(wo, lobes).pdf(wi.into())
+    }
+
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
+        self.scattering(wo, lobes).sample(uc, u, mode).scalar(Kind::PLAIN)
+    }
+
+    fn lobes(&self) -> Lobes {
         let of = |roughness: TrowbridgeReitz| match roughness.is_smooth() {
             true => Lobes::SPECULAR,
             false => Lobes::GLOSSY,
@@ -347,18 +344,55 @@ impl Principled {
         lobes
     }
 
-    pub(super) fn regularize(&mut self) {
+    fn regularize(&mut self) {
         self.roughness.regularize();
         let mut coat = TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha };
         coat.regularize();
         self.coat_alpha = coat.alpha_x;
     }
+
+    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
+        self.scattering(wo, Lobes::ALL).diffuse_f(wi.into()).share_of(f)
+    }
+
+    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
+        match is_specular {
+            true => Vec::new(),
+            false => self.scattering(wo, Lobes::ALL).factors(wi.into()),
+        }
+    }
+
+    fn description(&self) -> Description {
+        let p = self.parameters();
+        Description {
+            kind: "principled",
+            does: "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
+            numbers: vec![
+                ("base color", p.base_color.into()),
+                ("metallic", p.metallic.into()),
+                ("alpha", p.roughness.into()),
+                ("eta", p.eta.into()),
+                ("f0", p.f0.into()),
+                ("specular", p.f90.into()),
+                ("transmission", p.transmission.into()),
+                ("diffuse transmission", p.diffuse_transmission.into()),
+                ("clearcoat", p.clearcoat.into()),
+                ("clearcoat alpha", p.clearcoat_roughness.alpha_x.into()),
+                ("sheen color", p.sheen_color.into()),
+                ("sheen roughness", p.sheen_roughness.into()),
+                ("iridescence", p.iridescence.into()),
+            ],
+        }
+    }
 }
 
 impl<R: Real> LaneBsdf<R> for Look<R> {
-    const KIND: Kind = Kind { pdf_is_proportional: false, needs_lobe: true, needs_agreement: true };
     type View = LocalScattering<R>;
 
+    #[inline(always)]
+    fn kind(&self) -> Kind {
+        Kind { needs_agreement: true, ..Kind::PLAIN }
+    }
     #[inline(always)]
     fn view(&self, wo: Vector<R>) -> LocalScattering<R> {
         LocalScattering::new(self, wo, Lobes::ALL)
@@ -382,6 +416,10 @@ impl<R: Real> LaneBsdf<R> for Look<R> {
     #[inline(always)]
     fn has_density(&self) -> R::Mask {
         self.has_density()
+    }
+    #[inline(always)]
+    fn diffuse_share(&self, view: &LocalScattering<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
+        view.diffuse_f(wi).share_of(f)
     }
 }
 

@@ -1,5 +1,12 @@
 //! Tests of BSDFs: densities, reciprocity, energy, Fresnel.
 
+#[expect(unreachable_pub, reason = "as CONTRIBUTING.md has it")]
+mod clay;
+#[expect(unreachable_pub, reason = "as the table makes it")]
+mod example;
+
+use super::principled::Principled;
+use super::whitted::Whitted;
 use super::*;
 use crate::core::hash;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};

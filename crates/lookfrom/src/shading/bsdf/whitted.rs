@@ -11,7 +11,10 @@ use glam::Vec3;
 use std::f32::consts::{FRAC_1_PI, TAU};
 
 use super::diffuse::cosine_direction;
-use super::{BsdfSample, Lobes, conductor::try_half_vector, is_grazing, same_side};
+use super::{
+    BsdfSample, Description, Lobes, Mode, ScatteringFunction, conductor::try_half_vector, is_grazing,
+    same_side,
+};
 use crate::core::elementary;
 use crate::core::math;
 use crate::core::optics;
@@ -94,7 +97,7 @@ impl Whitted {
     }
 
     #[inline]
-    pub(super) fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn value(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if !same_side(wo, wi) {
             return Spectrum::BLACK;
         }
@@ -120,16 +123,31 @@ impl Whitted {
         pdf
     }
 
+    /// A half vector distributed by the n-th power of its cosine, on the side of the sign of `side`.
     #[inline]
-    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
+    fn sample_half(&self, [u, v]: [f32; 2], side: f32) -> Vec3 {
+        // sin²θ = 1 − u^(2/(n+1)), without the subtraction.
+        let exponent = 2.0 / (self.shininess + 1.0) * libm::logf(u);
+        let sin2 = (-libm::expm1f(exponent)).clamp(0.0, 1.0);
+        let (sin_phi, cos_phi) = libm::sincosf(TAU * v);
+        let sin = sin2.sqrt();
+        Vec3::new(sin * cos_phi, sin * sin_phi, (1.0 - sin2).sqrt().copysign(side))
+    }
+}
+
+impl ScatteringFunction for Whitted {
+    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
+        self.value(wo, wi)
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
         if !same_side(wo, wi) {
             return 0.0;
         }
         self.choice(&self.branches(wo), lobes).map_or(0.0, |choice| self.spread_pdf(wo, wi, &choice))
     }
 
-    #[inline]
-    pub(super) fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], lobes: Lobes) -> Option<BsdfSample> {
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
         if is_grazing(wo) {
             return None;
         }
@@ -147,7 +165,7 @@ impl Whitted {
                 return None;
             }
             let lobe = Lobes::REFLECTION | if is_diffuse { Lobes::DIFFUSE } else { Lobes::GLOSSY };
-            return Some(BsdfSample::new(wi, self.f(wo, wi), self.spread_pdf(wo, wi, &choice), lobe));
+            return Some(BsdfSample::new(wi, self.value(wo, wi), self.spread_pdf(wo, wi, &choice), lobe));
         }
         let specular = |wi: Vec3, weight: Spectrum, probability, side| {
             BsdfSample::new(wi, weight / wi.z.abs(), probability, side | Lobes::SPECULAR)
@@ -160,18 +178,7 @@ impl Whitted {
         Some(specular(wi, weight, choice.refraction, Lobes::TRANSMISSION))
     }
 
-    /// A half vector distributed by the n-th power of its cosine, on the side of the sign of `side`.
-    #[inline]
-    fn sample_half(&self, [u, v]: [f32; 2], side: f32) -> Vec3 {
-        // sin²θ = 1 − u^(2/(n+1)), without the subtraction.
-        let exponent = 2.0 / (self.shininess + 1.0) * libm::logf(u);
-        let sin2 = (-libm::expm1f(exponent)).clamp(0.0, 1.0);
-        let (sin_phi, cos_phi) = libm::sincosf(TAU * v);
-        let sin = sin2.sqrt();
-        Vec3::new(sin * cos_phi, sin * sin_phi, (1.0 - sin2).sqrt().copysign(side))
-    }
-
-    pub(super) fn lobes(&self) -> Lobes {
+    fn lobes(&self) -> Lobes {
         let mut lobes = Lobes::NONE;
         if !self.diffuse.is_black() {
             lobes |= Lobes::REFLECTION | Lobes::DIFFUSE;
@@ -186,6 +193,24 @@ impl Whitted {
             lobes |= Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR;
         }
         lobes
+    }
+    fn diffuse_share(&self, _: Vec3, _: Vec3, f: Spectrum) -> Spectrum {
+        (self.diffuse * FRAC_1_PI).share_of(f)
+    }
+
+    fn description(&self) -> Description {
+        Description {
+            kind: "whitted",
+            does: "the coefficients of Whitted's formula as a BSDF",
+            numbers: vec![
+                ("k_d", self.diffuse.into()),
+                ("k_s", self.specular.into()),
+                ("n", self.shininess.into()),
+                ("k_r", self.mirror.into()),
+                ("k_t", self.transmission.into()),
+                ("ior", self.ior.into()),
+            ],
+        }
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::principled::disperses;
 use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, Relief, ShadingContext, bump};
+use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
-use crate::shading::bsdf::lanes::{BsdfClass, RowBsdf};
+use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::interaction::ShadingGeometry;

@@ -14,46 +14,51 @@
 //! absorption = [0.3, 0.05, 0.1]
 //! ```
 
-use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real};
 
 use super::kind::Whitted;
 use crate::core::math;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textures};
 
-/// Whitted's coefficients at a point.
+/// Whitted's coefficients at a point, or at several side by side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<R: Real = f32> {
     /// `k_a`.
-    pub ambient: Spectrum,
+    pub ambient: Spectrum<R>,
     /// `k_d`.
-    pub diffuse: Spectrum,
+    pub diffuse: Spectrum<R>,
     /// `k_s`.
-    pub specular: Spectrum,
+    pub specular: Spectrum<R>,
     /// `n`.
-    pub shininess: f32,
+    pub shininess: R,
     /// `k_r`.
-    pub mirror: Spectrum,
+    pub mirror: Spectrum<R>,
     /// `k_t`.
-    pub transmission: Spectrum,
+    pub transmission: Spectrum<R>,
     /// Index of refraction, inside over outside.
-    pub ior: f32,
+    pub ior: R,
     /// True if the angle determines the split between reflection and refraction (Fresnel).
-    pub fresnel: bool,
+    pub fresnel: R::Mask,
 }
 
 /// The two directions in which the ray tree branches, each with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branches {
+pub struct Branches<R: Real = f32> {
+    /// True if there are any: where light is reflected or transmitted.
+    pub exist: R::Mask,
     /// Toward `S`, unit length, and its weight.
-    pub mirrored: (Vec3, Spectrum),
-    /// Toward `T`, unit length, and its weight; `None` for total reflection or where nothing is transmitted.
-    pub refracted: Option<(Vec3, Spectrum)>,
-    /// The Fresnel reflectance; 1 for total internal reflection, `None` where the angle does not matter.
-    pub fresnel: Option<f32>,
+    pub mirrored: (Vector<R>, Spectrum<R>),
+    /// Toward `T`, unit length, and its weight.
+    pub refracted: (Vector<R>, Spectrum<R>),
+    /// False for total reflection and where nothing is transmitted.
+    pub is_refracted: R::Mask,
+    /// The Fresnel reflectance; 1 for total internal reflection. Without a meaning where the angle does not matter.
+    pub fresnel: R,
     /// True for total internal reflection: Snell's law has no solution.
-    pub total_reflection: bool,
+    pub total_reflection: R::Mask,
 }
 
 impl Coefficients {
@@ -72,50 +77,71 @@ impl Coefficients {
             fresnel: material.fresnel,
         }
     }
+}
 
+impl<R: Real> Coefficients<R> {
     /// True if direct light contributes.
-    pub fn is_lit(&self) -> bool {
-        !(self.diffuse.is_black() && self.specular.is_black())
+    #[inline(always)]
+    pub fn is_lit(&self) -> R::Mask {
+        !(self.diffuse.is_black() & self.specular.is_black())
     }
 
-    /// `k_d (N·L)` and `k_s (N·H)ⁿ`; `n`, `wo`, `wi` of unit length, `n` on the side of `wo`.
-    pub fn lit(&self, n: Vec3, wo: Vec3, wi: Vec3) -> (Spectrum, Spectrum) {
-        let n_dot_l = n.dot(wi);
-        if n_dot_l <= 0.0 {
-            return (Spectrum::BLACK, Spectrum::BLACK);
+    /// `k_d (N·L)` and `k_s (N·H)ⁿ`, for `N·L > 0`; `n`, `wo`, `wi` of unit length, `n` on the side of `wo`.
+    #[inline(always)]
+    pub fn lit(&self, n: Vector<R>, wo: Vector<R>, wi: Vector<R>) -> (Spectrum<R>, Spectrum<R>) {
+        let diffuse = self.diffuse * n.dot(wi);
+        if self.specular.is_black().all() {
+            return (diffuse, self.specular);
         }
-        let specular = if self.specular.is_black() {
-            Spectrum::BLACK
-        } else {
-            let h = (wo + wi).normalize_or_zero();
-            self.specular * math::power(n.dot(h).max(0.0), self.shininess)
-        };
-        (self.diffuse * n_dot_l, specular)
+        let (half, exists) = (wo + wi).try_normalize();
+        let zero = self.shininess.like(0.0);
+        let cos = R::select(exists, Float::max(n.dot(half), zero), zero);
+        (diffuse, self.specular * math::power(cos, self.shininess))
     }
 
-    /// The branches of the ray tree. `n` and `wo` of unit length on one side; `front` if that is the outside.
+    /// The branches of the ray tree, if there are any. `n` and `wo` of unit length on one side; `front` where that is the
+    /// outside.
     ///
     /// With `fresnel` the fraction `F` of the larger of `k_r` and `k_t` is reflected, and `(1 − F) k_t` is
     /// refracted. Total internal reflection sends everything into the reflected direction.
-    pub fn branches(&self, n: Vec3, wo: Vec3, front: bool) -> Option<Branches> {
-        if self.mirror.is_black() && self.transmission.is_black() {
+    #[inline(always)]
+    pub fn branches(&self, n: Vector<R>, wo: Vector<R>, front: R::Mask) -> Option<Branches<R>> {
+        let (k_r, k_t) = (self.mirror, self.transmission);
+        let has_transmission = !k_t.is_black();
+        let exist = !k_r.is_black() | has_transmission;
+        if !exist.any() {
             return None;
         }
-        let eta = if front { self.ior } else { 1.0 / self.ior };
-        let bent = math::refract(wo, n, eta);
-        let total_reflection = bent.is_none() && !self.transmission.is_black();
-        let fresnel = self.fresnel.then(|| optics::fresnel_dielectric(n.dot(wo), eta));
-        let (mirror, transmission) = match fresnel {
-            Some(part) => {
-                (self.mirror.zip(self.transmission, f32::max) * part, self.transmission * (1.0 - part))
-            }
-            None if total_reflection => (self.mirror + self.transmission, Spectrum::BLACK),
-            None => (self.mirror, self.transmission),
-        };
-        let refracted = bent.filter(|_| !transmission.is_black()).map(|wi| (wi.normalize(), transmission));
+        let one = self.ior.like(1.0);
+        let black = Spectrum::splat(self.ior.like(0.0));
+        let mirrored = optics::reflect(wo, n).normalize();
+        let no = exist.like(false);
+        if !(has_transmission | self.fresnel).any() {
+            return Some(Branches {
+                exist,
+                mirrored: (mirrored, k_r),
+                refracted: (mirrored, black),
+                is_refracted: no,
+                fresnel: one,
+                total_reflection: no,
+            });
+        }
+        let eta = R::select(front, self.ior, one / self.ior);
+        let (bent, is_bent) = optics::refract(wo, n, eta);
+        let total_reflection = !is_bent & has_transmission;
+        let mut mirror = Spectrum::select(total_reflection, k_r + k_t, k_r);
+        let mut transmission = Spectrum::select(total_reflection, black, k_t);
+        let mut fresnel = one;
+        if self.fresnel.any() {
+            fresnel = optics::fresnel_dielectric(n.dot(wo), eta);
+            mirror = Spectrum::select(self.fresnel, k_r.zip(k_t, Float::max) * fresnel, mirror);
+            transmission = Spectrum::select(self.fresnel, k_t * (one - fresnel), transmission);
+        }
         Some(Branches {
-            mirrored: (math::reflect(wo, n).normalize(), mirror),
-            refracted,
+            exist,
+            mirrored: (mirrored, mirror),
+            refracted: (bent.normalize(), transmission),
+            is_refracted: exist & is_bent & !transmission.is_black(),
             fresnel,
             total_reflection,
         })

@@ -1,18 +1,18 @@
-//! Scattering of eight paths side by side: one light sampled, one direction sampled by the BSDF, and the origins of the
-//! rays. Numbers only; the parent module makes rays and events of them.
+//! The step of path tracing at any width: one light sampled, one direction sampled by the BSDF, Russian roulette, and the
+//! origins of the rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Real, Simd, f32x8, mask32x8, prelude::*, u32x8};
+use lookfrom_simd::{Float, Kernel, Mask, Simd};
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
+use crate::core::lanes::width::{Lanes, One, Width};
 use crate::core::lanes::{
-    Columns, LANES, by_lane, gather_spectrum, load, load_spectrum, shade_together, store, store_spectrum,
+    Columns, LANES, bitmask, by_lane, load, load_spectrum, shade_together, store, store_spectrum,
 };
 use crate::core::math::power_heuristic;
-use crate::core::points::Exits;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::path::{SAFE_BOUNCES, SURVIVAL, dimension};
+use crate::integrator::path::{LightSampling, SAFE_BOUNCES, SURVIVAL, dimension};
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::{Path, SampleStream};
 use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
@@ -20,7 +20,7 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The samples of eight paths. Masks have bit i for lane i.
-pub(super) struct Scattered {
+pub(in crate::integrator::path) struct Scattered {
     pub(super) kind: Kind,
     /// Lanes whose BSDF has a density, for which a light was sampled.
     pub(super) has_density: u32,
@@ -58,8 +58,8 @@ pub(super) struct Scattered {
 
 impl Scattered {
     /// Of no path.
-    pub(super) const NONE: Self = Self {
-        kind: Kind { pdf_is_proportional: false, needs_lobe: false, needs_agreement: false },
+    pub(in crate::integrator::path) const NONE: Self = Self {
+        kind: Kind::PLAIN,
         has_density: 0,
         lights: LightSamples::NONE,
         connections: Connections::NONE,
@@ -89,6 +89,8 @@ impl Scattered {
 pub(super) struct Connections {
     /// The BSDF for the direction to the light, times the cosine.
     pub(super) f: Columns<4>,
+    /// The share of diffuse lobes in it, where layers need it.
+    pub(super) diffuse: Columns<4>,
     /// The density with which the BSDF samples that direction: 0 for light from a single direction.
     pub(super) bsdf_pdf: [f32; LANES],
     /// Weights of multiple importance sampling.
@@ -107,6 +109,7 @@ impl Connections {
     /// Of no lane.
     const NONE: Self = Self {
         f: [[0.0; LANES]; 4],
+        diffuse: [[0.0; LANES]; 4],
         bsdf_pdf: [0.0; LANES],
         weight: [0.0; LANES],
         contribution: [[0.0; LANES]; 4],
@@ -117,139 +120,169 @@ impl Connections {
     };
 }
 
-impl<S: Simd> Surfaces<S> {
-    /// The light samples of the surfaces, weighted.
-    #[inline(always)]
-    fn connect<B: LaneBsdf<f32x8<S>>>(
-        &self,
-        simd: S,
-        (bsdf, view): (&B, &B::View),
-        beta: Spectrum<f32x8<S>>,
-        (lights, exits): (&LightSamples, &Exits<'_, f32x8<S>>),
-        connections: &mut Connections,
-    ) {
-        let wi = load(simd, &lights.wi);
-        let local = self.local(wi);
-        let zero = f32x8::splat(simd, 0.0);
-        let (mut f, bsdf_pdf) = bsdf.f_and_pdf(view, local);
-        if B::KIND.needs_agreement {
-            f = Spectrum::select(self.agrees(wi), f, Spectrum::splat(zero));
-        }
-        let f = f * Float::abs(local.z);
-        let is_delta = mask32x8::from_bitmask(simd, lights.is_delta.into());
-        let bsdf_pdf = Float::select(is_delta, zero, bsdf_pdf);
-        let light_pdf = f32x8::load_array(simd, lights.probability) * f32x8::load_array(simd, lights.pdf);
-        let weight = Float::select(is_delta, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
-        let contribution = beta * f * load_spectrum(simd, &lights.li) * (weight / light_pdf);
-        let is_sampled = lights.is_valid & !f.is_black().to_bitmask() as u32;
-        let origin = exits.toward(wi);
-        connections.f = store_spectrum(f);
-        connections.bsdf_pdf = bsdf_pdf.into();
-        connections.weight = weight.into();
-        connections.contribution = store_spectrum(contribution);
-        connections.is_sampled = is_sampled;
-        connections.is_lit = is_sampled & !contribution.is_black().to_bitmask() as u32;
-        connections.origin = store(origin);
-        connections.end = lights.ends(simd, origin);
-    }
+/// Paths at surfaces whose BSDFs are of one class.
+struct Step<'a, W: Width, B> {
+    width: W,
+    surfaces: &'a Surfaces<W::Real>,
+    bsdf: &'a B,
+    /// Path throughputs.
+    beta: Spectrum<W::Real>,
+    streams: &'a SampleStreams<W::Real>,
+    task: &'a Task<'a>,
+}
 
-    /// True where the geometric and the shading normal agree whether `wo` and `wi`, in render space, are on one side.
+impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
+    /// Samples lights, by `sample_lights` in the lanes of a mask, and directions at the surfaces.
     #[inline(always)]
-    fn agrees(&self, wi: Vector<f32x8<S>>) -> mask32x8<S> {
-        let zero = self.cos_ng.like(0.0);
-        let is_beside = (self.wo.z * wi.dot(self.n)).gt(zero);
-        let mut is_outside = (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero);
-        if let Some(lift) = &self.lift {
-            is_outside |= zero.narrow_mask(lift.is_above(wi));
-        }
-        is_outside.choose(is_beside, !is_beside)
-    }
-
-    /// Samples lights and directions at the surfaces.
-    #[inline(always)]
-    fn scatter<B: LaneBsdf<f32x8<S>>>(
-        &self,
-        simd: S,
-        world: &World,
-        bsdf: &B,
-        paths: &LanePaths<'_>,
-        scattered: &mut Scattered,
-    ) {
-        let streams = SampleStreams::new(simd, &paths.streams);
-        let zero = f32x8::splat(simd, 0.0);
-        let view = bsdf.view(self.wo);
-        let beta = gather_spectrum(simd, &by_lane!(lane => paths.paths[lane].beta));
-
-        let exits = self.points.exits(self.ng).lifted(self.lift.as_ref());
+    fn scatter(&self, sample_lights: impl FnOnce(&mut LightSamples, u32), scattered: &mut Scattered) {
+        let Self { width, surfaces, bsdf, beta, streams, task } = *self;
+        let (paths, kind) = (task.paths, bsdf.kind());
+        let (zero, one) = (width.splat(0.0), width.splat(1.0));
+        let view = bsdf.view(surfaces.wo);
+        let exits = surfaces.exits();
 
         // Sample one light.
-        let has_density = bsdf.has_density();
-        scattered.kind = B::KIND;
-        scattered.has_density = has_density.to_bitmask() as u32;
+        scattered.kind = kind;
+        scattered.has_density = match task.light_sampling {
+            LightSampling::None => 0,
+            _ => width.bits(bsdf.has_density()),
+        };
         if scattered.has_density != 0 {
-            let Scattered { lights, connections, .. } = scattered;
-            lights.sample(simd, world, self, &streams, &paths.modes, scattered.has_density);
-            self.connect(simd, (bsdf, &view), beta, (lights, &exits), connections);
+            sample_lights(&mut scattered.lights, scattered.has_density);
+            self.connect(&view, &scattered.lights, &mut scattered.connections);
         }
 
         // Go on in one direction.
-        let [which_lobe, _] = match B::KIND.needs_lobe {
+        let [which_lobe, _] = match kind.needs_lobe {
             true => streams.two(dimension::LOBE),
             false => [zero; 2],
         };
         let mut sample =
             bsdf.sample(&view, which_lobe, streams.two_with_pixel(dimension::DIRECTION)).if_useful();
-        let wi = self.render(sample.wi);
-        if B::KIND.needs_agreement {
-            sample.is_valid &= self.agrees(wi);
+        let wi = surfaces.render(sample.wi);
+        if kind.needs_agreement {
+            sample.is_valid = sample.is_valid & surfaces.agrees(wi);
         }
-        let mis_pdf = match B::KIND.pdf_is_proportional {
-            true => bsdf.pdf(&view, self.local(wi)),
+        let mis_pdf = match kind.pdf_is_proportional {
+            true => bsdf.pdf(&view, surfaces.local(wi)),
             false => sample.pdf,
         };
-        let cos = Float::abs(wi.dot(self.n));
+        let cos = Float::abs(wi.dot(surfaces.n));
         let beta = beta * sample.f * (cos / sample.pdf);
-        let eta_scale = f32x8::load_array(simd, by_lane!(lane => paths.paths[lane].previous.eta_scale))
-            * Float::select(sample.is_transmission, sample.eta * sample.eta, zero.like(1.0));
+        let eta_scale = width.load_f32(&by_lane!(lane => paths[lane].previous.eta_scale))
+            * Float::select(sample.is_transmission, sample.eta * sample.eta, one);
 
         // End paths of small throughput by Russian roulette.
         let mut survival = beta.max_lane() * eta_scale * SURVIVAL;
-        let depth = u32x8::load_array(simd, by_lane!(lane => paths.paths[lane].depth));
-        let is_safe = survival.simd_ge(1.0) | depth.simd_lt(SAFE_BOUNCES);
+        let is_great = survival.gt(one) | Float::eq(survival, one);
+        let is_safe = is_great | width.mask(task.safe_lanes());
         let mut survives = is_safe;
-        survival = Float::select(is_safe, zero.like(1.0), survival);
+        survival = Float::select(is_safe, one, survival);
         if !(is_safe | !sample.is_valid).all() {
             let [u, _] = streams.two(dimension::ROULETTE);
-            survives = is_safe | u.simd_lt(survival);
+            survives = is_safe | u.lt(survival);
         }
         let goes_on = sample.is_valid & survives & !beta.is_black();
-        scattered.is_valid = sample.is_valid.to_bitmask() as u32;
-        scattered.is_specular = sample.is_specular.to_bitmask() as u32;
-        scattered.is_diffuse = sample.is_diffuse.to_bitmask() as u32;
-        scattered.is_transmission = sample.is_transmission.to_bitmask() as u32;
+        scattered.is_valid = width.bits(sample.is_valid);
+        scattered.is_specular = width.bits(sample.is_specular);
+        scattered.is_diffuse = width.bits(sample.is_diffuse);
+        scattered.is_transmission = width.bits(sample.is_transmission);
         scattered.wi = store(wi);
         scattered.f = store_spectrum(sample.f);
-        scattered.pdf = sample.pdf.into();
-        scattered.mis_pdf = Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).into();
-        scattered.eta = sample.eta.into();
-        scattered.cos = cos.into();
+        scattered.pdf = sample.pdf.column();
+        scattered.mis_pdf = Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).column();
+        scattered.eta = sample.eta.column();
+        scattered.cos = cos.column();
         scattered.origin = store(exits.toward(wi));
         scattered.beta = store_spectrum(beta);
         scattered.next_beta = store_spectrum(beta / survival);
-        scattered.eta_scale = eta_scale.into();
-        scattered.survival = survival.into();
-        scattered.survives = survives.to_bitmask() as u32;
-        scattered.goes_on = goes_on.to_bitmask() as u32;
-        scattered.point = store(Vector::narrow(self.points.position));
-        scattered.n = store(self.n);
+        scattered.eta_scale = eta_scale.column();
+        scattered.survival = survival.column();
+        scattered.survives = width.bits(survives);
+        scattered.goes_on = width.bits(goes_on);
+        scattered.point = store(Vector::<W::Real>::narrow(surfaces.points.position));
+        scattered.n = store(surfaces.n);
+    }
+
+    /// Weights light samples.
+    #[inline(always)]
+    fn connect(&self, view: &B::View, lights: &LightSamples, connections: &mut Connections) {
+        let Self { width, surfaces, bsdf, beta, task, .. } = *self;
+        let zero = width.splat(0.0);
+        let wi = load(width, &lights.wi);
+        let local = surfaces.local(wi);
+        let (mut f, bsdf_pdf) = bsdf.f_and_pdf(view, local);
+        if task.wants_shares {
+            connections.diffuse = store_spectrum(bsdf.diffuse_share(view, local, f));
+        }
+        if bsdf.kind().needs_agreement {
+            f = Spectrum::select(surfaces.agrees(wi), f, Spectrum::splat(zero));
+        }
+        let f = f * Float::abs(local.z);
+        // BSDF sampling cannot find all lights.
+        let is_alone = width.mask(match task.light_sampling {
+            LightSampling::MultipleImportance => lights.is_delta,
+            _ => u32::MAX,
+        });
+        let bsdf_pdf = Float::select(is_alone, zero, bsdf_pdf);
+        let light_pdf = width.load_f32(&lights.probability) * width.load_f32(&lights.pdf);
+        let weight = Float::select(is_alone, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
+        let contribution = beta * f * load_spectrum(width, &lights.li) * (weight / light_pdf);
+        let is_sampled = lights.is_valid & !width.bits(f.is_black());
+        let origin = surfaces.exits().toward(wi);
+        connections.f = store_spectrum(f);
+        connections.bsdf_pdf = bsdf_pdf.column();
+        connections.weight = weight.column();
+        connections.contribution = store_spectrum(contribution);
+        connections.is_sampled = is_sampled;
+        connections.is_lit = is_sampled & !width.bits(contribution.is_black());
+        connections.origin = store(origin);
+        connections.end = lights.ends(width, origin);
     }
 }
 
-/// What the path tracer knows of eight paths.
-pub(super) struct LanePaths<'a> {
+/// Paths, and how they are to be scattered.
+pub(super) struct Task<'a> {
+    pub(super) light_sampling: LightSampling,
+    /// Whether layers of light-path expressions need the shares of diffuse lobes.
+    pub(super) wants_shares: bool,
     pub(super) paths: [&'a Path; LANES],
     pub(super) streams: [&'a SampleStream; LANES],
     pub(super) modes: [&'a SpectralMode; LANES],
+}
+
+impl Task<'_> {
+    /// Lanes in which Russian roulette ends no path.
+    #[inline(always)]
+    fn safe_lanes(&self) -> u32 {
+        match self.light_sampling {
+            LightSampling::MultipleImportance => {
+                bitmask(&by_lane!(lane => self.paths[lane].depth < SAFE_BOUNCES))
+            }
+            _ => u32::MAX,
+        }
+    }
+
+    /// The throughputs of the paths.
+    #[inline(always)]
+    fn beta<W: Width>(&self, width: W) -> Spectrum<W::Real> {
+        width.load_spectra(&by_lane!(lane => self.paths[lane].beta))
+    }
+
+    /// Scatters the path in the first lane, whatever its BSDF.
+    #[inline(never)]
+    pub(super) fn scatter_one<B: LaneBsdf<f32>>(
+        &self,
+        world: &World,
+        surfaces: &SurfaceColumns,
+        bsdf: &B,
+        scattered: &mut Scattered,
+    ) {
+        let (width, surfaces) = (One, &surfaces.load(One));
+        let streams = &SampleStreams::new(width, &self.streams);
+        let step = Step { width, surfaces, bsdf, beta: self.beta(width), streams, task: self };
+        step.scatter(|lights, _| lights.sample_one(world, surfaces, streams, self.modes[0]), scattered);
+    }
 }
 
 /// Scatters eight paths at surfaces whose BSDFs are of one class.
@@ -257,7 +290,7 @@ pub(super) struct ScatterKernel<'a, B> {
     pub(super) world: &'a World,
     pub(super) surfaces: &'a SurfaceColumns,
     pub(super) bsdfs: &'a [&'a B; LANES],
-    pub(super) paths: LanePaths<'a>,
+    pub(super) task: &'a Task<'a>,
     /// Memory for the samples.
     pub(super) scattered: &'a mut Scattered,
 }
@@ -275,8 +308,15 @@ impl<B: RowBsdf> Kernel for ScatterKernel<'_, B> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, surfaces, bsdfs, paths, scattered } = self;
-        let bsdf = B::gather(simd, bsdfs);
-        surfaces.load(simd).scatter(simd, world, &bsdf, &paths, scattered);
+        let Self { world, surfaces, bsdfs, task, scattered } = self;
+        let bsdf = &B::gather(simd, bsdfs);
+        let surfaces = &surfaces.load(simd);
+        let streams = &SampleStreams::new(simd, &task.streams);
+        let step = Step { width: simd, surfaces, bsdf, beta: task.beta(simd), streams, task };
+        step.scatter(
+            #[inline(always)]
+            |lights, mask| lights.sample(simd, world, surfaces, streams, &task.modes, mask),
+            scattered,
+        );
     }
 }

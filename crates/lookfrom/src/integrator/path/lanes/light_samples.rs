@@ -1,11 +1,13 @@
-//! Next-event estimation for eight paths at once, up to the shadow ray.
+//! Next-event estimation, up to the shadow ray.
 //!
-//! Triangles, whole spheres and disks of one colour are vectorised; every other light is sampled by scalar code and put into its lane.
+//! Triangles, whole spheres and disks of one colour, and environment maps are sampled in lanes; every other light by
+//! [`Light::sample`], lane by lane.
 
 use lookfrom_bvh::{Point, Ray};
 use lookfrom_simd::{Float, LaneMask, Simd, f32x8, prelude::*};
 
 use super::surfaces::Surfaces;
+use crate::core::lanes::width::Width;
 use crate::core::lanes::{
     Columns, LANES, bitmask, by_lane, load, load_f64, row, set_row, store, store_f64, store_spectrum,
 };
@@ -62,6 +64,46 @@ impl LightSamples {
         normal: [[0.0; LANES]; 3],
     };
 
+    /// Samples a light in the first lane, in place of what was sampled before.
+    pub(super) fn sample_one(
+        &mut self,
+        world: &World,
+        surfaces: &Surfaces<f32>,
+        streams: &SampleStreams<f32>,
+        mode: &SpectralMode,
+    ) {
+        self.clear();
+        let at = LightSampleContext { point: surfaces.points.position.into(), n: surfaces.n.into() };
+        let [which, v] = streams.two_with_pixel(dimension::LIGHT);
+        let none = ChosenLight { light: NO_LIGHT, probability: 0.0, rest: 0.0 };
+        let chosen = world.light_choice.sample(&at, which).unwrap_or(none);
+        (self.light[0], self.probability[0]) = (chosen.light, chosen.probability);
+        self.sample_lane(0, world, &at, [chosen.rest, v], mode);
+    }
+
+    /// Samples the light that a lane has chosen, as [`Light::sample`] does.
+    #[inline]
+    fn sample_lane(
+        &mut self,
+        lane: usize,
+        world: &World,
+        at: &LightSampleContext,
+        u: [f32; 2],
+        mode: &SpectralMode,
+    ) {
+        let Some(light) = world.lights.get(self.light[lane] as usize) else { return };
+        if let Some(sample) = light.sample(&world.textures, at, u, mode, IncompletePdf::Allowed) {
+            self.set(lane, &sample);
+            self.is_delta |= u32::from(light.is_delta()) << lane;
+        }
+    }
+
+    /// Removes all samples.
+    #[inline(always)]
+    fn clear(&mut self) {
+        (self.is_valid, self.is_delta, self.at_point, self.on_surface) = (0, 0, 0, 0);
+    }
+
     /// Samples lights in the lanes of a mask, in place of what was sampled before. Not inlined, since all classes of BSDFs
     /// need it.
     #[inline(never)]
@@ -69,8 +111,8 @@ impl LightSamples {
         &mut self,
         simd: S,
         world: &World,
-        surfaces: &Surfaces<S>,
-        streams: &SampleStreams<S>,
+        surfaces: &Surfaces<f32x8<S>>,
+        streams: &SampleStreams<f32x8<S>>,
         modes: &[&SpectralMode; LANES],
         mask: u32,
     ) {
@@ -85,12 +127,12 @@ impl LightSamples {
         &mut self,
         simd: S,
         world: &World,
-        surfaces: &Surfaces<S>,
-        streams: &SampleStreams<S>,
+        surfaces: &Surfaces<f32x8<S>>,
+        streams: &SampleStreams<f32x8<S>>,
         modes: &[&SpectralMode; LANES],
         mask: u32,
     ) {
-        (self.is_valid, self.is_delta, self.at_point, self.on_surface) = (0, 0, 0, 0);
+        self.clear();
         let [which, v] = streams.two_with_pixel(dimension::LIGHT);
         let u = [self.choose(simd, world, surfaces, which, mask), v];
         let numbers: [[f32; LANES]; 2] = [u[0].into(), u[1].into()];
@@ -130,14 +172,9 @@ impl LightSamples {
         let positions = store_f64(surfaces.points.position);
         let normals = store(surfaces.n);
         for lane in LaneMask(others) {
-            let Some(light) = world.lights.get(self.light[lane] as usize) else { continue };
             let at =
                 LightSampleContext { point: row(&positions, lane).into(), n: row(&normals, lane).into() };
-            let u = row(&numbers, lane);
-            if let Some(sample) = light.sample(&world.textures, &at, u, modes[lane], IncompletePdf::Allowed) {
-                self.set(lane, &sample);
-                self.is_delta |= u32::from(light.is_delta()) << lane;
-            }
+            self.sample_lane(lane, world, &at, row(&numbers, lane), modes[lane]);
         }
     }
 
@@ -147,7 +184,7 @@ impl LightSamples {
         &mut self,
         simd: S,
         world: &World,
-        surfaces: &Surfaces<S>,
+        surfaces: &Surfaces<f32x8<S>>,
         which: f32x8<S>,
         mask: u32,
     ) -> f32x8<S> {
@@ -263,12 +300,12 @@ impl LightSamples {
         Some(Event::LightSampleFailed { address, light, probability, sample })
     }
 
-    /// The directions of shadow rays, from their origins to just before the lights' surfaces: as
-    /// [`crate::integrator::Shadow::new`] has them.
+    /// The directions of shadow rays, from their origins to just before the lights' surfaces.
     #[inline(always)]
-    pub(super) fn ends<S: Simd>(&self, simd: S, origins: Vector<f32x8<S>>) -> Columns<3> {
-        let points = Points { position: load_f64(simd, &self.position), error: load_f64(simd, &self.error) };
-        let normal = load_f64(simd, &self.normal);
-        store(points.just_before(normal, load(simd, &self.wi), origins))
+    pub(super) fn ends<W: Width>(&self, width: W, origins: Vector<W::Real>) -> Columns<3> {
+        let points =
+            Points { position: load_f64(width, &self.position), error: load_f64(width, &self.error) };
+        let normal = load_f64(width, &self.normal);
+        store(points.just_before(normal, load(width, &self.wi), origins))
     }
 }

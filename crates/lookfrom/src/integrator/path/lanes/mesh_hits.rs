@@ -5,7 +5,7 @@ use lookfrom_bvh::{Hit, OriginPrimitive};
 use lookfrom_simd::{Float, Kernel, LaneMask, Simd, f32x8, prelude::*};
 
 use super::bent_frames::BentFrames;
-use super::kernel::{LanePaths, ScatterKernel};
+use super::kernel::ScatterKernel;
 use super::surfaces::SurfaceColumns;
 use super::{Item, Memory};
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, shade_together, store};
@@ -14,8 +14,8 @@ use crate::core::vector::Vector;
 use crate::integrator::path::{PathTracer, dimension};
 use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput};
 use crate::primitive::{Mesh, VertexData, points_on_meshes};
-use crate::shading::bsdf::lanes::BsdfClass;
-use crate::shading::material::{self, Material, MaterialRow, ShadingContext, frame_about};
+use crate::shading::bsdf::BsdfClass;
+use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
 
@@ -109,8 +109,6 @@ impl PathTracer {
                 let (path, hit) = (&batch.paths[*index as usize], &batch.hits[*index as usize]);
                 self.step(batch.world, &batch.streams.of(path), path, hit, output);
                 active &= !(1 << lane);
-            } else if P::LISTENS {
-                self.notice_shading::<B, P>(batch, *index, output);
             }
         }
         if active == 0 {
@@ -167,6 +165,16 @@ impl PathTracer {
             rows[lane] = row;
         }
         bent.bend(surfaces, front);
+        for lane in LaneMask(active).filter(|_| P::LISTENS) {
+            let (MeshHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
+            let surface = world.surface(&path.ray, hit);
+            output.probe.notice(|| Event::Shaded {
+                address: path.address,
+                shading: Box::new(Shading::in_frame(&surface, surfaces.axes(lane), row.bsdf())),
+                surface: Box::new(surface),
+                beta: path.beta,
+            });
+        }
         if active & are_first != 0 {
             let eight = output.queues.first_surfaces.next();
             surfaces.leave(eight);
@@ -186,12 +194,8 @@ impl PathTracer {
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
 
         let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
-        let paths = LanePaths {
-            paths: by_lane!(lane => hits[lane].path),
-            streams: by_lane!(lane => &streams[lane]),
-            modes: by_lane!(lane => &output.queues.modes[hits[lane].path.slot as usize]),
-        };
-        ScatterKernel { world, surfaces, bsdfs: &bsdfs, paths, scattered }.scatter();
+        let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
+        ScatterKernel { world, surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
         let item = |lane: usize| Item {
             path: hits[lane].path,
             origin_primitive: OriginPrimitive::of(hits[lane].hit),
@@ -199,36 +203,6 @@ impl PathTracer {
             is_catcher: false,
         };
         self.go_on(world, item, active, scattered, output);
-    }
-
-    /// Tells the probe of a surface and its shading, as scalar code has them.
-    #[cold]
-    fn notice_shading<B: MaterialRow, P: Probe>(
-        &self,
-        batch: &HitBatch<'_>,
-        index: u32,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let (path, hit) = (&batch.paths[index as usize], &batch.hits[index as usize]);
-        let surface = batch.world.surface(&path.ray, hit);
-        let (mut mode, mut beta) = (output.queues.modes[path.slot as usize], path.beta);
-        let arrival = ShadingContext {
-            mode: &mut mode,
-            throughput: &mut beta,
-            interior: path.interior,
-            u: 0.0,
-            seed: seed_of_walks::<B>(&batch.streams.of(path)),
-        };
-        let Some(mut shading) = batch.world.shading(&surface, arrival) else { return };
-        if self.regularize && path.previous.blurred {
-            shading.bsdf.regularize();
-        }
-        output.probe.notice(|| Event::Shaded {
-            address: path.address,
-            surface: Box::new(surface),
-            shading: Box::new(shading),
-            beta: path.beta,
-        });
     }
 }
 
@@ -331,7 +305,7 @@ impl Kernel for MeshKernel<'_> {
         points.surfaces.set_lifts(Lift { way: lift, ns }, points.front);
         points.uv = [at.uv[0].into(), at.uv[1].into()];
         if are_first || hits.iter().any(|hit| hit.material.bends_frames()) {
-            let dpdv = Vector::narrow(at.shading_dpdv);
+            let dpdv: Vector<f32x8<S>> = Vector::narrow(at.shading_dpdv);
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
             points.bent.dpdv = store(dpdv);
         }

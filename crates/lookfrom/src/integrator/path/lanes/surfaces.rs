@@ -1,9 +1,10 @@
-//! Eight surfaces side by side, in memory and in vectors.
+//! Surfaces of the vertices of paths: in columns of memory, and as numbers of any width.
 
-use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
+use crate::core::lanes::width::Width;
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
-use crate::core::points::{Lift, Points};
+use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
@@ -61,10 +62,10 @@ impl SurfaceColumns {
         }
     }
 
-    /// The surfaces of vertices.
-    pub(super) fn of_vertices(vertices: &[&Vertex; LANES]) -> Self {
+    /// The surfaces of vertices, from the first lane on.
+    pub(super) fn of_vertices(vertices: &[&Vertex]) -> Self {
         let mut columns = Self::NONE;
-        for (lane, vertex) in vertices.iter().enumerate() {
+        for (lane, vertex) in vertices.iter().enumerate().take(LANES) {
             let surface = &vertex.surface;
             set_row(&mut columns.position, lane, surface.point.position);
             set_row(&mut columns.error, lane, surface.point.error);
@@ -138,20 +139,27 @@ impl SurfaceColumns {
         row(&self.ng, lane)
     }
 
+    /// The axes of a lane's frame.
+    #[inline]
+    pub(super) fn axes(&self, lane: usize) -> [[f32; 3]; 3] {
+        self.frame.map(|axis| row(&axis, lane))
+    }
+
     /// The shading normal of a lane.
     #[inline]
     pub(super) fn ns(&self, lane: usize) -> [f32; 3] {
         row(&self.frame[2], lane)
     }
 
-    /// The surfaces in vectors.
+    /// The surfaces as numbers of a width.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&self, simd: S) -> Surfaces<S> {
-        let [s, t, n] = [load(simd, &self.frame[0]), load(simd, &self.frame[1]), load(simd, &self.frame[2])];
-        let wo = load(simd, &self.wo);
-        let ng = load_f64(simd, &self.ng);
+    pub(super) fn load<W: Width>(&self, width: W) -> Surfaces<W::Real> {
+        let [s, t, n] =
+            [load(width, &self.frame[0]), load(width, &self.frame[1]), load(width, &self.frame[2])];
+        let wo = load(width, &self.wo);
+        let ng = load_f64(width, &self.ng);
         Surfaces {
-            points: Points { position: load_f64(simd, &self.position), error: load_f64(simd, &self.error) },
+            points: Points { position: load_f64(width, &self.position), error: load_f64(width, &self.error) },
             ng,
             s,
             t,
@@ -159,42 +167,60 @@ impl SurfaceColumns {
             wo: Vector { x: wo.dot(s), y: wo.dot(t), z: wo.dot(n) },
             cos_ng: wo.dot(Vector::narrow(ng)),
             lift: (self.lifted != 0).then(|| {
-                let is_lifted = mask32x8::from_bitmask(simd, self.lifted.into());
-                let [way, ns] = [load(simd, &self.lift[0]), load(simd, &self.lift[1])];
+                let [way, ns] = [load(width, &self.lift[0]), load(width, &self.lift[1])];
                 let none = Vector::splat(way.x, [0.0; 3]);
-                Lift { way: Vector::select(is_lifted, way, none), ns }
+                Lift { way: Vector::select(width.mask(self.lifted), way, none), ns }
             }),
         }
     }
 }
 
-/// Eight surfaces and the frames that they are shaded in.
-pub(super) struct Surfaces<S: Simd> {
-    pub(super) points: Points<f32x8<S>>,
+/// Surfaces and the frames that they are shaded in.
+pub(super) struct Surfaces<R: Real> {
+    pub(super) points: Points<R>,
     /// Geometric normals, of unit length.
-    pub(super) ng: Vector<f64x8<S>>,
-    pub(super) s: Vector<f32x8<S>>,
-    pub(super) t: Vector<f32x8<S>>,
+    pub(super) ng: Vector<R::Double>,
+    pub(super) s: Vector<R>,
+    pub(super) t: Vector<R>,
     /// Shading normals.
-    pub(super) n: Vector<f32x8<S>>,
+    pub(super) n: Vector<R>,
     /// In the frame.
-    pub(super) wo: Vector<f32x8<S>>,
+    pub(super) wo: Vector<R>,
     /// The cosines of `wo` to the geometric normals.
-    pub(super) cos_ng: f32x8<S>,
+    pub(super) cos_ng: R,
     /// The smooth surfaces that meshes stand for.
-    pub(super) lift: Option<Lift<f32x8<S>>>,
+    pub(super) lift: Option<Lift<R>>,
 }
 
-impl<S: Simd> Surfaces<S> {
+impl<R: Real> Surfaces<R> {
     /// From render space to the frames.
     #[inline(always)]
-    pub(super) fn local(&self, w: Vector<f32x8<S>>) -> Vector<f32x8<S>> {
+    pub(super) fn local(&self, w: Vector<R>) -> Vector<R> {
         Vector { x: w.dot(self.s), y: w.dot(self.t), z: w.dot(self.n) }
     }
 
     /// From the frames to render space, of unit length.
     #[inline(always)]
-    pub(super) fn render(&self, w: Vector<f32x8<S>>) -> Vector<f32x8<S>> {
+    pub(super) fn render(&self, w: Vector<R>) -> Vector<R> {
         (self.s * w.x + self.t * w.y + self.n * w.z).normalize()
+    }
+
+    /// The ways out of the surfaces.
+    #[inline(always)]
+    pub(super) fn exits(&self) -> Exits<'_, R> {
+        self.points.exits(self.ng).lifted(self.lift.as_ref())
+    }
+
+    /// Whether the geometric and the shading normal agree that `wo` and `wi`, in render space, are on one side, or that
+    /// they are not.
+    #[inline(always)]
+    pub(super) fn agrees(&self, wi: Vector<R>) -> R::Mask {
+        let zero = self.cos_ng.like(0.0);
+        let is_beside = (self.wo.z * wi.dot(self.n)).gt(zero);
+        let mut is_outside = (self.cos_ng * wi.dot(Vector::narrow(self.ng))).gt(zero);
+        if let Some(lift) = &self.lift {
+            is_outside = is_outside | zero.narrow_mask(lift.is_above(wi));
+        }
+        is_outside.choose(is_beside, !is_beside)
     }
 }

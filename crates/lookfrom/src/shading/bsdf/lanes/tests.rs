@@ -6,10 +6,10 @@ use lookfrom_simd::{Kernel, Level, dispatch_wide, is_wide};
 use super::*;
 use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
-use crate::shading::bsdf::BsdfSample;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::principled::Parameters;
 use crate::shading::bsdf::principled::film::Film;
+use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
 /// Two directions and three numbers.
@@ -64,7 +64,7 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
         let both = (scatter_spectrum(both.0), both.1);
         let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
         let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
-        let kind = <B::Lanes<S> as LaneBsdf<f32x8<S>>>::KIND;
+        let kind = bsdf.kind();
         std::array::from_fn(|lane| {
             let scalar = mask(sample.is_valid, lane).then(|| BsdfSample {
                 wi: sampled_wi[lane].into(),

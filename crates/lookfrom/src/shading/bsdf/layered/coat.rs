@@ -77,6 +77,12 @@ pub struct DiffuseInterior<R = f32> {
     pub(crate) transmission: [R; COEFFICIENTS],
 }
 
+impl Default for DiffuseInterior {
+    fn default() -> Self {
+        Self::new(None)
+    }
+}
+
 impl DiffuseInterior {
     /// The interior of a coat; unknown for `None`.
     pub(crate) fn new(known: Option<CoatInterior>) -> Self {

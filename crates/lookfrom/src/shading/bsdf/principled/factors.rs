@@ -8,15 +8,6 @@ use crate::core::vector::Vector;
 use crate::shading::bsdf::{MicrofacetFactors, across, is_grazing};
 
 impl LocalScattering {
-    /// The part of [`crate::shading::bsdf::Bsdf::f`] that the diffuse body and sheen have.
-    pub(in crate::shading::bsdf) fn diffuse_f(&self, wi: Vector<f32>) -> Spectrum {
-        let view = self.view();
-        if is_grazing(view.wo) || is_grazing(wi) {
-            return Spectrum::BLACK;
-        }
-        view.diffuse_f(if view.is_inside { across(wi) } else { wi })
-    }
-
     /// As [`crate::shading::bsdf::Bsdf::factors`].
     pub(in crate::shading::bsdf) fn factors(&self, wi: Vector<f32>) -> Vec<MicrofacetFactors> {
         let view = self.view();

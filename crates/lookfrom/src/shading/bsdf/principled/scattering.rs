@@ -15,8 +15,7 @@ use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::diffuse::cosine_direction;
-use crate::shading::bsdf::lanes::LaneBsdf;
-use crate::shading::bsdf::{BsdfSample, DirectionSample, Lobes, Mode, across, is_grazing};
+use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
 
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///
@@ -100,6 +99,19 @@ impl<R: Real> LocalScattering<R> {
         )
     }
 
+    /// The part of [`Self::f`] that the diffuse body and sheen have.
+    #[inline(never)]
+    pub(in crate::shading::bsdf) fn diffuse_f(&self, wi: Vector<R>) -> Spectrum<R> {
+        wi.z.at_level(
+            #[inline(always)]
+            || {
+                let is_usable = self.is_usable & !is_grazing(wi);
+                let f = self.view.diffuse_f(self.towards(wi));
+                Spectrum::select(is_usable, f, Spectrum::splat(wi.z.like(0.0)))
+            },
+        )
+    }
+
     #[inline(never)]
     fn f_by(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
         wi.z.at_level(
@@ -163,7 +175,7 @@ impl<R: Real> LocalScattering<R> {
 
     /// As [`crate::shading::bsdf::Bsdf::sample`].
     #[inline(always)]
-    pub(super) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
+    pub(in crate::shading::bsdf) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
         let choice = &self.choice;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         // The lobe is chosen by the first of the two numbers of the direction, which is then stretched over the lobe's part:
@@ -301,15 +313,5 @@ impl LocalScattering {
     /// The part that depends on ω_o alone.
     pub(super) fn view(&self) -> &View<f32> {
         &self.view
-    }
-
-    /// As [`crate::shading::bsdf::Bsdf::sample`].
-    pub(in crate::shading::bsdf) fn sample_one(
-        &self,
-        uc: f32,
-        u: [f32; 2],
-        mode: Mode,
-    ) -> Option<BsdfSample> {
-        self.sample(uc, u, mode).scalar(<Look as LaneBsdf<f32>>::KIND)
     }
 }

@@ -1,8 +1,8 @@
-//! Eight plain surfaces side by side, from their hits.
+//! Surfaces as Whitted's model needs them: one, or eight plain ones side by side, from their hits.
 
 use glam::Vec2;
-use lookfrom_bvh::Hit;
-use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
+use lookfrom_bvh::{Hit, Point};
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::plain::{self, PlainHits};
 use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
@@ -10,35 +10,22 @@ use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
 use crate::primitive::{Triangles, gather_triangles};
+use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
-/// The geometry of eight surfaces, as [`World::surface`] has it.
-pub(in crate::integrator) struct SurfacePoints<S: Simd> {
-    /// Of the rays.
-    pub(in crate::integrator) direction: Vector<f32x8<S>>,
-    pub(in crate::integrator) points: Points<f32x8<S>>,
-    pub(in crate::integrator) ng: Vector<f64x8<S>>,
-    pub(in crate::integrator) front: mask64x8<S>,
-    wo: Vector<f64x8<S>>,
-    ns: Vector<f64x8<S>>,
+/// Surfaces with the directions that shading needs, as [`World::surface`] has them.
+pub(in crate::integrator) struct Surfaces<R: Real> {
+    pub(super) points: Points<R>,
+    pub(super) ng: Vector<R::Double>,
+    pub(super) ng_facing: Vector<R>,
+    ns: Vector<R>,
+    pub(super) ns_facing: Vector<R>,
+    pub(super) wo: Vector<R>,
+    pub(in crate::integrator) front: R::Mask,
     /// Texture coordinates, where they are known.
-    uv: Option<[f32x8<S>; 2]>,
+    pub(super) uv: Option<[R; 2]>,
     /// The smooth surfaces that meshes stand for.
-    lift: Option<Lift<f32x8<S>>>,
-}
-
-/// Eight surfaces with the directions that shading needs.
-pub(super) struct Surfaces<S: Simd> {
-    pub(super) points: Points<f32x8<S>>,
-    pub(super) ng: Vector<f64x8<S>>,
-    pub(super) ng_facing: Vector<f32x8<S>>,
-    pub(super) ns_facing: Vector<f32x8<S>>,
-    pub(super) wo: Vector<f32x8<S>>,
-    pub(super) front: mask64x8<S>,
-    /// Texture coordinates, where they are known.
-    pub(super) uv: Option<[f32x8<S>; 2]>,
-    /// The smooth surfaces that meshes stand for.
-    pub(super) lift: Option<Lift<f32x8<S>>>,
+    pub(super) lift: Option<Lift<R>>,
 }
 
 /// Points, geometric and shading normals, texture coordinates where they are known, and the ways to smooth surfaces where
@@ -46,24 +33,51 @@ pub(super) struct Surfaces<S: Simd> {
 type Shapes<S> =
     (Points<f32x8<S>>, Vector<f64x8<S>>, Vector<f64x8<S>>, Option<[f32x8<S>; 2]>, Option<Vector<f64x8<S>>>);
 
-impl<S: Simd> SurfacePoints<S> {
-    /// The surfaces of hits; without texture coordinates where they are not wanted.
+impl Surfaces<f32> {
+    /// One surface.
+    pub(super) fn of_one(surface: &SurfaceInteraction) -> Self {
+        let Point { position, error } = surface.point;
+        Self {
+            points: Points { position: position.into(), error: error.into() },
+            ng: surface.ng.into(),
+            ng_facing: surface.ng_facing().into(),
+            ns: surface.ns.into(),
+            ns_facing: surface.ns_facing().into(),
+            wo: surface.wo.into(),
+            front: surface.front,
+            uv: Some(surface.uv.into()),
+            lift: surface.lift(),
+        }
+    }
+}
+
+impl<S: Simd> Surfaces<f32x8<S>> {
+    /// The surfaces of eight hits; without texture coordinates where they are not wanted.
     #[inline(always)]
-    pub(in crate::integrator) fn of(simd: S, world: &World, plain: &PlainHits<'_>, wants_uvs: bool) -> Self {
-        let [origin, direction] = gather_rays(simd, &plain.rays);
-        let wide = direction.widen();
-        let (points, ng, ns, uv, lift) = match plain.are_on_spheres {
-            true => on_spheres(simd, world, plain, [origin.widen(), wide], wants_uvs),
+    pub(in crate::integrator) fn of_eight(
+        simd: S,
+        world: &World,
+        plain: &PlainHits<'_>,
+        wants_uvs: bool,
+    ) -> Self {
+        let [origin, direction] = gather_rays(simd, &plain.rays).map(Vector::widen);
+        let (points, ng, ns, uv, way) = match plain.are_on_spheres {
+            true => on_spheres(simd, world, plain, [origin, direction], wants_uvs),
             false => on_triangles(simd, world, plain, wants_uvs),
         };
-        let wo = -wide.normalize();
-        let zero = f64x8::splat(simd, 0.0);
-        let front = ng.dot(wo).gt(zero);
-        let lift = lift.map(|way| {
-            let way = Vector::select(front, way, Vector::splat(zero, [0.0; 3]));
-            Lift { way: Vector::narrow(way), ns: Vector::narrow(ns) }
+        let wo = -direction.normalize();
+        let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
+        let ns = Vector::<f32x8<S>>::narrow(ns);
+        let lift = way.map(|way| {
+            let none = Vector::splat(way.x, [0.0; 3]);
+            Lift { way: Vector::narrow(Vector::select(front, way, none)), ns }
         });
-        Self { direction, points, ng, front, wo, ns, uv, lift }
+        let ng_facing = Vector::narrow(ng.negate_where(!front));
+        let (wo, front) = (Vector::<f32x8<S>>::narrow(wo), ns.x.narrow_mask(front));
+        let ns_facing = ns.negate_where(!front);
+        let is_facing = ns_facing.dot(wo).gt(f32x8::splat(simd, 0.0));
+        let ns_facing = Vector::select(is_facing, ns_facing, ng_facing);
+        Self { points, ng, ng_facing, ns, ns_facing, wo, front, uv, lift }
     }
 
     /// Leaves them to AOVs, but for the albedo.
@@ -71,42 +85,30 @@ impl<S: Simd> SurfacePoints<S> {
     pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
         first.position = store_f64(self.points.position);
         first.ng = store(Vector::<f32x8<S>>::narrow(self.ng));
-        first.ns = store(Vector::<f32x8<S>>::narrow(self.ns));
-        first.wo = store(Vector::<f32x8<S>>::narrow(self.wo));
+        (first.ns, first.wo) = (store(self.ns), store(self.wo));
         if let Some([u, v]) = self.uv {
             first.uv = [u.into(), v.into()];
         }
     }
 }
 
-impl<S: Simd> Surfaces<S> {
-    /// Those at points.
-    #[inline(always)]
-    pub(super) fn at(simd: S, at: &SurfacePoints<S>) -> Self {
-        let SurfacePoints { points, ng, front, wo, ns, uv, lift, .. } = *at;
-        let wo = Vector::<f32x8<S>>::narrow(wo);
-        let ng_facing = Vector::narrow(ng.negate_where(!front));
-        let ns_facing = Vector::<f32x8<S>>::narrow(ns.negate_where(!front));
-        let is_facing = ns_facing.dot(wo).gt(f32x8::splat(simd, 0.0));
-        let ns_facing = Vector::select(is_facing, ns_facing, ng_facing);
-        Self { points, ng, ng_facing, ns_facing, wo, front, uv, lift }
-    }
-
+impl<R: Real> Surfaces<R> {
     /// The ways out of the surfaces.
     #[inline(always)]
-    pub(super) fn exits(&self) -> Exits<'_, f32x8<S>> {
+    pub(in crate::integrator) fn exits(&self) -> Exits<'_, R> {
         self.points.exits(self.ng).lifted(self.lift.as_ref())
     }
 
-    /// Whether directions lead to the outside: of the smooth surfaces, where meshes stand for those.
+    /// Whether directions lead through the surfaces: the smooth ones, where meshes stand for those.
     #[inline(always)]
-    pub(super) fn is_outside(&self, wi: Vector<f32x8<S>>) -> mask64x8<S> {
+    pub(super) fn cross(&self, wi: Vector<R>) -> R::Mask {
         let cos = self.ng.dot(wi.widen());
-        let is_outside = cos.gt(cos.like(0.0));
-        match &self.lift {
-            Some(lift) => is_outside | lift.is_above(wi),
-            None => is_outside,
+        let mut is_outside = cos.gt(cos.like(0.0));
+        if let Some(lift) = &self.lift {
+            is_outside = is_outside | lift.is_above(wi);
         }
+        let is_outside = wi.x.narrow_mask(is_outside);
+        is_outside.choose(!self.front, self.front)
     }
 }
 

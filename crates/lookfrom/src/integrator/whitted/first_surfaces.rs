@@ -3,7 +3,7 @@
 use lookfrom_simd::LaneMask;
 
 use super::coefficients::texture_point;
-use super::lanes::Eight;
+use super::step::Eight;
 use crate::core::lanes::{by_lane, row, set_row};
 use crate::integrator::{FirstSurfaceColumns, FirstSurfaces, Path, SpectralModes};
 use crate::shading::material::{self, MaterialKind};

@@ -9,7 +9,7 @@ const PLACES: usize = 64;
 
 /// Hits that wait, by shape and material: memory that is reused.
 #[derive(Debug, Default)]
-pub(super) struct Waiting {
+pub(super) struct Bins {
     /// On spheres at odd places.
     places: Vec<Place>,
     /// Bit i for place i: whether it has had hits.
@@ -52,7 +52,7 @@ impl Place {
     }
 }
 
-impl Waiting {
+impl Bins {
     /// Adds the hit of a path, and calls `shade` for eight of them where they fill the lanes.
     #[inline(always)]
     pub(super) fn push(&mut self, plain: Plain, path: u32, shade: impl FnOnce(&Chosen<'_>)) {

@@ -4,8 +4,8 @@ use glam::{DVec3, Vec2};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
-use super::lanes::Eight;
 use super::plain;
+use super::step::Eight;
 use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64, splat_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -22,18 +22,6 @@ pub(super) struct Modes<'a> {
     by_lane: [&'a SpectralMode; LANES],
     /// Whether all are RGB: the modes of a picture are of one kind.
     are_rgb: bool,
-}
-
-/// Whitted's coefficients.
-pub(super) struct CoefficientColumns<S: Simd> {
-    pub(super) ambient: Spectrum<f32x8<S>>,
-    pub(super) diffuse: Spectrum<f32x8<S>>,
-    pub(super) specular: Spectrum<f32x8<S>>,
-    pub(super) shininess: f32x8<S>,
-    pub(super) mirror: Spectrum<f32x8<S>>,
-    pub(super) transmission: Spectrum<f32x8<S>>,
-    pub(super) ior: f32x8<S>,
-    pub(super) is_fresnel: mask32x8<S>,
 }
 
 impl<'a> Modes<'a> {
@@ -86,7 +74,7 @@ impl<'a> Modes<'a> {
         simd: S,
         world: &World,
         texture: &SpectrumTexture,
-        surfaces: &Surfaces<S>,
+        surfaces: &Surfaces<f32x8<S>>,
     ) -> Option<Spectrum<f32x8<S>>> {
         if !self.are_rgb {
             return None;
@@ -98,14 +86,14 @@ impl<'a> Modes<'a> {
     }
 }
 
-impl<S: Simd> CoefficientColumns<S> {
+impl<S: Simd> Coefficients<f32x8<S>> {
     /// The coefficients at eight surfaces.
     #[inline(always)]
-    pub(super) fn of(
+    pub(super) fn at_eight(
         simd: S,
         world: &World,
         eight: &Eight<'_>,
-        surfaces: &Surfaces<S>,
+        surfaces: &Surfaces<f32x8<S>>,
         modes: &Modes<'_>,
     ) -> Self {
         let (mut is_one, mut lane) = (true, 0);
@@ -121,7 +109,13 @@ impl<S: Simd> CoefficientColumns<S> {
 
     /// Those of one material.
     #[inline(always)]
-    fn of_one(simd: S, world: &World, eight: &Eight<'_>, surfaces: &Surfaces<S>, modes: &Modes<'_>) -> Self {
+    fn of_one(
+        simd: S,
+        world: &World,
+        eight: &Eight<'_>,
+        surfaces: &Surfaces<f32x8<S>>,
+        modes: &Modes<'_>,
+    ) -> Self {
         let material = &world.materials[eight.materials[0] as usize].whitted;
         let mut points = None;
         macro_rules! spectra {
@@ -150,13 +144,19 @@ impl<S: Simd> CoefficientColumns<S> {
             mirror: spectra!(&material.mirror),
             transmission: spectra!(&material.transmission),
             ior: f32x8::splat(simd, material.ior),
-            is_fresnel: mask32x8::splat(simd, material.fresnel),
+            fresnel: mask32x8::splat(simd, material.fresnel),
         }
     }
 
     /// Those of several materials, one by one.
     #[inline(always)]
-    fn of_each(simd: S, world: &World, eight: &Eight<'_>, surfaces: &Surfaces<S>, modes: &Modes<'_>) -> Self {
+    fn of_each(
+        simd: S,
+        world: &World,
+        eight: &Eight<'_>,
+        surfaces: &Surfaces<f32x8<S>>,
+        modes: &Modes<'_>,
+    ) -> Self {
         let points = texture_points(world, eight, surfaces);
         let rows = by_lane!(lane => {
             let material = &world.materials[eight.materials[lane] as usize].whitted;
@@ -171,7 +171,7 @@ impl<S: Simd> CoefficientColumns<S> {
             mirror: gather_spectrum(simd, &by_lane!(lane => rows[lane].mirror)),
             transmission: gather_spectrum(simd, &by_lane!(lane => rows[lane].transmission)),
             ior: f32x8::load_array(simd, by_lane!(lane => rows[lane].ior)),
-            is_fresnel: f32x8::load_array(simd, is_fresnel).gt(f32x8::splat(simd, 0.0)),
+            fresnel: f32x8::load_array(simd, is_fresnel).gt(f32x8::splat(simd, 0.0)),
         }
     }
 }
@@ -181,7 +181,7 @@ impl<S: Simd> CoefficientColumns<S> {
 fn texture_points<'a, S: Simd>(
     world: &World,
     eight: &Eight<'_>,
-    surfaces: &Surfaces<S>,
+    surfaces: &Surfaces<f32x8<S>>,
 ) -> [TexturePoint<'a>; LANES] {
     let positions = scatter_f64(surfaces.points.position);
     let normals = scatter(Vector::<f32x8<S>>::narrow(surfaces.ng));

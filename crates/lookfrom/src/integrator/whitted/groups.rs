@@ -1,8 +1,8 @@
-//! Groups of eight shaded plain hits: their ambient light, light of sources and branches, in memory that is reused.
+//! Groups of shaded hits, up to eight in each: their ambient light, light of sources and branches, in memory that is reused.
 
 use lookfrom_bvh::Ray;
 
-use super::branches::Branches;
+use super::told::Told;
 use crate::core::lanes::LANES;
 use crate::core::spectrum::Spectrum;
 
@@ -15,6 +15,18 @@ pub(super) struct Groups {
     lights: Vec<FromLight>,
     /// Number of those that count.
     light_count: usize,
+    /// What a probe is told beside them, if there is one: of each group.
+    told: Vec<Told>,
+}
+
+/// The rays of a branch of the tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BranchRays {
+    /// Bit i for lane i: whether there is a ray at all.
+    pub(super) exist: u32,
+    /// The throughputs of the paths that go on.
+    pub(super) beta: [Spectrum; LANES],
+    pub(super) rays: [Ray; LANES],
 }
 
 /// The steps of eight paths.
@@ -24,7 +36,8 @@ pub(super) struct Group {
     pub(super) ambient: [Spectrum; LANES],
     /// The first of the lights that illuminate any of them, and the end.
     pub(super) lights: [usize; 2],
-    pub(super) branches: Branches,
+    /// The reflected rays, and the refracted ones.
+    pub(super) branches: [BranchRays; 2],
     pub(super) materials: [u32; LANES],
     /// Bit i for lane i: whether the ray hit the outside.
     pub(super) front: u32,
@@ -36,9 +49,9 @@ pub(super) struct FromLight {
     pub(super) light: u32,
     /// Bit i for lane i: whether it contributes light, unless it is occluded.
     pub(super) lit: u32,
-    /// Whether the way to it crosses the surface.
-    pub(super) crosses: u32,
     pub(super) contribution: [Spectrum; LANES],
+    /// The shares of diffuse reflection, where layers need them.
+    pub(super) diffuse: [Spectrum; LANES],
     /// To the light.
     pub(super) rays: [Ray; LANES],
 }
@@ -68,6 +81,7 @@ impl Groups {
     #[inline(always)]
     pub(super) fn clear(&mut self) {
         (self.count, self.light_count) = (0, 0);
+        self.told.clear();
     }
 
     /// Number of groups.
@@ -76,19 +90,24 @@ impl Groups {
         self.count
     }
 
-    /// A group and the lights on it, if there is one of this number.
+    /// A group, the lights on it and what is told of it, if there is a group of this number.
     #[inline(always)]
-    pub(super) fn get(&self, number: usize) -> Option<(&Group, &[FromLight])> {
+    pub(super) fn get(&self, number: usize) -> Option<(&Group, &[FromLight], Option<&Told>)> {
         let group = self.groups.get(number)?;
         let [first, end] = group.lights;
-        Some((group, &self.lights[first..end]))
+        Some((group, &self.lights[first..end], self.told.get(number)))
     }
 
     /// The next group to be computed, and the lights on it.
     #[inline(always)]
     pub(super) fn next(&mut self) -> (&mut Group, NextLights<'_>) {
-        let Self { groups, count, lights, light_count } = self;
+        let Self { groups, count, lights, light_count, .. } = self;
         (next(groups, count, Group::EMPTY), NextLights { lights, count: light_count })
+    }
+
+    /// Adds what a probe is told of the last group.
+    pub(super) fn tell(&mut self, told: Told) {
+        self.told.push(told);
     }
 }
 
@@ -102,11 +121,16 @@ fn next<'a, T: Copy>(memory: &'a mut Vec<T>, count: &mut usize, empty: T) -> &'a
     &mut memory[*count - 1]
 }
 
+impl BranchRays {
+    const NONE: Self =
+        Self { exist: 0, beta: [Spectrum::BLACK; LANES], rays: [Ray::new([0.0; 3], [0.0; 3]); LANES] };
+}
+
 impl Group {
     const EMPTY: Self = Self {
         ambient: [Spectrum::BLACK; LANES],
         lights: [0; 2],
-        branches: Branches::NONE,
+        branches: [BranchRays::NONE; 2],
         materials: [0; LANES],
         front: 0,
     };
@@ -116,8 +140,8 @@ impl FromLight {
     const NONE: Self = Self {
         light: 0,
         lit: 0,
-        crosses: 0,
         contribution: [Spectrum::BLACK; LANES],
+        diffuse: [Spectrum::BLACK; LANES],
         rays: [Ray::new([0.0; 3], [0.0; 3]); LANES],
     };
 }

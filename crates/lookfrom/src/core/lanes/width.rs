@@ -1,0 +1,178 @@
+//! Numbers of a width between vectors and columns of memory: eight side by side, or one, which is that of the first lane.
+
+use lookfrom_bvh::Ray;
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*, u32x8, u64x8};
+
+use super::{LANES, gather_spectrum, scatter_rays, scatter_spectrum};
+use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
+
+/// What makes numbers of a width from columns: a token of SIMD for eight, [`One`] for one.
+pub(crate) trait Width: Copy {
+    /// The numbers.
+    type Real: Lanes;
+
+    /// Numbers of single precision.
+    fn load_f32(self, column: &[f32; LANES]) -> Self::Real;
+    /// Numbers of double precision.
+    fn load_f64(self, column: &[f64; LANES]) -> Double<Self>;
+    /// Integers of 32 bits.
+    fn load_u32(self, column: &[u32; LANES]) -> Bits<Self>;
+    /// Integers of 64 bits.
+    fn load_u64(self, column: &[u64; LANES]) -> Bits64<Self>;
+    /// The mask whose lane i is bit i.
+    fn mask(self, bits: u32) -> Mask<Self>;
+    /// The bits of a mask: bit i is lane i.
+    fn bits(self, mask: Mask<Self>) -> u32;
+    /// The same number in each lane.
+    fn splat(self, value: f32) -> Self::Real;
+    /// Spectra from their rows.
+    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum<Self::Real>;
+    /// The rows of spectra.
+    fn spectra(self, spectra: Spectrum<Self::Real>) -> [Spectrum; LANES];
+    /// The rows of rays, which start at t = 0.
+    fn rays(self, origin: Vector<Self::Real>, direction: Vector<Self::Real>, t_max: f32) -> [Ray; LANES];
+}
+
+/// Numbers of double precision of a width.
+pub(crate) type Double<W> = <<W as Width>::Real as Real>::Double;
+/// Integers of 32 bits of a width.
+pub(crate) type Bits<W> = <<W as Width>::Real as Real>::Bits;
+/// Integers of 64 bits of a width.
+pub(crate) type Bits64<W> = <<W as Width>::Real as Real>::Bits64;
+/// Masks of a width.
+pub(crate) type Mask<W> = <<W as Width>::Real as Float>::Mask;
+
+/// Numbers that are stored in columns. One number is in all lanes of its column.
+pub(crate) trait Lanes: Real<Double: WideLanes> {
+    /// The number of each lane.
+    fn column(self) -> [f32; LANES];
+}
+
+/// [`Lanes`] of double precision.
+pub(crate) trait WideLanes: Float<Scalar = f64> {
+    /// The number of each lane.
+    fn column(self) -> [f64; LANES];
+}
+
+/// The width of one number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct One;
+
+impl Width for One {
+    type Real = f32;
+
+    #[inline(always)]
+    fn load_f32(self, column: &[f32; LANES]) -> f32 {
+        column[0]
+    }
+    #[inline(always)]
+    fn load_f64(self, column: &[f64; LANES]) -> f64 {
+        column[0]
+    }
+    #[inline(always)]
+    fn load_u32(self, column: &[u32; LANES]) -> u32 {
+        column[0]
+    }
+    #[inline(always)]
+    fn load_u64(self, column: &[u64; LANES]) -> u64 {
+        column[0]
+    }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> bool {
+        bits & 1 != 0
+    }
+    #[inline(always)]
+    fn bits(self, mask: bool) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    fn splat(self, value: f32) -> f32 {
+        value
+    }
+    #[inline(always)]
+    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum {
+        rows[0]
+    }
+    #[inline(always)]
+    fn spectra(self, spectrum: Spectrum) -> [Spectrum; LANES] {
+        [spectrum; LANES]
+    }
+    #[inline(always)]
+    fn rays(self, origin: Vector<f32>, direction: Vector<f32>, t_max: f32) -> [Ray; LANES] {
+        [Ray::new(origin.into(), direction.into()).with_t_max(t_max); LANES]
+    }
+}
+
+impl Lanes for f32 {
+    #[inline(always)]
+    fn column(self) -> [f32; LANES] {
+        [self; LANES]
+    }
+}
+
+impl WideLanes for f64 {
+    #[inline(always)]
+    fn column(self) -> [f64; LANES] {
+        [self; LANES]
+    }
+}
+
+impl<S: Simd> Width for S {
+    type Real = f32x8<S>;
+
+    #[inline(always)]
+    fn load_f32(self, column: &[f32; LANES]) -> f32x8<S> {
+        f32x8::load_array(self, *column)
+    }
+    #[inline(always)]
+    fn load_f64(self, column: &[f64; LANES]) -> f64x8<S> {
+        f64x8::load_array(self, *column)
+    }
+    #[inline(always)]
+    fn load_u32(self, column: &[u32; LANES]) -> u32x8<S> {
+        u32x8::load_array(self, *column)
+    }
+    #[inline(always)]
+    fn load_u64(self, column: &[u64; LANES]) -> u64x8<S> {
+        u64x8::load_array(self, *column)
+    }
+    #[inline(always)]
+    fn mask(self, bits: u32) -> mask32x8<S> {
+        mask32x8::from_bitmask(self, bits.into())
+    }
+    #[inline(always)]
+    fn bits(self, mask: mask32x8<S>) -> u32 {
+        mask.to_bitmask() as u32
+    }
+    #[inline(always)]
+    fn splat(self, value: f32) -> f32x8<S> {
+        f32x8::splat(self, value)
+    }
+    #[inline(always)]
+    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum<f32x8<S>> {
+        gather_spectrum(self, rows)
+    }
+    #[inline(always)]
+    fn spectra(self, spectra: Spectrum<f32x8<S>>) -> [Spectrum; LANES] {
+        scatter_spectrum(spectra)
+    }
+    #[inline(always)]
+    fn rays(self, origin: Vector<f32x8<S>>, direction: Vector<f32x8<S>>, t_max: f32) -> [Ray; LANES] {
+        scatter_rays(self, origin, direction, t_max)
+    }
+}
+
+impl<S: Simd> Lanes for f32x8<S> {
+    #[inline(always)]
+    fn column(self) -> [f32; LANES] {
+        self.into()
+    }
+}
+
+impl<S: Simd> WideLanes for f64x8<S> {
+    #[inline(always)]
+    fn column(self) -> [f64; LANES] {
+        self.into()
+    }
+}

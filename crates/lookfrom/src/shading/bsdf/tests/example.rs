@@ -1,0 +1,66 @@
+//! The BSDF that CONTRIBUTING.md adds: its file, and its row in a table.
+
+use glam::Vec3;
+
+use super::clay::Clay;
+use super::uniform_direction;
+use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::class::scattering_functions;
+use crate::shading::bsdf::lobes::Lobes;
+use crate::shading::bsdf::{Mode, ScatteringFunction};
+
+scattering_functions! {
+    /// A table with one row.
+    Extended
+    lanes {}
+    one_by_one {
+        /// Rough matte surfaces.
+        Clay(Clay),
+    }
+}
+
+fn clay(sigma: f32) -> Extended {
+    Extended::Clay(Clay { reflectance: Spectrum([0.8; 4]), sigma })
+}
+
+/// The midpoints of a grid of numbers in [0, 1)².
+fn grid() -> impl Iterator<Item = [f32; 2]> {
+    let at = |k: usize| (k as f32 + 0.5) / 64.0;
+    (0..64).flat_map(move |i| (0..64).map(move |j| [at(i), at(j)]))
+}
+
+#[test]
+fn a_row_makes_it_a_bsdf() {
+    let mut bsdf = clay(0.5);
+    bsdf.class_mut().regularize();
+    assert_eq!(bsdf.class().description().kind, "clay");
+    let [a, b] = [[0.1, 0.7], [0.4, 0.2]].map(|u| uniform_direction(u).with_z(0.3).normalize());
+    let f = |wo, wi| bsdf.class().f(wo, wi, Mode::Radiance).0[0];
+    assert!((f(a, b) - f(b, a)).abs() < 1e-6);
+    // Without roughness it is Lambert's.
+    assert!((clay(0.0).class().f(a, b, Mode::Radiance).0[0] - 0.8 / std::f32::consts::PI).abs() < 1e-6);
+}
+
+#[test]
+fn its_samples_add_up_to_its_albedo() {
+    for (sigma, wo) in [(0.2, Vec3::Z), (0.6, Vec3::new(0.8, 0.0, 0.6)), (1.0, Vec3::new(0.0, -0.6, -0.8))] {
+        let bsdf = clay(sigma);
+        let sampled: f32 = grid()
+            .filter_map(|u| bsdf.class().sample(wo, 0.0, u, Mode::Radiance, Lobes::ALL))
+            .map(|sample| sample.f.0[0] * sample.wi.z.abs() / sample.pdf)
+            .sum();
+        let integral: f32 = grid()
+            .map(|u| (uniform_direction(u), 4.0 * std::f32::consts::PI))
+            .map(|(wi, area)| bsdf.class().f(wo, wi, Mode::Radiance).0[0] * wi.z.abs() * area)
+            .sum();
+        let [sampled, integral] = [sampled, integral].map(|sum| sum / 4096.0);
+        assert!((sampled - integral).abs() < 2e-3, "{sigma}: {sampled} {integral}");
+        assert!(0.5 < sampled && sampled < 0.81, "{sigma}: {sampled}");
+    }
+}
+
+#[test]
+fn contributing_shows_this_file() {
+    let text = include_str!("../../../../../../CONTRIBUTING.md");
+    assert!(text.contains(include_str!("clay.rs")), "the block of CONTRIBUTING.md is not tests/clay.rs");
+}
