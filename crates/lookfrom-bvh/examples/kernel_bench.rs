@@ -220,6 +220,9 @@ fn trace_all(bvh: &Bvh, rays: &[Ray], way: Way, answers: &mut [Answer], threads:
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    if let Ok(level) = std::env::var("LOOKFROM_SIMD") {
+        lookfrom_simd::choose_level(&level)?;
+    }
     let options = options()?;
     let (positions, indices) = read_mesh(&options.mesh)?;
     let common = format!(

@@ -204,16 +204,12 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "TIME", value_parser = values::duration)]
     pub(crate) time: Option<Duration>,
 
-    /// Adaptive sampling: stop when the relative standard error of every tile is at most this, such as 0.02
+    /// Adaptive sampling: stop when the picture's mean relative standard error is at most this, such as 0.02
     ///
-    /// Tiles of 32 × 32 pixels get no more samples once they reach it (after at least 16 samples per pixel). Without --samples,
-    /// there is no other limit.
+    /// After 16 samples per pixel further ones go where noise is, by the variances of neighbouring pixels, until the limit is
+    /// reached. Without --samples, there is no other limit; with it, no pixel gets more.
     #[arg(long, value_name = "ERROR", value_parser = values::between(1e-6f64, 1e6))]
     pub(crate) noise: Option<f64>,
-
-    /// Adaptive sampling with a limit: --noise 0.02, but at most as many samples per pixel as the scene or --samples says
-    #[arg(long)]
-    pub(crate) adaptive: bool,
 
     /// Write a preview (the picture so far) at this interval: 10s, 2m
     #[arg(long, value_name = "TIME", value_parser = values::duration)]

@@ -10,7 +10,7 @@ use crate::args::{Arguments, Overrides};
 const GROUPS: &[(&str, &[&str])] = &[
     ("Output", &["output", "format", "quality", "bits", "write_every", "show"]),
     ("Size", &["size", "width", "height", "crop"]),
-    ("Samples, time, noise", &["samples", "time", "noise", "adaptive", "allocation", "denoise", "fireflies"]),
+    ("Samples, time, noise", &["samples", "time", "noise", "allocation", "denoise", "fireflies"]),
     ("Camera", &["lookfrom", "lookat", "up", "fov", "view", "azimuth", "elevation", "turn", "camera"]),
     (
         "Light, background, colours",

@@ -50,7 +50,10 @@ fn main() -> ExitCode {
         Ok(parsed) => parsed,
         Err(error) => return ExitCode::from(exit::not_parsed(&error)),
     };
-    if let Some(word) = lookfrom::unmet_level() {
+    if let Ok(word) = std::env::var("LOOKFROM_SIMD")
+        && !word.is_empty()
+        && lookfrom::choose_level(&word).is_err()
+    {
         exit::say(&format!(
             "warning: LOOKFROM_SIMD={word} names no level of this machine (sse2, avx2, avx512): its best is used"
         ));

@@ -376,7 +376,6 @@ fn keep_inputs(path: &Path, targets: &[Target], inputs: &Inputs) -> Result<(), F
 pub(crate) fn options(arguments: &RenderArguments, target: &Target, environment: Option<&Image>) -> Options {
     Options {
         stop: StopCriteria { time: arguments.time, noise: arguments.noise },
-        adaptive: arguments.adaptive,
         fireflies: arguments.fireflies,
         format: Some(target.format()),
         film: arguments.keep.film,

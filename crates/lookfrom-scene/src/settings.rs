@@ -305,6 +305,9 @@ pub struct RenderSettings {
     /// Otherwise interfaces block shadow rays, but no others, as in pbrt's integrators without media. Absorption inside
     /// materials is always rendered.
     pub media: bool,
+    /// Whether half of the light passes single-sided surfaces from their fronts, where most of what is seen of the scene from
+    /// outside are their backs: rooms and domes that the camera looks into from outside.
+    pub open_fronts: bool,
 }
 
 /// The allocation of a picture's samples to its pixels (of strata: Neyman 1934).
@@ -387,6 +390,7 @@ impl Default for RenderSettings {
             regularize: false,
             occlusion_distance: f32::INFINITY,
             media: true,
+            open_fronts: false,
         }
     }
 }

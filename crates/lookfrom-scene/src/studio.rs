@@ -99,7 +99,8 @@ fn shines(scene: &Scene) -> bool {
 pub fn settings_for_models() -> (ImageSettings, RenderSettings) {
     let image = ImageSettings { tonemap: Tonemap::PbrNeutral, ..ImageSettings::default() };
     let samples = samples_for_models(&image);
-    let render = RenderSettings { integrator: Integrator::Path, samples, ..RenderSettings::default() };
+    let (integrator, default) = (Integrator::Path, RenderSettings::default());
+    let render = RenderSettings { integrator, samples, open_fronts: true, ..default };
     (image, render)
 }
 

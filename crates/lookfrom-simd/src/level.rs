@@ -1,25 +1,39 @@
-//! The SIMD level of kernels: the machine's best, or a lower one for tests and measurements.
+//! The SIMD level of a process's kernels: the machine's best, or a lower one for tests and measurements.
 
+use std::fmt;
 use std::sync::OnceLock;
 
 use fearless_simd::Level;
 
-/// The machine's best level, or the lower one that the environment variable `LOOKFROM_SIMD` selects: `sse2`, `avx2`
-/// or `avx512`. Results have the same bits at every level; the variable is for tests of this property, and for
-/// measuring the effect of a level. A level that the machine does not support, or any other word, selects the best.
-///
-/// The variable is read once.
+static LEVEL: OnceLock<Level> = OnceLock::new();
+
+/// The level of all kernels of this process: the machine's best, unless a lower one was [chosen](choose_level) before.
 pub fn level() -> Level {
-    static LEVEL: OnceLock<Level> = OnceLock::new();
-    *LEVEL.get_or_init(|| named(&std::env::var("LOOKFROM_SIMD").unwrap_or_default(), Level::new()))
+    *LEVEL.get_or_init(Level::new)
 }
 
-/// The word of `LOOKFROM_SIMD`, where it names no level of this machine and changes nothing.
-pub fn unmet_level() -> Option<String> {
-    let word = std::env::var("LOOKFROM_SIMD").unwrap_or_default();
-    let is_met = word.is_empty() || is_level(&word, Level::new());
-    (!is_met).then_some(word)
+/// Chooses the level of all kernels of this process by its name: `sse2`, `avx2` or `avx512`. Results have the same bits at every
+/// level; this is for tests of that, and to measure what a level brings. Programs call it before anything else.
+///
+/// # Errors
+/// `Err` where the name is none of a level that this machine has, or kernels have run already; then nothing changes.
+pub fn choose_level(name: &str) -> Result<(), UnmetLevel> {
+    let best = Level::new();
+    let is_met = is_level(name, best) && LEVEL.set(named(name, best)).is_ok();
+    if is_met { Ok(()) } else { Err(UnmetLevel) }
 }
+
+/// A level that could not be chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnmetLevel;
+
+impl fmt::Display for UnmetLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("no SIMD level of this machine, or its kernels have run already")
+    }
+}
+
+impl std::error::Error for UnmetLevel {}
 
 /// Whether a machine whose best level is `best` has the level of a name.
 #[cfg(target_arch = "x86_64")]

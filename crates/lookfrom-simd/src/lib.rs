@@ -12,6 +12,6 @@ pub use fearless_simd::{
     Level, Simd, f32x4, f32x8, f32x16, f64x4, f64x8, i32x8, mask32x8, mask64x8, prelude, u32x4, u32x8, u64x8,
 };
 pub use lane_mask::LaneMask;
-pub use level::{level, unmet_level};
+pub use level::{UnmetLevel, choose_level, level};
 pub use real::{Bits, Float, Mask, Real};
 pub use transpose::transposed;

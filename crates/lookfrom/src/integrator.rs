@@ -238,6 +238,12 @@ impl Queues {
         self.last_scatterings.clear();
     }
 
+    #[cold]
+    fn add_last_scattering(&mut self, last: LastScattering) -> u32 {
+        self.last_scatterings.push(last);
+        self.last_scatterings.len() as u32 - 1
+    }
+
     /// The layers of a slot.
     fn layers_of(&mut self, slot: u32, light_paths: &LightPaths) -> &mut [Spectrum] {
         let first = slot as usize * light_paths.count();
@@ -320,12 +326,28 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// The state of a path that a surface scatters by one lobe.
-    fn scattered(&self, path: &Path, lobe: Lobes) -> LightPathState {
-        self.light_paths.map_or_else(LightPathState::default, |paths| paths.scattered(path.light_path, lobe))
+    #[inline(always)]
+    fn scattered(
+        &self,
+        path: &Path,
+        [is_specular, is_diffuse, is_transmission]: [bool; 3],
+    ) -> LightPathState {
+        #[cold]
+        fn scattered(light_paths: &LightPaths, from: LightPathState, lobe: Lobes) -> LightPathState {
+            light_paths.scattered(from, lobe)
+        }
+        match self.light_paths {
+            None => path.light_path,
+            Some(light_paths) => {
+                let lobe = Lobes::sampled(is_specular, is_diffuse, is_transmission);
+                scattered(light_paths, path.light_path, lobe)
+            }
+        }
     }
 
     /// Notes how a surface scatters the light of a light, for the layers of light-path expressions: to which side, and with
     /// which share of diffuse lobes. Returns its number for the shadow ray.
+    #[inline(always)]
     fn last_scattering(
         &mut self,
         path: &Path,
@@ -334,8 +356,7 @@ impl<P: Probe> StepOutput<'_, P> {
     ) -> u32 {
         let Some(light_paths) = self.light_paths else { return Shadow::NO_SCATTERING };
         let last = light_paths.last_scattering(path.light_path, is_transmission, diffuse());
-        self.queues.last_scatterings.push(last);
-        self.queues.last_scatterings.len() as u32 - 1
+        self.queues.add_last_scattering(last)
     }
 
     #[inline]

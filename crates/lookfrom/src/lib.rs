@@ -16,5 +16,5 @@ pub mod world;
 /// The vector and matrix types of this crate's interface.
 pub use glam;
 
-/// The word of `LOOKFROM_SIMD` where it selects nothing, for front ends to tell.
-pub use lookfrom_simd::unmet_level;
+/// The SIMD level of this process, which a front end may choose.
+pub use lookfrom_simd::{UnmetLevel, choose_level};

@@ -62,7 +62,7 @@ pub use film_file::FilmFile;
 pub use film_parts::FilmParts;
 pub use finish::{Developed, Development, Finished};
 use identity::Identity;
-pub use options::{ADAPTIVE_NOISE, Fireflies, MOST_SAMPLES, OPTIONS, Options};
+pub use options::{Fireflies, MOST_SAMPLES, OPTIONS, Options};
 pub use outliers::{Outlier, Outliers};
 use prepare::Prepared;
 pub use provenance::Provenance;
@@ -74,6 +74,10 @@ use source::Source;
 /// The warning of a camera that would otherwise see nothing.
 const BOTH_SIDES: &str = "the camera sees only the backs of single-sided surfaces, which would not be shown: they are shown \
                           from both sides";
+
+/// The notice of a model that mostly faces inward.
+const OPEN_FRONTS: &str =
+    "from outside mostly backs of single-sided surfaces are seen: half of the light passes their fronts, too";
 
 /// A scene that is ready to be rendered, and to be rendered again with another camera or other settings.
 ///
@@ -222,7 +226,6 @@ impl Session {
         let started = Stopwatch::start();
         let (counts, bounds) = (Counts::of(&scene), scene.bounds());
         let contents = std::mem::take(&mut scene.contents);
-        let noise = options.stop.noise.or(options.adaptive.then_some(ADAPTIVE_NOISE));
         let Prepared { added, turntable, has_own_lights } =
             prepare::prepare(&mut scene, path, options, &mut warnings)?;
         if options.format.is_some_and(|format| !format.has_layers()) {
@@ -242,6 +245,9 @@ impl Session {
             renderer = renderer.with_world(world.clone(), renderer.view().clone()).map_err(in_file(path))?;
             warnings.push(Warning::new(&Location::file(path), BOTH_SIDES));
         }
+        if world.has_open_fronts {
+            warnings.push(Warning::notice(&Location::file(path), OPEN_FRONTS));
+        }
         let turntable = turntable.map(|turntable| Turning {
             turntable,
             camera: camera.clone(),
@@ -254,7 +260,7 @@ impl Session {
             camera,
             source,
             turntable,
-            stop: StopCriteria { noise, ..options.stop },
+            stop: options.stop,
             first_sample: range.start,
             fireflies: options.fireflies,
             threads: options.threads,

@@ -75,7 +75,7 @@ pub(crate) struct ResumeArguments {
     #[arg(long, value_name = "TIME", value_parser = values::duration)]
     pub(crate) time: Option<Duration>,
 
-    /// Adaptive sampling: stop when the relative standard error of every tile is at most this
+    /// Adaptive sampling: stop when the picture's mean relative standard error is at most this
     ///
     /// With a limit other than that of the film, single tiles may get other numbers of samples than in one render.
     #[arg(long, value_name = "ERROR", value_parser = values::between(1e-6f64, 1e6))]

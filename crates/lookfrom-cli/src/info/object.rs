@@ -113,6 +113,7 @@ struct RenderObject {
     sampler: &'static str,
     seed: u64,
     transparent_shadows: bool,
+    open_fronts: bool,
 }
 
 #[derive(Serialize)]
@@ -229,6 +230,7 @@ impl From<&RenderSettings> for RenderObject {
             sampler: render.sampler.word(),
             seed: render.seed,
             transparent_shadows: render.transparent_shadows,
+            open_fronts: render.open_fronts,
         }
     }
 }

@@ -24,12 +24,11 @@ fn models_are_denoised_until_somebody_says_otherwise() {
     assert_eq!(summary("--size 24 --samples 3 --denoise off"), (false, 3));
     assert_eq!(summary("--size 24 --denoise off"), (false, 8));
     assert_eq!(summary("--size 24 --layers geometry"), (true, 16));
-    for limit in ["--noise 0.5", "--time 200ms", "--adaptive", "--time 200ms --write-every 100ms"] {
+    for limit in ["--noise 0.5", "--time 200ms", "--time 200ms --write-every 100ms"] {
         assert!(summary(&format!("--size 24 {limit}")).0, "{limit}");
         assert!(!summary(&format!("--size 24 {limit} --denoise off")).0, "{limit}");
     }
     // There is something to adapt.
-    assert!(summary("--size 24 --adaptive").1 > 16);
     assert!(!summary("--size 24 --integrator normals").0);
     let scene = &stage.json("render scene.toml --json -o p.png")[0];
     assert_eq!(scene["denoised"], false);

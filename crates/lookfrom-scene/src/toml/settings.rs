@@ -41,6 +41,7 @@ pub(super) const RENDER: &[&str] = &[
     "light_sampler",
     "regularize",
     "occlusion_distance",
+    "open_fronts",
 ];
 
 /// Resolution, filter, sensor and tone mapping.
@@ -178,5 +179,6 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         regularize: table.or("regularize", default.regularize, Value::boolean),
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         media: default.media,
+        open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
     }
 }

@@ -7,8 +7,14 @@
 //! the square root and the constant: variances of few samples are themselves noisy, and stratified samples at edges have less
 //! noise than their variance says.
 //!
+//! For a *limit of error* the numbers of samples are decided anew whenever all pixels have theirs, at most four times as many
+//! as before, until the picture's error is below it. That error is the mean of the pixels' relative errors, and its sum is least
+//! for numbers as the cube root of the variance over the square of the luminance.
+//!
 //! *Without bias*: what a pixel gets depends on its neighbours alone, whose samples are independent of its own. (The
 //! threshold, one number for the whole picture, depends on all.) Powers of two keep the samples well distributed.
+
+use lookfrom_scene::settings::PixelBounds;
 
 use super::noise::SHARE_OF_MEAN;
 use super::{Film, Pixel};
@@ -35,7 +41,11 @@ impl Film {
     /// The number of samples that each pixel of [`Film::area`] shall have, row by row, so that they are at most `mean` in the
     /// mean; by a film of the pilot. Where there is no noise, only those of the pilot.
     pub(crate) fn allocation(&self, mean: u32) -> Vec<u32> {
-        let (noise, pilot) = (self.noise_of_neighbours(), pilot(mean));
+        let noise = self.noise_of_neighbours(|luminance| {
+            let root = luminance.sqrt();
+            root * root.sqrt()
+        });
+        let pilot = pilot(mean);
         // The number of pixels in each bucket, and then in all from it on.
         let mut from = vec![0_u64; MOST_BUCKETS];
         noise.iter().for_each(|noise| from[bucket(*noise)] += 1);
@@ -50,12 +60,50 @@ impl Film {
         while threshold > 1 && total(threshold - 1) <= budget {
             threshold -= 1;
         }
-        noise.into_iter().map(|noise| goal(pilot, bucket(noise), threshold)).collect()
+        noise.into_iter().map(|noise| goal(pilot, bucket(noise), threshold, MOST_DOUBLINGS)).collect()
     }
 
-    /// For each pixel the mean variance of a sample's luminance among its neighbours, over their mean luminance to the
-    /// power of ¾.
-    fn noise_of_neighbours(&self) -> Vec<f64> {
+    /// The number of samples that each pixel of [`Film::area`] shall have, row by row, so that the
+    /// [relative error](Film::relative_error) of the picture is expected to be `error`, where all have had those of a `pilot`.
+    /// At most four times as many as a pixel has, and at most `most`. `None` where the error is less already, or no pixel can
+    /// have more.
+    pub(crate) fn allocation_for_error(&self, error: f64, pilot: u32, most: u32) -> Option<Vec<u32>> {
+        let PixelBounds { x0, x1, y0, y1 } = self.area();
+        let mean = self.mean_luminance();
+        let mut pixels = Vec::new();
+        for y in y0..y1 {
+            self.pixels.row(y, x0, x1, |pixel| {
+                let count = pixel.samples as u32;
+                pixels.push((count, pixel.relative_error(mean) * f64::from(count).sqrt()));
+            });
+        }
+        let noise = self.noise_of_neighbours(|luminance| luminance * luminance);
+        let goal_of = |index: usize, threshold: usize| {
+            let count = pixels[index].0;
+            goal(pilot, bucket(noise[index]), threshold, 31).min(count.saturating_mul(4)).min(most).max(count)
+        };
+        // Of one sample of each pixel, and so of as many as are decided.
+        let expected = |goal_of: &dyn Fn(usize) -> u32| {
+            let errors = pixels.iter().enumerate();
+            let sum: f64 = errors.map(|(index, (_, of_one))| of_one / f64::from(goal_of(index)).sqrt()).sum();
+            sum / pixels.len().max(1) as f64
+        };
+        if expected(&|index| pixels[index].0) <= error {
+            return None;
+        }
+        // The greatest threshold that is low enough, or the least.
+        let (mut low, mut high) = (1, MOST_BUCKETS);
+        while high - low > 1 {
+            let middle = usize::midpoint(low, high);
+            let is_enough = expected(&|index| goal_of(index, middle)) <= error;
+            *(if is_enough { &mut low } else { &mut high }) = middle;
+        }
+        let goals: Vec<u32> = (0..pixels.len()).map(|index| goal_of(index, low)).collect();
+        goals.iter().zip(&pixels).any(|(goal, (count, _))| goal > count).then_some(goals)
+    }
+
+    /// For each pixel the mean variance of a sample's luminance among its neighbours, over a power of their mean luminance.
+    fn noise_of_neighbours(&self, power: impl Fn(f64) -> f64 + Sync) -> Vec<f64> {
         let area = self.area();
         let (width, height) = ((area.x1 - area.x0) as usize, (area.y1 - area.y0) as usize);
         let own = parallel::collect(height, |row| {
@@ -76,8 +124,8 @@ impl Film {
                     count += 1.0;
                 }
             }
-            let [variance, root] = [variance / count, (luminance / count + floor).sqrt()];
-            if variance > 0.0 { variance / (root * root.sqrt()) } else { 0.0 }
+            let [variance, luminance] = [variance / count, luminance / count + floor];
+            if variance > 0.0 { variance / power(luminance) } else { 0.0 }
         };
         let rows = parallel::collect(height, |y| (0..width).map(|x| of_pixel(x, y)).collect::<Vec<_>>());
         rows.into_iter().flatten().collect()
@@ -107,9 +155,10 @@ fn bucket(noise: f64) -> usize {
 }
 
 /// The number of samples of a pixel in a bucket: twice the pilot from a threshold on, four times for eight times the noise …
-fn goal(pilot: u32, bucket: usize, threshold: usize) -> u32 {
+fn goal(pilot: u32, bucket: usize, threshold: usize, most_doublings: u32) -> u32 {
     let doublings = (bucket + EIGHT_TIMES).saturating_sub(threshold) / EIGHT_TIMES;
-    pilot << doublings.min(MOST_DOUBLINGS as usize)
+    let goal = u64::from(pilot) << doublings.min(most_doublings as usize);
+    goal.min(u64::from(u32::MAX)) as u32
 }
 
 #[cfg(test)]
@@ -117,7 +166,6 @@ mod tests {
     use super::*;
     use crate::core::hash;
     use crate::film::FilmTile;
-    use lookfrom_scene::settings::PixelBounds;
 
     const AREA: PixelBounds = PixelBounds { x0: 2, y0: 3, x1: 21, y1: 16 };
 
@@ -141,7 +189,7 @@ mod tests {
     #[test]
     fn the_threshold_is_the_least_within_the_budget() {
         let film = film(None);
-        let noise = film.noise_of_neighbours();
+        let noise = film.noise_of_neighbours(|luminance| luminance.sqrt() * luminance.sqrt().sqrt());
         for mean in [8, 11, 32, 100] {
             let of = |threshold: usize| {
                 let mut goals = Vec::new();
@@ -179,7 +227,8 @@ mod tests {
     /// All that the own samples of a pixel change is the threshold, by its part in the mean luminance.
     #[test]
     fn a_pixel_does_not_decide_about_itself() {
-        let [before, after] = [None, Some([10, 9])].map(|other| film(other).noise_of_neighbours());
+        let [before, after] =
+            [None, Some([10, 9])].map(|other| film(other).noise_of_neighbours(|luminance| luminance));
         for (index, (before, after)) in before.iter().zip(after).enumerate() {
             let [x, y] = [2 + index % 19, 3 + index / 19];
             let is_near = x.abs_diff(10) <= REACH && y.abs_diff(9) <= REACH && (x, y) != (10, 9);

@@ -108,12 +108,7 @@ impl SampleLedger {
         is_complete
     }
 
-    /// Sets the number of samples that adaptive sampling gives each pixel of an area.
-    pub(crate) fn set_goal(&mut self, area: PixelBounds, goal: u32) {
-        self.update(area, |entry| entry.goal = Some(goal));
-    }
-
-    /// Sets that of each pixel that has samples, by column and row.
+    /// Sets the number of samples that adaptive sampling gives each pixel that has samples, by column and row.
     pub(crate) fn set_goals(&mut self, goal_of: impl Fn([u32; 2]) -> u32) {
         for Band { at: rows, value: runs } in std::mem::take(&mut self.bands) {
             for row in rows {

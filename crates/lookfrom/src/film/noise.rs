@@ -30,10 +30,7 @@ impl Film {
         let mut sum = 0.0;
         for y in y0..y1 {
             self.pixels.row(y, x0, x1, |pixel| {
-                let error = pixel.standard_error();
-                if error > 0.0 {
-                    sum += error / (pixel.luminance().abs() + SHARE_OF_MEAN * mean.abs());
-                }
+                sum += pixel.relative_error(mean);
             });
         }
         let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
@@ -45,6 +42,12 @@ impl Pixel {
     /// Luminance of the mean.
     pub(super) fn luminance(&self) -> f64 {
         xyz(self.mean().map(f64::from))[1]
+    }
+
+    /// Its relative error in a picture of this mean luminance.
+    pub(super) fn relative_error(&self, mean: f64) -> f64 {
+        let error = self.standard_error();
+        if error > 0.0 { error / (self.luminance().abs() + SHARE_OF_MEAN * mean.abs()) } else { 0.0 }
     }
 
     /// Standard error of the mean's luminance.

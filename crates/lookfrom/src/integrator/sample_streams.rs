@@ -40,14 +40,22 @@ pub(in crate::integrator) struct SampleStreams<R: Lanes> {
 impl<R: Lanes> SampleStreams<R> {
     #[inline(always)]
     pub(in crate::integrator) fn new(width: impl Width<Real = R>, streams: &[&SampleStream; LANES]) -> Self {
-        let address = width.load_u64(&by_lane!(lane => streams[lane].address));
+        let address = width.u64s(
+            #[inline(always)]
+            |lane| streams[lane].address,
+        );
+        let sample = width.u32s(
+            #[inline(always)]
+            |lane| streams[lane].sample,
+        );
+        let samplers = PixelSamplers::new(
+            width,
+            #[inline(always)]
+            |lane| &streams[lane].sampler,
+        );
         let are_first = bitmask(&by_lane!(lane => streams[lane].address == Path::ROOT));
-        Self {
-            samplers: PixelSamplers::new(width, &by_lane!(lane => streams[lane].sampler)),
-            sample: width.load_u32(&by_lane!(lane => streams[lane].sample)),
-            mixed: hash::mix(address.wrapping_add(address.like(hash::GOLDEN))),
-            are_first: width.mask(are_first),
-        }
+        let mixed = hash::mix(address.wrapping_add(address.like(hash::GOLDEN)));
+        Self { samplers, sample, mixed, are_first: width.mask(are_first) }
     }
 
     /// As [`SampleStream::two`].

@@ -2,11 +2,9 @@
 //!
 //! The value of a sample does not depend on anything here: [`Renderer::render_tile`] computes it, and the film of a
 //! number of samples is the same for any division of the work. *Numbers* of samples depend, apart from the clock, only
-//! on the film at the ends of *rounds* (after 1, 2, 4 … 64 samples per pixel, then every 64): so adaptive pictures,
-//! too, are the same for any number of threads. There are two ways. The samples may be [allocated](crate::film::allocation)
-//! adaptively, without bias. Or a limit of noise decides for each tile whether it has enough, from the samples of its
-//! picture, which favours pictures that look clean by chance (a bias towards dark of the order of the remaining noise);
-//! it is kept small by a minimum of [`FEWEST_SAMPLES`], and because whole tiles are judged, not pixels.
+//! on the film when all pixels have the samples that were decided before: so adaptive pictures, too, are the same for any
+//! number of threads. How many each pixel gets is [allocated](crate::film::allocation) without bias: once, for a number of
+//! samples in the mean, or again and again, until the picture's error is below a limit.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -37,7 +35,7 @@ const MOST_TOGETHER: u32 = 8;
 const SLOW: u64 = 100_000_000;
 const VERY_SLOW: u64 = 600_000_000;
 
-/// Minimum number of samples per pixel before a tile or picture may count as clean.
+/// Minimum number of samples per pixel before a picture may count as clean.
 pub const FEWEST_SAMPLES: u32 = 16;
 
 impl Renderer {
@@ -72,7 +70,8 @@ impl Renderer {
     /// [checkpoint](Progress::checkpoint) or the end of a render with the same limit.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; `Request` for adaptive allocation together with a limit of noise, or of a part of the samples.
+    /// As [`Renderer::render`]; `Request` for adaptive allocation together with a limit of noise, and for either of a part of the
+    /// samples.
     pub fn render_onto(
         &self,
         film: Film,
@@ -82,9 +81,15 @@ impl Renderer {
         progress: &dyn Progress,
     ) -> Result<Rendered> {
         let pilot = self.pilot();
-        if pilot.is_some() && (first != 0 || stop.noise.is_some()) {
-            let message = "adaptive allocation decides by half of a picture's samples: it needs all from the first on, and no limit of noise";
-            return Err(Error::new(ErrorKind::Request, &Location::default(), message));
+        let refused = |message: &str| Err(Error::new(ErrorKind::Request, &Location::default(), message));
+        if first != 0 && (pilot.is_some() || stop.noise.is_some()) {
+            return refused(
+                "adaptive sampling decides by a picture's first samples: it needs all from the first on",
+            );
+        } else if pilot.is_some() && stop.noise.is_some() {
+            return refused(
+                "adaptive allocation is of a number of samples; a limit of noise has no such number",
+            );
         }
         let tiles = tiles(film.area());
         let all: u64 = tiles.iter().map(area).sum();
@@ -138,18 +143,30 @@ struct Part {
 }
 
 impl Work<'_> {
-    /// Takes samples until a criterion is met. Returns the number of samples per pixel of tiles that are not clean, and
-    /// the reason why it ended.
+    /// Takes samples until a criterion is met. Returns the greatest number of samples of a pixel, and the reason why it ended.
     fn render(&self, stop: &StopCriteria, pilot: Option<u32>) -> Result<(u32, StopReason)> {
         let mut clock = Clock { started: Stopwatch::start(), taken: 0 };
-        let Some(pilot) = pilot else { return self.rounds(0..self.wanted.end, stop, &mut clock) };
-        let (samples, reason) = self.rounds(0..pilot, stop, &mut clock)?;
-        if reason != StopReason::Samples {
-            return Ok((samples, reason));
+        let end = self.wanted.end;
+        let Some(pilot) = pilot.or_else(|| stop.noise.map(|_| FEWEST_SAMPLES.min(end))) else {
+            return self.rounds(0..end, stop, &mut clock);
+        };
+        // An interrupted render has decided already.
+        let (mut samples, mut reason) = self.rounds(0..pilot, stop, &mut clock)?;
+        let mut is_decided = self.goals().is_some();
+        while reason == StopReason::Samples {
+            if !is_decided && !self.decide(stop.noise) {
+                return Ok((samples, if self.is_clean(stop.noise) { StopReason::Noise } else { reason }));
+            }
+            let (total, most) = self.goals().unwrap_or_default();
+            self.total.store(total, Ordering::Relaxed);
+            let further = self.rounds(pilot..most, stop, &mut clock)?;
+            (samples, reason) = (samples.max(further.0), further.1);
+            is_decided = false;
+            if stop.noise.is_none() {
+                break;
+            }
         }
-        let most = self.allocate();
-        let (samples, reason) = self.rounds(pilot..most, stop, &mut clock)?;
-        Ok((samples.max(pilot), reason))
+        Ok((samples, reason))
     }
 
     /// Takes a range of samples in rounds, until a criterion is met.
@@ -175,11 +192,6 @@ impl Work<'_> {
                 if stop.time.is_some_and(|time| clock.started.elapsed() >= time) && start < wanted.end {
                     return Ok((samples, StopReason::Time));
                 }
-            }
-            if let Some(noise) = stop.noise
-                && self.leave_clean(round.end, noise)
-            {
-                return Ok((samples, StopReason::Noise));
             }
         }
         Ok((samples, StopReason::Samples))
@@ -291,48 +303,34 @@ impl Work<'_> {
         Ok(Some(rays))
     }
 
-    /// At the end of the pilot: decides how many samples each pixel gets, unless an interrupted render has decided. Returns the
-    /// greatest number.
-    fn allocate(&self) -> u32 {
-        let mut guard = locked(&self.film);
-        let film = &mut guard.0;
-        let area @ PixelBounds { x0, y0, x1, .. } = film.area();
-        if !film.ledger().has_goals(area) {
-            let goals = film.allocation(self.renderer.settings.samples);
-            film.ledger_mut().set_goals(|[x, y]| goals[((y - y0) * (x1 - x0) + x - x0) as usize]);
-        }
-        let (total, most) = film.ledger().goals().unwrap_or_default();
-        self.total.store(total, Ordering::Relaxed);
-        most
+    /// The sum of the numbers of samples that pixels shall have, and the greatest of them, if they are decided.
+    fn goals(&self) -> Option<(u64, u32)> {
+        let guard = locked(&self.film);
+        let ledger = guard.0.ledger();
+        ledger.has_goals(guard.0.area()).then(|| ledger.goals())?
     }
 
-    /// At the end of a round: marks the tiles that are clean enough, and estimates the number of samples that the
-    /// others need. Returns whether all are clean.
-    fn leave_clean(&self, samples: u32, noise: f64) -> bool {
+    /// Whether the picture's error is below a limit.
+    fn is_clean(&self, noise: Option<f64>) -> bool {
+        let guard = locked(&self.film);
+        let film = &guard.0;
+        noise.is_some_and(|noise| film.relative_error(film.area(), film.mean_luminance()) <= noise)
+    }
+
+    /// Decides how many samples each pixel shall have: the settings' number in the mean, or such that the picture comes near to
+    /// a limit of noise. False where it has enough.
+    fn decide(&self, noise: Option<f64>) -> bool {
         let mut guard = locked(&self.film);
         let film = &mut guard.0;
-        // An interrupted render has decided already where samples of a later round are there.
-        if samples >= FEWEST_SAMPLES && film.ledger().range().is_none_or(|range| range.end <= samples) {
-            let mean = film.mean_luminance();
-            let mut total = self.done.load(Ordering::Relaxed) as f64;
-            let mut clean = Vec::new();
-            for tile in &self.tiles {
-                if film.ledger().has_goals(*tile) {
-                    continue;
-                }
-                let error = film.relative_error(*tile, mean);
-                // Errors fall with the square root of the number of samples.
-                let ratio = error / noise;
-                let needed = (f64::from(samples) * ratio * ratio).min(f64::from(self.wanted.end));
-                total += area(tile) as f64 * (needed - f64::from(samples)).max(0.0);
-                if error <= noise {
-                    clean.push(*tile);
-                }
-            }
-            clean.into_iter().for_each(|tile| film.ledger_mut().set_goal(tile, samples));
-            self.total.store(total as u64, Ordering::Relaxed);
-        }
-        self.tiles.iter().all(|tile| film.ledger().has_goals(*tile))
+        let PixelBounds { x0, y0, x1, .. } = film.area();
+        let most = self.renderer.settings.samples;
+        let goals = match noise {
+            Some(noise) => film.allocation_for_error(noise, FEWEST_SAMPLES.min(most), most),
+            None => Some(film.allocation(most)),
+        };
+        let Some(goals) = goals else { return false };
+        film.ledger_mut().set_goals(|[x, y]| goals[((y - y0) * (x1 - x0) + x - x0) as usize]);
+        true
     }
 }
 

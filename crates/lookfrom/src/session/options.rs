@@ -103,9 +103,6 @@ pub struct Options {
     pub variables: Variables,
     /// Stop criteria, besides the number of samples. With them and without `samples`, that number is not limited.
     pub stop: StopCriteria,
-    /// Adaptive sampling: tiles that are clean enough get no more samples ([`ADAPTIVE_NOISE`], unless `stop` sets the
-    /// noise), with the number of samples as a limit.
-    pub adaptive: bool,
     /// Treatment of fireflies, pixels that single samples make far too bright.
     pub fireflies: Fireflies,
     /// The format that the picture will be encoded in, if it is known: AOVs that it cannot hold are not computed.
@@ -126,9 +123,6 @@ pub enum Fireflies {
     /// Their excess is spread over the pixels around.
     Spread,
 }
-
-/// The relative error that is clean enough for [`Options::adaptive`].
-pub const ADAPTIVE_NOISE: f64 = 0.02;
 
 /// Maximum number of samples per pixel.
 pub const MOST_SAMPLES: u32 = 1 << 24;
@@ -177,7 +171,7 @@ impl Options {
         }
         replace(&mut image.tonemap, self.tonemap);
         replace(&mut render.samples, self.samples);
-        if self.allocation == Some(Allocation::Adaptive) && self.limits_noise() {
+        if self.allocation == Some(Allocation::Adaptive) && self.stop.noise.is_some() {
             return Err(unsuitable(
                 "adaptive allocation spends a given number of samples; a limit of noise has no such number"
                     .to_owned(),
@@ -201,11 +195,6 @@ impl Options {
         Ok(())
     }
 
-    /// Whether a limit of noise decides about numbers of samples.
-    pub(super) fn limits_noise(&self) -> bool {
-        self.stop.noise.is_some() || self.adaptive
-    }
-
     /// The samples to take, of a picture with these settings.
     ///
     /// # Errors
@@ -225,7 +214,7 @@ impl Options {
                 all.start, all.end
             )));
         }
-        let is_adaptive = self.limits_noise() || allocation == Allocation::Adaptive;
+        let is_adaptive = self.stop.noise.is_some() || allocation == Allocation::Adaptive;
         if range != (0..samples) && is_adaptive {
             return Err(unsuitable(
                 "adaptive sampling decides by all samples of a picture; a part of the samples cannot be adaptive"
@@ -381,7 +370,8 @@ mod tests {
         let none = Options { part: Some([2, 6]), ..Options::default() };
         assert!(none.range(&of(5)).is_ok() && Options { part: Some([1, 6]), ..none }.range(&of(5)).is_err());
         assert!(Options { first_sample: 5, ..Options::default() }.range(&of(5)).is_err());
-        assert!(Options { first_sample: 1, adaptive: true, ..Options::default() }.range(&of(5)).is_err());
+        let stop = StopCriteria { noise: Some(0.1), ..StopCriteria::default() };
+        assert!(Options { first_sample: 1, stop, ..Options::default() }.range(&of(5)).is_err());
         let adaptive = RenderSettings { allocation: Allocation::Adaptive, ..of(64) };
         assert!(Options::default().range(&adaptive).is_ok());
         assert!(Options { part: Some([1, 2]), ..Options::default() }.range(&adaptive).is_err());

@@ -39,7 +39,7 @@ pub(super) fn prepare(
         format.check_background(scene.image.background)?;
     }
     let origin = scene.source_format;
-    if options.limits_noise() {
+    if options.stop.noise.is_some() {
         scene.render.allocation = Allocation::Uniform;
     }
     decide_settings(scene, options);
@@ -155,10 +155,6 @@ fn decide_settings(scene: &mut Scene, options: &Options) {
         // A limit of time or noise replaces the scene's number of samples; but what is allocated must be known beforehand.
         scene.render.samples = MOST_SAMPLES;
     } else if is_model {
-        // The few samples per pixel that suffice for the denoiser leave nothing to adapt.
-        scene.render.samples = match options.adaptive {
-            true => studio::MODEL_SAMPLES,
-            false => studio::samples_for_models(&scene.image),
-        };
+        scene.render.samples = studio::samples_for_models(&scene.image);
     }
 }

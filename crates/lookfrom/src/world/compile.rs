@@ -36,7 +36,7 @@ impl World {
         }
         reflectance::check(&scene, warnings);
         let render_from_world = DMat4::from_translation(-origin);
-        let has_media = scene.render.media;
+        let (has_media, open_fronts) = (scene.render.media, scene.render.open_fronts);
         if scene.materials.len().saturating_add(scene.media.len()) > InteriorStack::MOST {
             let message = format!("more than {} materials and media", InteriorStack::MOST);
             return Err(Error::new(ErrorKind::Limit, &Location::default(), message));
@@ -188,7 +188,7 @@ impl World {
             footprint: None,
         };
         world.catcher_irradiance = world.unoccluded_irradiance();
-        world.has_open_fronts = world.faces_inward();
+        world.has_open_fronts = open_fronts && world.faces_inward();
         world.has_gaps |= world.has_open_fronts;
         world.classify();
         Ok(world)

@@ -39,6 +39,7 @@ fn room(integrator: &str, depth: u32) -> Scene {
     for shape in &mut scene.shapes {
         (shape.single_sided, shape.reverse_orientation) = (true, true);
     }
+    scene.render.open_fronts = true;
     scene
 }
 
@@ -60,6 +61,18 @@ fn inner_walls_are_lit_through_the_backs_of_the_others() {
     ] {
         let found = mean(&Compiled::new(room(integrator, depth)).film());
         assert!((found / expected - 1.0).abs() < 0.02, "{integrator} {depth}: {found}, expected {expected}");
+    }
+}
+
+#[test]
+fn walls_are_open_where_the_settings_say_so_and_the_session_tells() {
+    for open_fronts in [true, false] {
+        let mut scene = room("path", 2);
+        scene.render.open_fronts = open_fronts;
+        let session = Session::of_scene(scene, &Options::default()).unwrap();
+        let told = session.warnings().iter().any(|warning| warning.message.contains("half of the light"));
+        assert_eq!(told, open_fronts);
+        assert_eq!(mean(&session.render(&()).unwrap().rendered.film) > 0.0, open_fronts);
     }
 }
 

@@ -3,7 +3,7 @@
 use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*, u32x8, u64x8};
 
-use super::{LANES, gather_spectrum, scatter_rays, scatter_spectrum};
+use super::{LANES, by_lane, gather_spectrum, scatter_rays, scatter_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
@@ -16,18 +16,20 @@ pub(crate) trait Width: Copy {
     fn load_f32(self, column: &[f32; LANES]) -> Self::Real;
     /// Numbers of double precision.
     fn load_f64(self, column: &[f64; LANES]) -> Double<Self>;
-    /// Integers of 32 bits.
-    fn load_u32(self, column: &[u32; LANES]) -> Bits<Self>;
-    /// Integers of 64 bits.
-    fn load_u64(self, column: &[u64; LANES]) -> Bits64<Self>;
+    /// Numbers by lane.
+    fn f32s(self, of: impl Fn(usize) -> f32) -> Self::Real;
+    /// Integers of 32 bits by lane.
+    fn u32s(self, of: impl Fn(usize) -> u32) -> Bits<Self>;
+    /// Integers of 64 bits by lane.
+    fn u64s(self, of: impl Fn(usize) -> u64) -> Bits64<Self>;
     /// The mask whose lane i is bit i.
     fn mask(self, bits: u32) -> Mask<Self>;
     /// The bits of a mask: bit i is lane i.
     fn bits(self, mask: Mask<Self>) -> u32;
     /// The same number in each lane.
     fn splat(self, value: f32) -> Self::Real;
-    /// Spectra from their rows.
-    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum<Self::Real>;
+    /// Spectra by lane.
+    fn spectra_of(self, of: impl Fn(usize) -> Spectrum) -> Spectrum<Self::Real>;
     /// The rows of spectra.
     fn spectra(self, spectra: Spectrum<Self::Real>) -> [Spectrum; LANES];
     /// The rows of rays, which start at t = 0.
@@ -71,12 +73,16 @@ impl Width for One {
         column[0]
     }
     #[inline(always)]
-    fn load_u32(self, column: &[u32; LANES]) -> u32 {
-        column[0]
+    fn f32s(self, of: impl Fn(usize) -> f32) -> f32 {
+        of(0)
     }
     #[inline(always)]
-    fn load_u64(self, column: &[u64; LANES]) -> u64 {
-        column[0]
+    fn u32s(self, of: impl Fn(usize) -> u32) -> u32 {
+        of(0)
+    }
+    #[inline(always)]
+    fn u64s(self, of: impl Fn(usize) -> u64) -> u64 {
+        of(0)
     }
     #[inline(always)]
     fn mask(self, bits: u32) -> bool {
@@ -91,8 +97,8 @@ impl Width for One {
         value
     }
     #[inline(always)]
-    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum {
-        rows[0]
+    fn spectra_of(self, of: impl Fn(usize) -> Spectrum) -> Spectrum {
+        of(0)
     }
     #[inline(always)]
     fn spectra(self, spectrum: Spectrum) -> [Spectrum; LANES] {
@@ -130,12 +136,16 @@ impl<S: Simd> Width for S {
         f64x8::load_array(self, *column)
     }
     #[inline(always)]
-    fn load_u32(self, column: &[u32; LANES]) -> u32x8<S> {
-        u32x8::load_array(self, *column)
+    fn f32s(self, of: impl Fn(usize) -> f32) -> f32x8<S> {
+        f32x8::load_array(self, by_lane!(lane => of(lane)))
     }
     #[inline(always)]
-    fn load_u64(self, column: &[u64; LANES]) -> u64x8<S> {
-        u64x8::load_array(self, *column)
+    fn u32s(self, of: impl Fn(usize) -> u32) -> u32x8<S> {
+        u32x8::load_array(self, by_lane!(lane => of(lane)))
+    }
+    #[inline(always)]
+    fn u64s(self, of: impl Fn(usize) -> u64) -> u64x8<S> {
+        u64x8::load_array(self, by_lane!(lane => of(lane)))
     }
     #[inline(always)]
     fn mask(self, bits: u32) -> mask32x8<S> {
@@ -150,8 +160,8 @@ impl<S: Simd> Width for S {
         f32x8::splat(self, value)
     }
     #[inline(always)]
-    fn load_spectra(self, rows: &[Spectrum; LANES]) -> Spectrum<f32x8<S>> {
-        gather_spectrum(self, rows)
+    fn spectra_of(self, of: impl Fn(usize) -> Spectrum) -> Spectrum<f32x8<S>> {
+        gather_spectrum(self, &by_lane!(lane => of(lane)))
     }
     #[inline(always)]
     fn spectra(self, spectra: Spectrum<f32x8<S>>) -> [Spectrum; LANES] {

@@ -18,9 +18,12 @@ pub(crate) struct PixelSamplers<R: Real> {
 impl<R: Real> PixelSamplers<R> {
     /// From the samplers of one render.
     #[inline(always)]
-    pub(crate) fn new(width: impl Width<Real = R>, samplers: &[PixelSampler; LANES]) -> Self {
-        let keys = width.load_u64(&by_lane!(lane => samplers[lane].key));
-        Self { kind: samplers[0].kind, keys }
+    pub(crate) fn new<'a>(width: impl Width<Real = R>, sampler: impl Fn(usize) -> &'a PixelSampler) -> Self {
+        let keys = width.u64s(
+            #[inline(always)]
+            |lane| sampler(lane).key,
+        );
+        Self { kind: sampler(0).kind, keys }
     }
 
     /// Of pixels, their columns in the lower halves and their rows in the upper ones.
@@ -102,7 +105,7 @@ mod tests {
         type Output = [[f32; LANES]; 2];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
-            let samplers = PixelSamplers::new(simd, self.0);
+            let samplers = PixelSamplers::new(simd, |lane| &self.0[lane]);
             let dimension = u64x8::load_array(simd, by_lane!(lane => u64::from(self.2[lane])));
             let (sample, mask) = (u32x8::load_array(simd, self.1), mask32x8::from_bitmask(simd, self.3));
             let [a, b] = samplers.two_with_pixel(sample, dimension, mask);

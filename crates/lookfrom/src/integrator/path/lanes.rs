@@ -342,13 +342,13 @@ impl PathTracer {
         let is = |mask: u32| mask & 1 << lane != 0;
         let (is_specular, is_transmission) = (is(scattered.is_specular), is(scattered.is_transmission));
         let wi = Vec3::from_array(row(&scattered.wi, lane));
-        let lobe = Lobes::sampled(is_specular, is(scattered.is_diffuse), is_transmission);
+        let lobe = [is_specular, is(scattered.is_diffuse), is_transmission];
         if P::LISTENS && is(scattered.is_valid) {
             let sample = BsdfSample {
                 wi,
                 f: Spectrum(row(&scattered.f, lane)),
                 pdf: scattered.pdf[lane],
-                lobe,
+                lobe: Lobes::sampled(lobe[0], lobe[1], lobe[2]),
                 eta: scattered.eta[lane],
                 pdf_is_proportional: scattered.kind.pdf_is_proportional,
             };
@@ -365,6 +365,7 @@ impl PathTracer {
         if !is(scattered.goes_on) {
             return;
         }
+        let light_path = output.scattered(path, lobe);
         output.queues.paths.push(Path {
             ray: Ray::new(row(&scattered.origin, lane), wi.to_array()),
             beta: Spectrum(row(&scattered.next_beta, lane)),
@@ -381,7 +382,7 @@ impl PathTracer {
                 blurred: path.previous.blurred || !is_specular,
                 is_catcher,
             },
-            light_path: output.scattered(path, lobe),
+            light_path,
         });
     }
 }

@@ -6,6 +6,7 @@ use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
 
 use super::ShadowLight;
 use crate::core::lanes::{LANES, by_lane, filled, gather_rays, scatter};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::SpectralModes;
 use crate::integrator::whitted::{PlainHits, Surfaces};
 use crate::shading::material::MaterialKind;
@@ -17,9 +18,16 @@ use crate::world::World;
 pub(super) struct Crossings {
     on_triangles: Vec<u32>,
     on_spheres: Vec<u32>,
+    /// The light that passed, as a factor, by places: for a probe.
+    pub(super) passed: Option<Vec<Spectrum>>,
 }
 
 impl Crossings {
+    /// None yet; for a probe or not.
+    pub(super) fn new(is_watched: bool) -> Self {
+        Self { passed: is_watched.then(Vec::new), ..Self::default() }
+    }
+
     /// Takes a ray that a surface lets pass, with its hit, unless that is of another kind.
     #[inline(always)]
     pub(super) fn take(&mut self, world: &World, place: u32, hit: &Hit) -> bool {
@@ -45,9 +53,14 @@ impl Crossings {
         chosen: &[u32],
     ) -> bool {
         let mut are_all_lit = true;
+        if let Some(passed) = &mut self.passed {
+            passed.resize(rays.len(), Spectrum::BLACK);
+        }
         for (places, are_on_spheres) in [(&mut self.on_triangles, false), (&mut self.on_spheres, true)] {
             if !places.is_empty() {
-                let kernel = GoOn { world, places, are_on_spheres, rays, hits, modes, lights, chosen };
+                let passed = self.passed.as_deref_mut();
+                let kernel =
+                    GoOn { world, places, are_on_spheres, rays, hits, modes, lights, chosen, passed };
                 are_all_lit &= dispatch(level(), kernel);
                 places.clear();
             }
@@ -65,6 +78,7 @@ struct GoOn<'a> {
     modes: &'a SpectralModes,
     lights: &'a mut [ShadowLight],
     chosen: &'a [u32],
+    passed: Option<&'a mut [Spectrum]>,
 }
 
 impl Kernel for GoOn<'_> {
@@ -72,7 +86,7 @@ impl Kernel for GoOn<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
-        let Self { world, places, are_on_spheres, rays, hits, modes, lights, chosen } = self;
+        let Self { world, places, are_on_spheres, rays, hits, modes, lights, chosen, mut passed } = self;
         let mut are_all_lit = true;
         for places in places.chunks(LANES) {
             let mut memory = None;
@@ -87,7 +101,11 @@ impl Kernel for GoOn<'_> {
             for (lane, &place) in places.iter().enumerate() {
                 let (ray, hit) = (&mut rays[place as usize], hits[lane]);
                 let light = &mut lights[chosen[place as usize] as usize];
-                light.cross(world, ray, hit, front & 1 << lane != 0, &modes[light.slot as usize]);
+                let factor =
+                    light.cross(world, ray, hit, front & 1 << lane != 0, &modes[light.slot as usize]);
+                if let Some(passed) = &mut passed {
+                    passed[place as usize] = factor;
+                }
                 ray.origin = origins[lane];
                 ray.t_max -= hit.t;
                 are_all_lit &= !light.contribution.is_black();
@@ -99,20 +117,28 @@ impl Kernel for GoOn<'_> {
 
 impl ShadowLight {
     /// Attenuates the light by a plain surface and by the medium up to it, of which the ray met the outside or the inside,
-    /// and continues in what is behind.
+    /// and continues in what is behind. Returns the factor.
     #[inline(always)]
-    fn cross(&mut self, world: &World, ray: &Ray, hit: &Hit, is_outside: bool, mode: &SpectralMode) {
-        let Some(plain) = world.plain(hit) else { return };
+    fn cross(
+        &mut self,
+        world: &World,
+        ray: &Ray,
+        hit: &Hit,
+        is_outside: bool,
+        mode: &SpectralMode,
+    ) -> Spectrum {
+        let Some(plain) = world.plain(hit) else { return Spectrum::BLACK };
         let material = &world.materials[plain.material as usize];
         let transmission = &material.whitted.transmission;
         let transmission = world.textures.spectrum(transmission, &TexturePoint::NOWHERE, mode);
-        self.passed = transmission * self.transmittance(world, ray, hit.t, mode);
-        self.contribution *= self.passed;
+        let passed = transmission * self.transmittance(world, ray, hit.t, mode);
+        self.contribution *= passed;
         if material.is_body() {
             self.interior = match is_outside {
                 true => self.interior.entered(plain.material),
                 false => self.interior.left(plain.material),
             };
         }
+        passed
     }
 }

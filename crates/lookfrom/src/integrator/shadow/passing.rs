@@ -29,7 +29,7 @@ pub(super) fn let_through<P: Probe>(
     let mut traced = 0;
     // The lights of the rays that are left.
     let mut left: Vec<u32> = (0..lights.len() as u32).collect();
-    let mut crossings = Crossings::default();
+    let mut crossings = Crossings::new(P::LISTENS);
     // Rays that cross surfaces side by side, for a probe: as they arrive.
     let mut crossing = Vec::new();
     for round in 0.. {
@@ -69,7 +69,7 @@ pub(super) fn let_through<P: Probe>(
         }
         let are_all_lit = crossings.go_on(world, modes, (rays, hits), lights, &left);
         for (place, shadow) in crossing.drain(..) {
-            let passed = lights[left[place] as usize].passed;
+            let passed = crossings.passed.as_ref().map_or(Spectrum::BLACK, |passed| passed[place]);
             probe.notice(|| Event::Shadow { shadow, hit: hits[place], passed });
         }
         if !are_all_lit {

@@ -22,8 +22,6 @@ pub struct Shadows {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::integrator) struct ShadowLight {
     pub(in crate::integrator) contribution: Spectrum,
-    /// The part of it that passed the last surface, where several were crossed side by side.
-    pub(super) passed: Spectrum,
     pub(in crate::integrator) interior: InteriorStack,
     pub(in crate::integrator) address: u64,
     pub(in crate::integrator) term: Term,
@@ -39,16 +37,7 @@ impl Shadows {
             shadow;
         self.rays.push(ray);
         self.origin_primitives.push(origin_primitive);
-        let passed = Spectrum::ONE;
-        self.lights.push(ShadowLight {
-            contribution,
-            passed,
-            interior,
-            address,
-            term,
-            slot,
-            last_scattering,
-        });
+        self.lights.push(ShadowLight { contribution, interior, address, term, slot, last_scattering });
     }
 
     /// Removes all.
@@ -62,7 +51,7 @@ impl Shadows {
 impl ShadowLight {
     /// The whole of the shadow.
     pub(super) fn of(&self, ray: Ray, origin_primitive: OriginPrimitive) -> Shadow {
-        let Self { contribution, interior, address, term, slot, last_scattering, .. } = *self;
+        let Self { contribution, interior, address, term, slot, last_scattering } = *self;
         Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering }
     }
 

@@ -113,16 +113,19 @@ impl<W: Width> Step<'_, W> {
             branch.exist = 0;
         }
         let Surfaces { ns_facing, wo, front, .. } = *surfaces;
+        let exist = coefficients.has_branches();
         if let Some(tree) = wanted.tree
-            && let Some(branches) = coefficients.branches(ns_facing, wo, front)
+            && exist.any()
         {
+            let branches = coefficients.branches(ns_facing, wo, front);
+            let is_refracted = exist & branches.is_refracted;
             if let Some(told) = &mut told {
-                told.add_branches(width, (&paths, tree), beta, &branches);
+                told.add_branches(width, (&paths, tree), beta, &branches, [exist, is_refracted]);
             }
             let [mirrored, refracted] = &mut group.branches;
-            self.set_rays(mirrored, branches.exist, branches.mirrored, 1.0);
-            if branches.is_refracted.any() {
-                self.set_rays(refracted, branches.is_refracted, branches.refracted, -1.0);
+            self.set_rays(mirrored, exist, branches.mirrored, 1.0);
+            if is_refracted.any() {
+                self.set_rays(refracted, is_refracted, branches.refracted, -1.0);
             }
         }
         if let Some(told) = told {

@@ -14,7 +14,6 @@ use crate::core::lanes::{LANES, by_lane, filled, shade_together};
 use crate::integrator::{
     BatchStreams, Branch, Event, Path, Probe, Queues, SampleStream, Shadow, StepOutput, Term,
 };
-use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::Coefficients;
@@ -217,8 +216,10 @@ impl Shaded<'_> {
             self.tell_surface(world, vertex, output);
         }
         output.add(path, Term::Ambient, self.group.ambient[self.lane]);
-        for event in self.told.iter().flat_map(|told| &told.events[self.lane]) {
-            output.probe.notice(|| event.clone());
+        if P::LISTENS
+            && let Some(told) = self.told
+        {
+            told.events[self.lane].iter().for_each(|event| output.probe.notice(|| event.clone()));
         }
         self.add_lights(world, vertex, output);
         if let Some(tree) = tree {
@@ -263,13 +264,14 @@ impl Shaded<'_> {
         }
         let (ray, beta) = (rays.rays[lane], rays.beta[lane]);
         if tree.cut(path, beta).is_none() {
+            let light_path = output.scattered(path, [true, false, crosses]);
             output.queues.paths.push(Path {
                 ray,
                 beta,
                 depth: path.depth + 1,
                 address: path.address << 1 | u64::from(crosses),
                 interior: vertex.interior(world, self, crosses.then_some(ray.direction)),
-                light_path: output.scattered(path, Lobes::sampled(true, false, crosses)),
+                light_path,
                 ..*path
             });
         }

@@ -5,7 +5,7 @@ use lookfrom_simd::LaneMask;
 
 use super::Whitted;
 use super::arriving::{Arriving, Targets};
-use crate::core::lanes::width::{Lanes, Width};
+use crate::core::lanes::width::{Lanes, Mask, Width};
 use crate::core::lanes::{LANES, row, store, store_f64};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Branch, Event, Path};
@@ -67,11 +67,12 @@ impl Told {
         (paths, tree): (&[&Path; LANES], &Whitted),
         beta: Spectrum<W::Real>,
         branches: &Branches<W::Real>,
+        [exist, is_refracted]: [Mask<W>; 2],
     ) {
         let (fresnel, total) = (branches.fresnel.column(), width.bits(branches.total_reflection));
         for (branch, (direction, weight), exist) in [
-            (Branch::Mirrored, branches.mirrored, branches.exist),
-            (Branch::Refracted, branches.refracted, branches.is_refracted),
+            (Branch::Mirrored, branches.mirrored, exist),
+            (Branch::Refracted, branches.refracted, is_refracted),
         ] {
             let (directions, weights) = (store(direction), width.spectra(weight));
             let betas = width.spectra(beta * weight);

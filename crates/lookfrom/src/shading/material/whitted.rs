@@ -47,8 +47,6 @@ pub struct Coefficients<R: Real = f32> {
 /// The two directions in which the ray tree branches, each with its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branches<R: Real = f32> {
-    /// True if there are any: where light is reflected or transmitted.
-    pub exist: R::Mask,
     /// Toward `S`, unit length, and its weight.
     pub mirrored: (Vector<R>, Spectrum<R>),
     /// Toward `T`, unit length, and its weight.
@@ -99,51 +97,41 @@ impl<R: Real> Coefficients<R> {
         (diffuse, self.specular * math::power(cos, self.shininess))
     }
 
-    /// The branches of the ray tree, if there are any. `n` and `wo` of unit length on one side; `front` where that is the
+    /// True if the ray tree branches: where light is reflected or transmitted.
+    #[inline(always)]
+    pub fn has_branches(&self) -> R::Mask {
+        !(self.mirror.is_black() & self.transmission.is_black())
+    }
+
+    /// The branches of the ray tree, where there are any. `n` and `wo` of unit length on one side; `front` where that is the
     /// outside.
     ///
     /// With `fresnel` the fraction `F` of the larger of `k_r` and `k_t` is reflected, and `(1 − F) k_t` is
     /// refracted. Total internal reflection sends everything into the reflected direction.
     #[inline(always)]
-    pub fn branches(&self, n: Vector<R>, wo: Vector<R>, front: R::Mask) -> Option<Branches<R>> {
+    pub fn branches(&self, n: Vector<R>, wo: Vector<R>, front: R::Mask) -> Branches<R> {
         let (k_r, k_t) = (self.mirror, self.transmission);
         let has_transmission = !k_t.is_black();
-        let exist = !k_r.is_black() | has_transmission;
-        if !exist.any() {
-            return None;
-        }
         let one = self.ior.like(1.0);
         let black = Spectrum::splat(self.ior.like(0.0));
-        let mirrored = optics::reflect(wo, n).normalize();
-        let no = exist.like(false);
-        if !(has_transmission | self.fresnel).any() {
-            return Some(Branches {
-                exist,
-                mirrored: (mirrored, k_r),
-                refracted: (mirrored, black),
-                is_refracted: no,
-                fresnel: one,
-                total_reflection: no,
-            });
+        let (mut mirror, mut refracted, mut fresnel) = (k_r, (n, black), one);
+        let mut is_refracted = has_transmission.like(false);
+        let mut total_reflection = is_refracted;
+        if (has_transmission | self.fresnel).any() {
+            let eta = R::select(front, self.ior, one / self.ior);
+            let (bent, is_bent) = optics::refract(wo, n, eta);
+            total_reflection = !is_bent & has_transmission;
+            mirror = Spectrum::select(total_reflection, k_r + k_t, k_r);
+            let mut transmission = Spectrum::select(total_reflection, black, k_t);
+            if self.fresnel.any() {
+                fresnel = optics::fresnel_dielectric(n.dot(wo), eta);
+                mirror = Spectrum::select(self.fresnel, k_r.zip(k_t, Float::max) * fresnel, mirror);
+                transmission = Spectrum::select(self.fresnel, k_t * (one - fresnel), transmission);
+            }
+            refracted = (bent.normalize(), transmission);
+            is_refracted = is_bent & !transmission.is_black();
         }
-        let eta = R::select(front, self.ior, one / self.ior);
-        let (bent, is_bent) = optics::refract(wo, n, eta);
-        let total_reflection = !is_bent & has_transmission;
-        let mut mirror = Spectrum::select(total_reflection, k_r + k_t, k_r);
-        let mut transmission = Spectrum::select(total_reflection, black, k_t);
-        let mut fresnel = one;
-        if self.fresnel.any() {
-            fresnel = optics::fresnel_dielectric(n.dot(wo), eta);
-            mirror = Spectrum::select(self.fresnel, k_r.zip(k_t, Float::max) * fresnel, mirror);
-            transmission = Spectrum::select(self.fresnel, k_t * (one - fresnel), transmission);
-        }
-        Some(Branches {
-            exist,
-            mirrored: (mirrored, mirror),
-            refracted: (bent.normalize(), transmission),
-            is_refracted: exist & is_bent & !transmission.is_black(),
-            fresnel,
-            total_reflection,
-        })
+        let mirrored = (optics::reflect(wo, n).normalize(), mirror);
+        Branches { mirrored, refracted, is_refracted, fresnel, total_reflection }
     }
 }

@@ -1,15 +1,14 @@
 //! The step of path tracing at any width: one light sampled, one direction sampled by the BSDF, Russian roulette, and the
 //! origins of the rays. Numbers only; the parent module makes rays and events of them.
 
-use lookfrom_simd::{Float, Kernel, Mask, Simd};
+use lookfrom_simd::{Float, Kernel, Mask as _, Real, Simd};
 
 use super::light_samples::LightSamples;
 use super::surfaces::{SurfaceColumns, Surfaces};
-use crate::core::lanes::width::{Lanes, One, Width};
-use crate::core::lanes::{
-    Columns, LANES, bitmask, by_lane, load, load_spectrum, shade_together, store, store_spectrum,
-};
+use crate::core::lanes::width::{Lanes, Mask, One, Width};
+use crate::core::lanes::{Columns, LANES, load, load_spectrum, shade_together, store, store_spectrum};
 use crate::core::math::power_heuristic;
+use crate::core::points::Exits;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::path::{LightSampling, SAFE_BOUNCES, SURVIVAL, dimension};
@@ -149,7 +148,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         };
         if scattered.has_density != 0 {
             sample_lights(&mut scattered.lights, scattered.has_density);
-            self.connect(&view, &scattered.lights, &mut scattered.connections);
+            self.connect(&view, &exits, &scattered.lights, &mut scattered.connections);
         }
 
         // Go on in one direction.
@@ -169,13 +168,15 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         };
         let cos = Float::abs(wi.dot(surfaces.n));
         let beta = beta * sample.f * (cos / sample.pdf);
-        let eta_scale = width.load_f32(&by_lane!(lane => paths[lane].previous.eta_scale))
-            * Float::select(sample.is_transmission, sample.eta * sample.eta, one);
+        let eta_scale = width.f32s(
+            #[inline(always)]
+            |lane| paths[lane].previous.eta_scale,
+        ) * Float::select(sample.is_transmission, sample.eta * sample.eta, one);
 
         // End paths of small throughput by Russian roulette.
         let mut survival = beta.max_lane() * eta_scale * SURVIVAL;
         let is_great = survival.gt(one) | Float::eq(survival, one);
-        let is_safe = is_great | width.mask(task.safe_lanes());
+        let is_safe = is_great | task.are_safe(width);
         let mut survives = is_safe;
         survival = Float::select(is_safe, one, survival);
         if !(is_safe | !sample.is_valid).all() {
@@ -206,7 +207,13 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
 
     /// Weights light samples.
     #[inline(always)]
-    fn connect(&self, view: &B::View, lights: &LightSamples, connections: &mut Connections) {
+    fn connect(
+        &self,
+        view: &B::View,
+        exits: &Exits<'_, W::Real>,
+        lights: &LightSamples,
+        connections: &mut Connections,
+    ) {
         let Self { width, surfaces, bsdf, beta, task, .. } = *self;
         let zero = width.splat(0.0);
         let wi = load(width, &lights.wi);
@@ -229,7 +236,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         let weight = Float::select(is_alone, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
         let contribution = beta * f * load_spectrum(width, &lights.li) * (weight / light_pdf);
         let is_sampled = lights.is_valid & !width.bits(f.is_black());
-        let origin = surfaces.exits().toward(wi);
+        let origin = exits.toward(wi);
         connections.f = store_spectrum(f);
         connections.bsdf_pdf = bsdf_pdf.column();
         connections.weight = weight.column();
@@ -252,21 +259,26 @@ pub(super) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Lanes in which Russian roulette ends no path.
+    /// Where Russian roulette ends no path.
     #[inline(always)]
-    fn safe_lanes(&self) -> u32 {
-        match self.light_sampling {
-            LightSampling::MultipleImportance => {
-                bitmask(&by_lane!(lane => self.paths[lane].depth < SAFE_BOUNCES))
-            }
-            _ => u32::MAX,
+    fn are_safe<W: Width>(&self, width: W) -> Mask<W> {
+        if self.light_sampling != LightSampling::MultipleImportance {
+            return width.mask(u32::MAX);
         }
+        let depth = width.u32s(
+            #[inline(always)]
+            |lane| self.paths[lane].depth,
+        );
+        W::Real::from_integer(depth).lt(width.splat(SAFE_BOUNCES as f32))
     }
 
     /// The throughputs of the paths.
     #[inline(always)]
     fn beta<W: Width>(&self, width: W) -> Spectrum<W::Real> {
-        width.load_spectra(&by_lane!(lane => self.paths[lane].beta))
+        width.spectra_of(
+            #[inline(always)]
+            |lane| self.paths[lane].beta,
+        )
     }
 
     /// Scatters the path in the first lane, whatever its BSDF.
