@@ -10,9 +10,9 @@ use crate::dispatch::dispatch;
 use crate::interleaved::{self, answer_in_turn};
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
-use crate::query::{Needs, Settings};
 use crate::ray::{Hit, Ray};
 use crate::ray8::RAYS;
+use crate::settings::{Settings, VisibilityKind};
 use crate::stack::{Stack, with_stack};
 use crate::traverse::trace;
 use crate::visibility::{Everything, ExceptOrigin, Masked, Visibility};
@@ -112,13 +112,12 @@ pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[Ray], occluded: &mu
 }
 
 fn answer<C: Question>(settings: &Settings<'_>, rays: &[Ray], answers: &mut [C::Answer]) {
-    let level = settings.bvh.level;
     for_batches(rays, answers, |first, rays, answers| {
         let settings = settings.from(first);
-        match settings.needs() {
-            Needs::Everything => dispatch(level, Batch::<C, Everything>::new(settings, rays, answers)),
-            Needs::ExceptOrigin => dispatch(level, Batch::<C, ExceptOrigin>::new(settings, rays, answers)),
-            Needs::Masked => dispatch(level, Batch::<C, Masked<'_>>::new(settings, rays, answers)),
+        match settings.visibility_kind() {
+            VisibilityKind::Everything => Batch::<C, Everything>::trace(settings, rays, answers),
+            VisibilityKind::ExceptOrigin => Batch::<C, ExceptOrigin>::trace(settings, rays, answers),
+            VisibilityKind::Masked => Batch::<C, Masked<'_>>::trace(settings, rays, answers),
         }
     });
 }
@@ -131,9 +130,9 @@ struct Batch<'a, 'b, C: Question, V> {
     visibility: PhantomData<V>,
 }
 
-impl<'a, 'b, C: Question, V> Batch<'a, 'b, C, V> {
-    fn new(settings: Settings<'a>, rays: &'b [Ray], answers: &'b mut [C::Answer]) -> Self {
-        Self { settings, rays, answers, visibility: PhantomData }
+impl<'a, 'b, C: Question, V: Visibility<'a>> Batch<'a, 'b, C, V> {
+    fn trace(settings: Settings<'a>, rays: &'b [Ray], answers: &'b mut [C::Answer]) {
+        dispatch(settings.bvh.level, Self { settings, rays, answers, visibility: PhantomData });
     }
 }
 

@@ -1,25 +1,25 @@
-//! The tree and its basic queries. All others are in `query`.
+//! The tree: flat arrays of nodes, leaves and primitives.
 
 use std::sync::Arc;
 
 use crate::aabb::Aabb;
 use crate::affine::Affine;
 use crate::conservative::TriangleBlock;
-use crate::instance::Instance;
+use crate::item::{Leaf, ProceduralItem, SphereItem};
 use crate::masks::Masks;
 use crate::node::Node;
 use crate::procedural::Procedural;
-use crate::query::Settings;
-use crate::ray::{Hit, Ray};
-use crate::sphere::Sphere;
-use crate::validate::{Invalid, Statistics};
-use crate::{batch, single};
+use crate::statistics::Statistics;
 use lookfrom_simd::{Level, level};
+
+mod instance;
+
+pub(crate) use instance::Instance;
 
 /// A bounding volume hierarchy (BVH) for tracing rays. Made by a [`Builder`](crate::Builder); immutable, and shared
 /// between threads.
 ///
-/// The basic queries are methods: the closest hit, occlusion, and both for batches of [`Ray`]s. [`Self::query`]
+/// The basic queries are methods: the closest hit, occlusion, and both for batches of [`Ray`](crate::Ray)s. [`Self::query`]
 /// gives all others: all hits, masks and faces, origin primitives, observers, rays in f64.
 ///
 /// ```
@@ -51,30 +51,6 @@ pub struct Bvh {
     pub(crate) largest: f32,
     /// The SIMD level for tracing.
     pub(crate) level: Level,
-}
-
-/// The content of a leaf without triangles: a range of items in the array of their kind.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Leaf {
-    Spheres { first: u32, count: u32 },
-    Procedurals { first: u32, count: u32 },
-    Instances { first: u32, count: u32 },
-}
-
-/// A sphere and its ids.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SphereItem {
-    pub(crate) shape: Sphere,
-    pub(crate) geometry: u32,
-    pub(crate) primitive: u32,
-}
-
-/// One of a procedural's shapes: `shape` is the procedural's index in [`Bvh::procedural_shapes`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ProceduralItem {
-    pub(crate) shape: u32,
-    pub(crate) geometry: u32,
-    pub(crate) primitive: u32,
 }
 
 impl Default for Bvh {
@@ -137,6 +113,11 @@ impl Bvh {
         self.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
     }
 
+    /// Counts the content, beside which a number of primitives was left out.
+    pub(crate) fn count(&self, left_out: usize) -> Statistics {
+        Statistics { left_out, ..Statistics::of(&self.nodes, &self.triangles, &self.leaves) }
+    }
+
     /// Memory for tracing in bytes, without the trees of instances (which are shared) and without procedural
     /// shapes.
     ///
@@ -173,89 +154,5 @@ impl Bvh {
     /// ```
     pub fn statistics(&self) -> Statistics {
         self.statistics
-    }
-
-    /// Checks every invariant that tracing relies on, and recounts the statistics. Slow: for tests and
-    /// debugging.
-    ///
-    /// # Errors
-    /// A bug of this library, and its place.
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// assert_eq!(bvh.validate(), Ok(bvh.statistics()));
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn validate(&self) -> Result<Statistics, Invalid> {
-        crate::validate::validate(self)
-    }
-
-    /// The hit with the smallest t in the ray's range, or [`Hit::MISS`]. Of several hits at equal t it is the one
-    /// with the lowest ids: geometry outside of instances comes first, then by instance, geometry and primitive.
-    ///
-    /// ```
-    /// use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
-    /// let mut builder = Builder::new();
-    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// let bvh = builder.build()?;
-    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -2.0])).t, 1.0);
-    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 1.0, 0.0])), Hit::MISS);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_hit(&self, ray: &Ray) -> Hit {
-        single::closest_hit_of_everything(self, ray)
-    }
-
-    /// True if anything is hit in the ray's range.
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
-    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.with_t_max(2.0)));
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn occluded(&self, ray: &Ray) -> bool {
-        single::occluded_by_everything(self, ray)
-    }
-
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in
-    /// packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
-    /// let mut hits = [Hit::MISS; 2];
-    /// bvh.closest_hits(&rays, &mut hits);
-    /// assert_eq!(hits.map(|hit| hit.is_hit()), [true, false]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
-        batch::closest_hits(&Settings::new(self), rays, hits);
-    }
-
-    /// [`Self::occluded`] for each ray, as [`Self::closest_hits`].
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
-    /// # let mut builder = Builder::new();
-    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// # let bvh = builder.build()?;
-    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
-    /// let mut occluded = [false; 2];
-    /// bvh.occluded_many(&rays, &mut occluded);
-    /// assert_eq!(occluded, [true, false]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
-        batch::occluded_many(&Settings::new(self), rays, occluded);
     }
 }

@@ -8,12 +8,12 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::Bvh;
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
 use crate::affine::Affine;
 use crate::batch::for_each;
-use crate::bvh::Leaf;
+use crate::bvh::Bvh;
 use crate::ellipsoid::nearest_on_ellipsoid;
+use crate::item::Leaf;
 use crate::node::{Child, Content, WIDTH};
 use crate::ray::NONE;
 use crate::sphere::Sphere;

@@ -1,8 +1,7 @@
 //! The ray of the exact tests: in f64, in the world or in an object's space.
 
-use crate::instance::Instance;
 use crate::ray::Ray;
-use crate::vector::{dot, subtract, wide};
+use crate::vector::wide;
 
 /// A ray for exact tests. In an instance it is not rounded to f32.
 #[derive(Clone, Copy, Debug)]
@@ -40,18 +39,6 @@ impl ExactRay {
 }
 
 impl<T: Rounded> ExactRay<T> {
-    /// The same ray in the space of an instance's object; t is unchanged.
-    #[inline(always)]
-    pub(crate) fn in_object(&self, instance: &Instance) -> Self {
-        let in_object = |v: [f64; 3]| instance.object_from_world.map(|row| dot(row, v));
-        Self {
-            // Subtract first, to keep the significant digits near the object.
-            origin: in_object(subtract(self.origin, instance.world_from_object.translation)),
-            direction: in_object(self.direction),
-            t_min: self.t_min,
-        }
-    }
-
     /// The axes in cyclic order, with the largest component of the direction last.
     #[inline(always)]
     pub(crate) fn axes(&self) -> [usize; 3] {

@@ -9,13 +9,13 @@
 
 use std::ops::Range;
 
-use crate::Bvh;
 use crate::batch::Question;
+use crate::bvh::Bvh;
 use crate::exact::ExactRay;
 use crate::node::{Child, Content, Slabs};
 use crate::prepared::PreparedRay;
-use crate::query::Settings;
 use crate::ray::{NONE, Ray};
+use crate::settings::Settings;
 use crate::stack::{REST, SEGMENT, SEGMENTS, Stack, TraversalStack, fits_a_segment};
 use crate::traverse::{TraversalState, TreePath, trace_any};
 use crate::visibility::Visibility;
@@ -176,12 +176,13 @@ mod tests {
     use super::*;
     use crate::collector::{AnyHit, ClosestHit};
     use crate::dispatch::{dispatch, levels};
+    use crate::faces::Faces;
     use crate::origin_primitive::OriginPrimitive;
     use crate::ray::Hit;
     use crate::single;
     use crate::stack::with_stack;
     use crate::testing::Random;
-    use crate::visibility::{Everything, ExceptOrigin, Faces, Masked};
+    use crate::visibility::{Everything, ExceptOrigin, Masked};
     use crate::{Affine, Builder, Sphere, Triangles};
     use lookfrom_simd::Kernel;
 
@@ -275,7 +276,7 @@ mod tests {
         let bvh = Bvh { nodes: vec![crate::node::Node::EMPTY; LARGE / 256], ..Bvh::default() };
         assert!(pays(&bvh));
         // Too deep for a segment of the stack.
-        let statistics = crate::validate::Statistics { depth: 36, ..bvh.statistics };
+        let statistics = crate::statistics::Statistics { depth: 36, ..bvh.statistics };
         assert!(!pays(&Bvh { statistics, ..bvh }));
     }
 }

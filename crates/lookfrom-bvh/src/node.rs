@@ -37,7 +37,7 @@ pub(crate) enum Content {
     Node(usize),
     /// Number of the block.
     Triangles(usize),
-    /// Index in [`crate::Bvh::leaves`].
+    /// Index in `Bvh::leaves`.
     Leaf(usize),
 }
 
@@ -140,6 +140,14 @@ impl Node {
             min: [0, 1, 2].map(|axis| self.bounds[axis][0][slot]),
             max: [0, 1, 2].map(|axis| self.bounds[axis][1][slot]),
         }
+    }
+
+    /// The children: their slots, boxes and contents.
+    pub(crate) fn children(&self) -> impl Iterator<Item = (usize, Aabb, Content)> + '_ {
+        (0..WIDTH).filter_map(|slot| {
+            let bounds = self.child_bounds(slot);
+            (!bounds.is_empty()).then(|| (slot, bounds, self.child(slot).content()))
+        })
     }
 
     /// The number of children.

@@ -12,22 +12,21 @@
 
 use std::marker::PhantomData;
 
-use crate::Bvh;
 use crate::aabb::Aabb;
-use crate::bvh::Leaf;
+use crate::bvh::Bvh;
 use crate::coherence::Coherence;
 use crate::collector::PacketCollector;
 use crate::conservative::LARGEST_FILTERED;
 use crate::exact::ExactRay;
-use crate::leaf::other_leaf;
+use crate::item::Leaf;
 use crate::node::{Child, Content, WIDTH};
 use crate::packet_bounds::{PacketBounds, seem_alike};
-use crate::query::Settings;
 use crate::ray::{Hit, NONE, Ray};
 use crate::ray8::{GROUPS, LANES, NO_BLOCK, RAYS, Ray8, Slabs8, least, least_of_each};
+use crate::settings::Settings;
 use crate::stack::{Stack, TraversalStack};
-use crate::traverse::TraversalState;
-use crate::validate::Statistics;
+use crate::statistics::Statistics;
+use crate::traverse::{TraversalState, other_leaf};
 use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, f32x8, prelude::*};
 use one_triangle::Pairs;

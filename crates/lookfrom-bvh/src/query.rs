@@ -1,57 +1,13 @@
-//! The builder of queries: a tree, the part of it that rays see, and an observer; then the query itself.
+//! Queries of a tree: the basic ones as its methods, all others by a builder.
 
-use crate::Bvh;
+use crate::bvh::Bvh;
+use crate::faces::Faces;
 use crate::observer::Observer;
 use crate::origin_primitive::OriginPrimitive;
+use crate::ray::{Hit, Ray};
+use crate::settings::Settings;
 use crate::trace_ray::TraceRay;
-use crate::visibility::Faces;
-
-/// The part of a tree that rays see.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings<'a> {
-    pub(crate) bvh: &'a Bvh,
-    /// `None` where masks are ignored.
-    pub(crate) mask: Option<u32>,
-    pub(crate) faces: Faces,
-    /// The origin primitive of rays for which `origins` has none.
-    pub(crate) origin: OriginPrimitive,
-    pub(crate) origins: &'a [OriginPrimitive],
-}
-
-/// The kind of visibility that settings need: see [`crate::visibility`].
-pub(crate) enum Needs {
-    Everything,
-    ExceptOrigin,
-    Masked,
-}
-
-impl<'a> Settings<'a> {
-    /// Settings that see the whole tree.
-    pub(crate) const fn new(bvh: &'a Bvh) -> Self {
-        Self { bvh, mask: None, faces: Faces::Both, origin: OriginPrimitive::NONE, origins: &[] }
-    }
-
-    pub(crate) fn needs(&self) -> Needs {
-        if self.mask.is_some() || self.faces != Faces::Both {
-            Needs::Masked
-        } else if self.origins.is_empty() && self.origin == OriginPrimitive::NONE {
-            Needs::Everything
-        } else {
-            Needs::ExceptOrigin
-        }
-    }
-
-    /// The origin primitive of the ray with index `number`.
-    #[inline(always)]
-    pub(crate) fn origin_of(&self, number: usize) -> OriginPrimitive {
-        self.origins.get(number).copied().unwrap_or(self.origin)
-    }
-
-    /// The same settings for rays that begin with the index `first`.
-    pub(crate) fn from(self, first: usize) -> Self {
-        Self { origins: self.origins.get(first..).unwrap_or_default(), ..self }
-    }
-}
+use crate::{batch, single};
 
 /// A query of a [`Bvh`], in builder style; created by [`Bvh::query`].
 ///
@@ -97,6 +53,72 @@ impl Bvh {
     /// ```
     pub const fn query(&self) -> Query<'_> {
         Query { settings: Settings::new(self), observer: () }
+    }
+
+    /// The hit with the smallest t in the ray's range, or [`Hit::MISS`]. Of several hits at equal t it is the one
+    /// with the lowest ids: geometry outside of instances comes first, then by instance, geometry and primitive.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
+    /// let mut builder = Builder::new();
+    /// builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let bvh = builder.build()?;
+    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -2.0])).t, 1.0);
+    /// assert_eq!(bvh.closest_hit(&Ray::new([0.0, 0.0, 3.0], [0.0, 1.0, 0.0])), Hit::MISS);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hit(&self, ray: &Ray) -> Hit {
+        single::closest_hit_of_everything(self, ray)
+    }
+
+    /// True if anything is hit in the ray's range.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let ray = Ray::new([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]);
+    /// assert!(bvh.occluded(&ray) && !bvh.occluded(&ray.with_t_max(2.0)));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        single::occluded_by_everything(self, ray)
+    }
+
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in
+    /// packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Hit, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut hits = [Hit::MISS; 2];
+    /// bvh.closest_hits(&rays, &mut hits);
+    /// assert_eq!(hits.map(|hit| hit.is_hit()), [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Hit]) {
+        batch::closest_hits(&Settings::new(self), rays, hits);
+    }
+
+    /// [`Self::occluded`] for each ray, as [`Self::closest_hits`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// let rays = [3.0, -3.0].map(|z| Ray::new([0.0, 0.0, z], [0.0, 0.0, -1.0]));
+    /// let mut occluded = [false; 2];
+    /// bvh.occluded_many(&rays, &mut occluded);
+    /// assert_eq!(occluded, [true, false]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn occluded_many(&self, rays: &[Ray], occluded: &mut [bool]) {
+        batch::occluded_many(&Settings::new(self), rays, occluded);
     }
 }
 

@@ -7,15 +7,13 @@
 
 use std::fmt;
 
-use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::build::{Triangles, has_area, has_surface};
-use crate::bvh::Leaf;
+use crate::bvh::{Bvh, Instance};
 use crate::conservative::TriangleBlock;
-use crate::instance::Instance;
+use crate::item::Leaf;
 use crate::node::{Content, WIDTH};
 use crate::sphere::Sphere;
-use crate::validate::Statistics;
 
 /// The new positions of a geometry: all of its primitives, in the order in which they were added.
 ///
@@ -124,7 +122,7 @@ impl Bvh {
         }
         let [exact, _] = self.fit(0);
         self.set_bounds(exact);
-        self.statistics = Statistics { left_out: self.statistics.left_out, ..self.take_statistics() };
+        self.statistics = self.count(self.statistics.left_out);
         Ok(())
     }
 

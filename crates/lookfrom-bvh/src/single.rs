@@ -1,12 +1,12 @@
 //! Queries of single rays in single precision: one site of compiled code for each query and level.
 
-use crate::Bvh;
 use crate::batch;
+use crate::bvh::Bvh;
 use crate::collector::{AllHits, AnyHit, ClosestHit, Collector};
 use crate::dispatch::dispatch;
 use crate::observer::Observer;
-use crate::query::{Needs, Settings};
 use crate::ray::{Hit, Ray};
+use crate::settings::{Settings, VisibilityKind};
 use crate::stack::with_stack;
 use crate::traverse::trace;
 use crate::visibility::{Everything, Masked, Visibility};
@@ -63,7 +63,7 @@ pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray) -> bool {
 
 /// The closest hit.
 pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
-    if let Needs::Everything = settings.needs() {
+    if let VisibilityKind::Everything = settings.visibility_kind() {
         return closest_hit_of_everything(settings.bvh, ray);
     }
     let mut hit = [Hit::MISS];
@@ -73,7 +73,7 @@ pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
 
 /// True if there is a hit.
 pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
-    if let Needs::Everything = settings.needs() {
+    if let VisibilityKind::Everything = settings.visibility_kind() {
         return occluded_by_everything(settings.bvh, ray);
     }
     let mut occluded = [false];
@@ -85,8 +85,8 @@ pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
 pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) {
     let room = std::mem::take(hits);
     let all = move |ray: &Ray| AllHits::new(ray, room);
-    *hits = match settings.needs() {
-        Needs::Everything => ask_everything(settings.bvh, ray, all).hits,
+    *hits = match settings.visibility_kind() {
+        VisibilityKind::Everything => ask_everything(settings.bvh, ray, all).hits,
         _ => ask(settings, ray, all, ()).hits,
     };
     sort(hits);

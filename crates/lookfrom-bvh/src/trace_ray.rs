@@ -1,9 +1,9 @@
 //! The types of rays that queries trace, and the code for each: f32 by SIMD, f64 by scalar code.
 
 use crate::observer::Observer;
-use crate::query::Settings;
 use crate::ray::{Hit, Ray};
 use crate::ray_f64::{HitF64, RayF64};
+use crate::settings::Settings;
 use crate::{batch, single, traverse_f64};
 
 /// A type of ray that queries trace: [`Ray`], whose `Hit` is [`Hit`], or [`RayF64`], whose `Hit` is [`HitF64`]. The
@@ -27,7 +27,7 @@ impl TraceRay for RayF64 {}
 
 mod sealed {
     use crate::observer::Observer;
-    use crate::query::Settings;
+    use crate::settings::Settings;
 
     /// The queries of a type of ray.
     pub trait Trace: Copy + Sync + Sized {

@@ -5,11 +5,10 @@
 //! the query's current end are skipped. The order of visits never affects a result: ends are compared with an error
 //! margin (see `node`), and ties are decided by ids (see `Hit`).
 
-use crate::Bvh;
+use crate::bvh::Bvh;
 use crate::collector::Collector;
 use crate::conservative::{RayLanes, TriangleBlock};
 use crate::exact::ExactRay;
-use crate::leaf::other_leaf;
 use crate::node::{Child, Content, Slabs};
 use crate::observer::Observer;
 use crate::prepared::PreparedRay;
@@ -19,6 +18,10 @@ use crate::triangle;
 use crate::triangle::Crossing;
 use crate::visibility::{Visibility, shown};
 use lookfrom_simd::Simd;
+
+mod leaf;
+
+pub(crate) use leaf::other_leaf;
 
 /// A ray's state during traversal: its instance, collector, visibility and observer.
 pub(crate) struct TraversalState<C, V, O> {

@@ -4,16 +4,16 @@
 //! rays whose numbers are f32 the results agree with single precision, but are finer: hits at equal t in f32 are
 //! distinguished.
 
-use crate::Bvh;
 use crate::aabb::Aabb;
 use crate::batch::for_each;
-use crate::bvh::Leaf;
+use crate::bvh::Bvh;
 use crate::exact::ExactRay;
+use crate::item::Leaf;
 use crate::node::{Child, Content, Node, WIDTH};
 use crate::observer::Observer;
-use crate::query::Settings;
 use crate::ray::{NONE, Ray};
 use crate::ray_f64::{HitF64, RayF64};
+use crate::settings::Settings;
 use crate::vector::{round_down, round_up};
 use crate::visibility::{Masked, Visibility};
 use crate::{sphere, triangle};
@@ -191,7 +191,7 @@ impl<O: Observer> Traversal<'_, O> {
                 let outer = self.outer;
                 for place in range(first, count) {
                     let inside = &outer.instances[place];
-                    let inner = ray.in_object(inside);
+                    let inner = inside.ray_in_object(ray);
                     if is_usable(&inner) && self.visibility.enter_instance(place) {
                         self.node(&inside.bvh, &inner, place as u32, 0);
                         self.visibility.leave_instance();

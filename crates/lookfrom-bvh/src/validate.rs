@@ -1,45 +1,13 @@
-//! Validation of a tree, and its statistics.
+//! Validation of a tree.
 
 use std::fmt;
+use std::ops::Range;
 
-use crate::Bvh;
 use crate::aabb::Aabb;
-use crate::bvh::Leaf;
-use crate::node::{Content, LARGEST_DEPTH, Node, WIDTH};
-
-/// Statistics of a tree.
-///
-/// ```
-/// # use lookfrom_bvh::{Builder, Sphere};
-/// # let mut builder = Builder::new();
-/// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-/// # let bvh = builder.build()?;
-/// let statistics = bvh.statistics();
-/// assert_eq!((statistics.spheres, statistics.nodes, statistics.left_out), (1, 1, 0));
-/// # Ok::<(), lookfrom_bvh::BuildError>(())
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Statistics {
-    /// Number of triangles in the tree.
-    pub triangles: usize,
-    /// Number of spheres in the tree.
-    pub spheres: usize,
-    /// Number of procedural shapes in the tree.
-    pub procedurals: usize,
-    /// Number of instances in the tree.
-    pub instances: usize,
-    /// Number of primitives and instances that no ray can hit and that are not in the tree.
-    pub left_out: usize,
-    /// Number of nodes, of up to eight children.
-    pub nodes: usize,
-    /// Number of leaves.
-    pub leaves: usize,
-    /// Number of levels of nodes.
-    pub depth: usize,
-    /// Expected number of nodes and leaves that a random line through the tree's box visits: the sum of their
-    /// areas, relative to the root's.
-    pub cost: f64,
-}
+use crate::bvh::Bvh;
+use crate::item::Leaf;
+use crate::node::{Content, LARGEST_DEPTH};
+use crate::statistics::Statistics;
 
 /// A violated invariant of a tree.
 ///
@@ -65,18 +33,27 @@ impl fmt::Display for Invalid {
 impl std::error::Error for Invalid {}
 
 impl Bvh {
-    /// Counts the content without checking the tree.
-    pub(crate) fn take_statistics(&self) -> Statistics {
-        let mut walk = Walk::default();
-        if !self.nodes.is_empty() {
-            walk.count(self, 0, 1);
-        }
-        walk.statistics
+    /// Checks every invariant that tracing relies on, and recounts the statistics. Slow: for tests and
+    /// debugging.
+    ///
+    /// # Errors
+    /// A bug of this library, and its place.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Ray, Sphere};
+    /// # let mut builder = Builder::new();
+    /// # builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// # let bvh = builder.build()?;
+    /// assert_eq!(bvh.validate(), Ok(bvh.statistics()));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn validate(&self) -> Result<Statistics, Invalid> {
+        validate(self)
     }
 }
 
 /// Checks the whole tree.
-pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
+fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
     let mut check = Check {
         bvh,
         nodes: vec![false; bvh.nodes.len()],
@@ -117,7 +94,7 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         instance.bvh.validate()?;
     }
 
-    let statistics = Statistics { left_out: bvh.statistics.left_out, ..bvh.take_statistics() };
+    let statistics = bvh.count(bvh.statistics.left_out);
     if statistics != bvh.statistics {
         return Err(Invalid(format!("counted {statistics:?}, but it says {:?}", bvh.statistics)));
     }
@@ -125,48 +102,6 @@ pub(crate) fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         return Err(Invalid(format!("{} levels, more than {LARGEST_DEPTH}", statistics.depth)));
     }
     Ok(statistics)
-}
-
-/// The non-empty children of a node.
-fn children(node: &Node) -> impl Iterator<Item = (usize, Aabb, Content)> + '_ {
-    (0..WIDTH).filter_map(|slot| {
-        let bounds = node.child_bounds(slot);
-        (!bounds.is_empty()).then(|| (slot, bounds, node.child(slot).content()))
-    })
-}
-
-#[derive(Default)]
-struct Walk {
-    statistics: Statistics,
-    root_area: f64,
-}
-
-impl Walk {
-    fn count(&mut self, bvh: &Bvh, number: usize, depth: usize) {
-        let node = &bvh.nodes[number];
-        if depth == 1 {
-            let mut bounds = Aabb::EMPTY;
-            children(node).for_each(|(_, child, ..)| bounds.unite(&child));
-            self.root_area = f64::from(bounds.half_area());
-        }
-        self.statistics.nodes += 1;
-        self.statistics.depth = self.statistics.depth.max(depth);
-        for (_, bounds, content) in children(node) {
-            if self.root_area > 0.0 {
-                self.statistics.cost += f64::from(bounds.half_area()) / self.root_area;
-            }
-            self.statistics.leaves += usize::from(!matches!(content, Content::Node(_)));
-            match content {
-                Content::Node(child) => self.count(bvh, child, depth + 1),
-                Content::Triangles(block) => self.statistics.triangles += bvh.triangles[block].count(),
-                Content::Leaf(leaf) => match bvh.leaves[leaf] {
-                    Leaf::Spheres { count, .. } => self.statistics.spheres += count as usize,
-                    Leaf::Procedurals { count, .. } => self.statistics.procedurals += count as usize,
-                    Leaf::Instances { count, .. } => self.statistics.instances += count as usize,
-                },
-            }
-        }
-    }
 }
 
 struct Check<'a> {
@@ -188,7 +123,7 @@ impl Check<'_> {
         mark(&mut self.nodes, number, 1, "node")?;
         let node = &bvh.nodes[number];
         let mut all = Aabb::EMPTY;
-        for (slot, bounds, content) in children(node) {
+        for (slot, bounds, content) in node.children() {
             let inside = match content {
                 Content::Node(child) => self.node(child)?,
                 Content::Triangles(block) => self.triangles(block)?,
@@ -256,7 +191,7 @@ impl Check<'_> {
 }
 
 /// Marks items as reached, and fails where they do not exist or were reached before.
-fn mark(seen: &mut [bool], first: usize, count: u32, name: &str) -> Result<std::ops::Range<usize>, Invalid> {
+fn mark(seen: &mut [bool], first: usize, count: u32, name: &str) -> Result<Range<usize>, Invalid> {
     let range = first..first + count as usize;
     let Some(items) = seen.get_mut(range.clone()) else {
         return Err(Invalid(format!("{name} {first} is named but not there")));

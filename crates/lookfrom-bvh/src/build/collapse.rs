@@ -3,9 +3,9 @@
 //! Nodes are written depth first, leaves in a separate list in the same order, so that neighbours in space are
 //! neighbours in memory.
 
-use crate::Bvh;
-use crate::bvh::{Leaf, ProceduralItem, SphereItem};
+use crate::bvh::Bvh;
 use crate::conservative::TriangleBlock;
+use crate::item::{Leaf, ProceduralItem, SphereItem};
 use crate::node::{Child, Node};
 
 use super::parallel;

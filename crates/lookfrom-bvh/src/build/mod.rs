@@ -16,14 +16,12 @@ mod split;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::Bvh;
 use crate::affine::Affine;
-use crate::instance::Instance;
+use crate::bvh::{Bvh, Instance};
 use crate::masks::Masks;
 use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::sphere::Sphere;
-use crate::validate::Statistics;
 use lookfrom_simd::level;
 
 use plan::Plan;
@@ -373,7 +371,7 @@ impl Builder {
         bvh.set_bounds(bounds);
         bvh.instances = self.instances.clone();
         bvh.masks = self.masks.clone();
-        bvh.statistics = Statistics { left_out, ..bvh.take_statistics() };
+        bvh.statistics = bvh.count(left_out);
         Ok(bvh)
     }
 }

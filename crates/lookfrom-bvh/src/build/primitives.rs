@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::bvh::Instance;
 use crate::conservative::BLOCK;
-use crate::instance::Instance;
 use crate::node::Child;
 use crate::procedural::Procedural;
 use crate::ray::NONE;

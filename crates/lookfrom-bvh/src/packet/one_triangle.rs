@@ -4,9 +4,10 @@
 use super::Packet;
 use crate::collector::PacketCollector;
 use crate::conservative::{ConservativeTest, RayLanes, TriangleEdges, TriangleLanes};
+use crate::faces::Faces;
 use crate::ray8::{GROUPS, LANES, Ray8};
 use crate::triangle;
-use crate::visibility::{Faces, Visibility};
+use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, f32x8, f32x16, mask32x8, prelude::*};
 
 /// All lanes of a group.

@@ -1,12 +1,13 @@
 //! Packets against spheres: eight rays and one sphere, excluded in f32 and decided in f64.
 
 use super::Packet;
-use crate::bvh::SphereItem;
 use crate::collector::PacketCollector;
+use crate::faces::Faces;
+use crate::item::SphereItem;
 use crate::ray::{Hit, NONE};
 use crate::ray8::{GROUPS, LANES, Ray8};
 use crate::sphere::{self, Line, SphereFilter};
-use crate::visibility::{Faces, Visibility};
+use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, f64x8, mask32x8, prelude::*};
 
 impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {

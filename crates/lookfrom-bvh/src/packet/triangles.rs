@@ -6,12 +6,13 @@ use crate::collector::PacketCollector;
 use crate::common_origin::CommonOriginBlock;
 use crate::conservative::{TriangleBlock, TriangleLanes};
 use crate::exact::ExactRay;
+use crate::faces::Faces;
 use crate::packet_bounds::PacketBounds;
 use crate::ray::{Hit, NONE};
 use crate::ray8::{GROUPS, LANES, Ray8};
 use crate::traverse::report;
 use crate::triangle;
-use crate::visibility::{Faces, Visibility};
+use crate::visibility::Visibility;
 use lookfrom_simd::{LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
 impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {

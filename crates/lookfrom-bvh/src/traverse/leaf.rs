@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use crate::Bvh;
-use crate::bvh::{Leaf, SphereItem};
+use super::{TraversalState, trace_any};
+use crate::bvh::Bvh;
 use crate::collector::Collector;
 use crate::exact::ExactRay;
+use crate::item::{Leaf, SphereItem};
 use crate::observer::Observer;
 use crate::ray::{Hit, NONE, Ray};
 use crate::sphere;
 use crate::stack::TraversalStack;
-use crate::traverse::{TraversalState, trace_any};
 use crate::visibility::Visibility;
 use lookfrom_simd::Simd;
 
@@ -106,7 +106,7 @@ fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
             return false;
         }
         let instance = &bvh.instances[place];
-        let inside = exact.in_object(instance);
+        let inside = instance.ray_in_object(exact);
         let TraversalStack { entries, height, .. } = stack;
         state.instance = place as u32;
         let stop = trace_any(

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::Bvh;
+use super::Bvh;
 use crate::aabb::Aabb;
 use crate::affine::Affine;
-use crate::vector::{round_down, round_up, wide};
+use crate::exact::{ExactRay, Rounded};
+use crate::vector::{dot, round_down, round_up, subtract, wide};
 
 /// Entries of a matrix and of its inverse beyond 2⁹⁰ exceed the range of f32.
 const LARGEST_ENTRY: f64 = 1.237_940_039_285_380_3e27;
@@ -26,6 +27,18 @@ impl Instance {
         let entries = world_from_object.matrix.iter().chain(&object_from_world).flatten();
         let usable = entries.into_iter().all(|entry| entry.abs() < LARGEST_ENTRY);
         usable.then_some(Self { bvh, world_from_object, object_from_world })
+    }
+
+    /// A ray of the world in the object's space; t is unchanged.
+    #[inline(always)]
+    pub(crate) fn ray_in_object<T: Rounded>(&self, ray: &ExactRay<T>) -> ExactRay<T> {
+        let in_object = |v: [f64; 3]| self.object_from_world.map(|row| dot(row, v));
+        ExactRay {
+            // Subtract first, to keep the significant digits near the object.
+            origin: in_object(subtract(ray.origin, self.world_from_object.translation)),
+            direction: in_object(ray.direction),
+            t_min: ray.t_min,
+        }
     }
 
     /// The box in the world: around the eight corners of the object's box, rounded outwards.
