@@ -5,9 +5,9 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use crate::coherence::Coherence;
-use crate::collector::{AnyHit, ClosestHit, PacketCollector};
+use crate::collector::{AnyHit, BatchQuery, ClosestHit};
 use crate::dispatch::dispatch;
-use crate::interleaved::{self, answer_in_turn};
+use crate::interleaved::{self, trace_interleaved};
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
 use crate::ray::{Hit, Ray};
@@ -22,161 +22,84 @@ use lookfrom_simd::{Kernel, Simd};
 #[cfg(feature = "parallel")]
 const BATCH: usize = 4096;
 
-/// A query for many rays, with one result for each.
-pub(crate) trait Question: PacketCollector {
-    type Answer: Send;
-
-    fn ask(ray: &Ray) -> Self;
-
-    fn answer(&self) -> Self::Answer;
-
-    /// Traces rays as a packet; returns false where they cannot form one, or it does not pay. The answers mean nothing
-    /// then.
-    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
-        simd: S,
-        settings: &Settings<'a>,
-        rays: &[Ray],
-        answers: &mut [Self::Answer],
-        coherence: &mut Coherence,
-        stack: &mut Stack,
-    ) -> bool;
-}
-
-impl Question for ClosestHit {
-    type Answer = Hit;
-
-    #[inline(always)]
-    fn ask(ray: &Ray) -> Self {
-        Self::new(ray)
-    }
-
-    #[inline(always)]
-    fn answer(&self) -> Hit {
-        self.hit
-    }
-
-    #[inline(always)]
-    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
-        simd: S,
-        settings: &Settings<'a>,
-        rays: &[Ray],
-        hits: &mut [Hit],
-        coherence: &mut Coherence,
-        stack: &mut Stack,
-    ) -> bool {
-        hits.len() >= rays.len()
-            && trace_packet::<S, Self, V>(simd, settings, rays, hits, coherence, stack).is_some()
-    }
-}
-
-impl Question for AnyHit {
-    type Answer = bool;
-
-    #[inline(always)]
-    fn ask(ray: &Ray) -> Self {
-        Self::new(ray)
-    }
-
-    #[inline(always)]
-    fn answer(&self) -> bool {
-        self.found
-    }
-
-    #[inline(always)]
-    fn trace_packet<'a, S: Simd, V: Visibility<'a>>(
-        simd: S,
-        settings: &Settings<'a>,
-        rays: &[Ray],
-        occluded: &mut [bool],
-        coherence: &mut Coherence,
-        stack: &mut Stack,
-    ) -> bool {
-        let found = trace_packet::<S, Self, V>(simd, settings, rays, &mut [], coherence, stack);
-        if let Some(found) = found {
-            for (ray, occluded) in occluded.iter_mut().enumerate() {
-                *occluded = found >> ray & 1 != 0;
-            }
-        }
-        found.is_some()
-    }
-}
-
 /// The closest hit of each ray.
 pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[Ray], hits: &mut [Hit]) {
-    answer::<ClosestHit>(settings, rays, hits);
+    trace_all::<ClosestHit>(settings, rays, hits);
 }
 
 /// True for each ray that has a hit.
 pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[Ray], occluded: &mut [bool]) {
-    answer::<AnyHit>(settings, rays, occluded);
+    trace_all::<AnyHit>(settings, rays, occluded);
 }
 
-fn answer<C: Question>(settings: &Settings<'_>, rays: &[Ray], answers: &mut [C::Answer]) {
-    for_batches(rays, answers, |first, rays, answers| {
+fn trace_all<C: BatchQuery>(settings: &Settings<'_>, rays: &[Ray], results: &mut [C::Result]) {
+    for_batches(rays, results, |first, rays, results| {
         let settings = settings.from(first);
         match settings.visibility_kind() {
-            VisibilityKind::Everything => Batch::<C, Everything>::trace(settings, rays, answers),
-            VisibilityKind::ExceptOrigin => Batch::<C, ExceptOrigin>::trace(settings, rays, answers),
-            VisibilityKind::Masked => Batch::<C, Masked<'_>>::trace(settings, rays, answers),
+            VisibilityKind::Everything => Batch::<C, Everything>::trace(settings, rays, results),
+            VisibilityKind::ExceptOrigin => Batch::<C, ExceptOrigin>::trace(settings, rays, results),
+            VisibilityKind::Masked => Batch::<C, Masked<'_>>::trace(settings, rays, results),
         }
     });
 }
 
-/// The results for rays, in their order; as many as fit into `answers`.
-struct Batch<'a, 'b, C: Question, V> {
+/// The results for rays, in their order; as many as fit into `results`.
+struct Batch<'a, 'b, C: BatchQuery, V> {
     settings: Settings<'a>,
     rays: &'b [Ray],
-    answers: &'b mut [C::Answer],
+    results: &'b mut [C::Result],
     visibility: PhantomData<V>,
 }
 
-impl<'a, 'b, C: Question, V: Visibility<'a>> Batch<'a, 'b, C, V> {
-    fn trace(settings: Settings<'a>, rays: &'b [Ray], answers: &'b mut [C::Answer]) {
-        dispatch(settings.bvh.level, Self { settings, rays, answers, visibility: PhantomData });
+impl<'a, 'b, C: BatchQuery, V: Visibility<'a>> Batch<'a, 'b, C, V> {
+    fn trace(settings: Settings<'a>, rays: &'b [Ray], results: &'b mut [C::Result]) {
+        dispatch(settings.bvh.level, Self { settings, rays, results, visibility: PhantomData });
     }
 }
 
-impl<'a, C: Question, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
+impl<'a, C: BatchQuery, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
     type Output = ();
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { settings, rays, answers, .. } = self;
+        let Self { settings, rays, results, .. } = self;
         with_stack(
             #[inline(always)]
             |stack| {
-                let count = rays.len().min(answers.len());
+                let count = rays.len().min(results.len());
                 let mut coherence = Coherence::default();
                 // The rays from here on that no packet has traced.
                 let mut first_left = 0;
                 for first in (0..count).step_by(RAYS) {
                     let last = (first + RAYS).min(count);
                     let of_packet = settings.from(first);
-                    let (rays_of, answers_of) = (&rays[first..last], &mut answers[first..last]);
-                    let is_traced = if is_about_everything::<V>(&of_packet) {
-                        C::trace_packet::<S, Everything>(
+                    let (rays_of, results_of) = (&rays[first..last], &mut results[first..last]);
+                    let hits = C::hits_of(results_of);
+                    let found = if is_about_everything::<V>(&of_packet) {
+                        trace_packet::<S, C, Everything>(
                             simd,
                             &of_packet,
                             rays_of,
-                            answers_of,
+                            hits,
                             &mut coherence,
                             stack,
                         )
                     } else {
-                        C::trace_packet::<S, Masked<'_>>(
+                        trace_packet::<S, C, Masked<'_>>(
                             simd,
                             &of_packet,
                             rays_of,
-                            answers_of,
+                            hits,
                             &mut coherence,
                             stack,
                         )
                     };
-                    if is_traced {
-                        answer_left::<S, C, V>(simd, &settings, rays, answers, first_left..first, stack);
+                    if let Some(found) = found {
+                        C::store(found, results_of);
+                        trace_rest::<S, C, V>(simd, &settings, rays, results, first_left..first, stack);
                         first_left = last;
                     }
                 }
-                answer_left::<S, C, V>(simd, &settings, rays, answers, first_left..count, stack);
+                trace_rest::<S, C, V>(simd, &settings, rays, results, first_left..count, stack);
             },
         );
     }
@@ -190,59 +113,59 @@ fn is_about_everything<'a, V: Visibility<'a>>(settings: &Settings<'_>) -> bool {
         || !V::SELECTS && (0..RAYS).all(|number| settings.origin_of(number) == OriginPrimitive::NONE)
 }
 
-/// Answers a range of rays that form no packets.
+/// Traces a range of rays that form no packets.
 #[inline(never)]
-fn answer_left<'a, S: Simd, C: Question, V: Visibility<'a>>(
+fn trace_rest<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
-    answers: &mut [C::Answer],
+    results: &mut [C::Result],
     left: Range<usize>,
     stack: &mut Stack,
 ) {
     let settings = &settings.from(left.start);
-    let (rays, answers) = (&rays[left.clone()], &mut answers[left]);
+    let (rays, results) = (&rays[left.clone()], &mut results[left]);
     if rays.len() > 1 && interleaved::pays(settings.bvh) {
-        return answer_in_turn::<S, C, V>(simd, settings, rays, answers, stack);
+        return trace_interleaved::<S, C, V>(simd, settings, rays, results, stack);
     }
     simd.vectorize(
         #[inline(always)]
         || {
-            for (number, (ray, answer)) in rays.iter().zip(answers).enumerate() {
+            for (number, (ray, result)) in rays.iter().zip(results).enumerate() {
                 let visibility = V::of(settings, number);
-                *answer = trace(simd, settings.bvh, ray, C::ask, visibility, (), stack).answer();
+                *result = trace(simd, settings.bvh, ray, C::start, visibility, (), stack).result();
             }
         },
     );
 }
 
 /// Computes each result in its place, on several threads where there are many.
-pub(crate) fn for_each<Q: Sync, A: Send>(
-    questions: &[Q],
-    answers: &mut [A],
-    answer: impl Fn(usize, &Q, &mut A) + Sync,
+pub(crate) fn for_each<I: Sync, R: Send>(
+    items: &[I],
+    results: &mut [R],
+    compute: impl Fn(usize, &I, &mut R) + Sync,
 ) {
-    for_batches(questions, answers, |first, questions, answers| {
-        let each = questions.iter().zip(answers).enumerate();
-        each.for_each(|(number, (question, place))| answer(first + number, question, place));
+    for_batches(items, results, |first, items, results| {
+        let each = items.iter().zip(results).enumerate();
+        each.for_each(|(number, (item, result))| compute(first + number, item, result));
     });
 }
 
-/// The same, batch by batch, with the index of the batch's first element.
-fn for_batches<Q: Sync, A: Send>(
-    questions: &[Q],
-    answers: &mut [A],
-    answer: impl Fn(usize, &[Q], &mut [A]) + Sync,
+/// Computes results batch by batch; `compute` takes the index of the batch's first item too.
+fn for_batches<I: Sync, R: Send>(
+    items: &[I],
+    results: &mut [R],
+    compute: impl Fn(usize, &[I], &mut [R]) + Sync,
 ) {
     #[cfg(feature = "parallel")]
-    if questions.len() > BATCH {
+    if items.len() > BATCH {
         use rayon::prelude::*;
-        questions
+        items
             .par_chunks(BATCH)
-            .zip(answers.par_chunks_mut(BATCH))
+            .zip(results.par_chunks_mut(BATCH))
             .enumerate()
-            .for_each(|(batch, (questions, answers))| answer(batch * BATCH, questions, answers));
+            .for_each(|(batch, (items, results))| compute(batch * BATCH, items, results));
         return;
     }
-    answer(0, questions, answers);
+    compute(0, items, results);
 }

@@ -29,18 +29,27 @@ pub(crate) trait PacketCollector: Collector {
     fn found(&self) -> bool;
 }
 
+/// A query of many rays, with one result for each.
+pub(crate) trait BatchQuery: PacketCollector {
+    type Result: Send;
+
+    /// The state before any hit.
+    fn start(ray: &Ray) -> Self;
+
+    fn result(&self) -> Self::Result;
+
+    /// The places of the closest hits of a packet with these results; none for any-hit queries.
+    fn hits_of(results: &mut [Self::Result]) -> &mut [Hit];
+
+    /// Stores the results of a packet that are not hits: bit i of `found` is set where ray i hits anything.
+    fn store(found: u64, results: &mut [Self::Result]);
+}
+
 /// The hit with the smallest t; of several, the one with the lowest rank.
 pub(crate) struct ClosestHit {
     t_max: f32,
     end: f32,
     pub(crate) hit: Hit,
-}
-
-impl ClosestHit {
-    #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
-        Self { t_max: ray.t_max, end: ray.t_max, hit: Hit::MISS }
-    }
 }
 
 impl Collector for ClosestHit {
@@ -80,17 +89,32 @@ impl PacketCollector for ClosestHit {
     }
 }
 
+impl BatchQuery for ClosestHit {
+    type Result = Hit;
+
+    #[inline(always)]
+    fn start(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, end: ray.t_max, hit: Hit::MISS }
+    }
+
+    #[inline(always)]
+    fn result(&self) -> Hit {
+        self.hit
+    }
+
+    #[inline(always)]
+    fn hits_of(hits: &mut [Hit]) -> &mut [Hit] {
+        hits
+    }
+
+    #[inline(always)]
+    fn store(_: u64, _: &mut [Hit]) {}
+}
+
 /// Occlusion: any hit.
 pub(crate) struct AnyHit {
     t_max: f32,
     pub(crate) found: bool,
-}
-
-impl AnyHit {
-    #[inline(always)]
-    pub(crate) fn new(ray: &Ray) -> Self {
-        Self { t_max: ray.t_max, found: false }
-    }
 }
 
 impl Collector for AnyHit {
@@ -112,7 +136,7 @@ impl Collector for AnyHit {
 impl PacketCollector for AnyHit {
     #[inline(always)]
     fn resume(ray: &Ray, _: Hit, _: f32) -> Self {
-        Self::new(ray)
+        Self::start(ray)
     }
 
     #[inline(always)]
@@ -123,6 +147,32 @@ impl PacketCollector for AnyHit {
     #[inline(always)]
     fn found(&self) -> bool {
         self.found
+    }
+}
+
+impl BatchQuery for AnyHit {
+    type Result = bool;
+
+    #[inline(always)]
+    fn start(ray: &Ray) -> Self {
+        Self { t_max: ray.t_max, found: false }
+    }
+
+    #[inline(always)]
+    fn result(&self) -> bool {
+        self.found
+    }
+
+    #[inline(always)]
+    fn hits_of(_: &mut [bool]) -> &mut [Hit] {
+        &mut []
+    }
+
+    #[inline(always)]
+    fn store(found: u64, occluded: &mut [bool]) {
+        for (ray, occluded) in occluded.iter_mut().enumerate() {
+            *occluded = found >> ray & 1 != 0;
+        }
     }
 }
 

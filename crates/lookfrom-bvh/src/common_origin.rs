@@ -9,8 +9,8 @@
 //! f·(c × d), a sum of the same products. All signs are turned so that they are positive for a ray that hits; the
 //! sign of a triangle is not clear where its plane nearly contains the origin.
 
-use crate::conservative::{BLOCK, ERROR, SURE_AFTER, TriangleBlock};
-use crate::prepared::USUAL_UNDERFLOW;
+use crate::conservative::{BLOCK, TriangleBlock};
+use crate::error_bounds::{ERROR, SURE_AFTER, USUAL_UNDERFLOW};
 use crate::vector::{cross, dot, subtract};
 use lookfrom_simd::{Simd, f32x8, mask32x8, prelude::*};
 

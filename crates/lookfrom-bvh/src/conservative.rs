@@ -7,9 +7,10 @@
 use std::marker::PhantomData;
 
 use crate::aabb::Aabb;
-use crate::prepared::{self, PreparedRay};
+use crate::error_bounds::{ERROR, SURE_AFTER, USUAL_UNDERFLOW};
+use crate::lanes::{combined, least_of_each};
+use crate::prepared::PreparedRay;
 use crate::ray::NONE;
-use crate::ray8::{combined, least_of_each};
 use lookfrom_simd::{LaneMask, Simd, f32x8, f32x16, prelude::*};
 use prefetch_index::prefetch_index;
 
@@ -18,22 +19,6 @@ pub(crate) const BLOCK: usize = 8;
 
 /// One number per triangle of a block.
 type Lanes<S> = f32x8<S>;
-
-/// Errors of the test's determinants: 160 units of rounding, relative to the longest component of the direction.
-///
-/// Relative to the largest components e of the edges and c of the vector from the origin to the first corner: an
-/// edge function is a sum of three products of e and a sum of two products of c and the direction; with one unit
-/// for each rounding its error is below 45 e c units, that of the determinant N·d below 45 e e, and that of the
-/// third edge function, which is the determinant minus the other two, below 114 e c + 57 e e. An origin that was
-/// rounded adds to c.
-pub(crate) const ERROR: f32 = 160.0 / 16_777_216.0;
-
-/// The error that underflow may add, relative to the direction where that is longer than 1: a few products that are
-/// less than this.
-pub(crate) const UNDERFLOW: f32 = 64.0 * f32::MIN_POSITIVE;
-
-/// Beyond this (2⁴⁰) the test's products may overflow, and it excludes nothing.
-pub(crate) const LARGEST_FILTERED: f32 = 1.099_511_6e12;
 
 /// Eight triangles, component by component. 384 bytes, of which a ray reads 320, five cache lines.
 #[derive(Clone, Debug)]
@@ -90,9 +75,6 @@ impl<S: Simd, F: Numbers<S>> ConservativeTest<S, F> {
     }
 }
 
-/// Scaled distances of sure hits are above this, 2⁻⁶⁰, and below 2⁶⁰.
-pub(crate) const SURE_AFTER: f32 = 8.673_617e-19;
-
 /// Rays for the test: one in every lane, or as many as lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct RayLanes<S: Simd, F: Numbers<S> = Lanes<S>> {
@@ -127,7 +109,7 @@ impl<S: Simd, F: Numbers<S>> RayLanes<S, F> {
     #[inline(always)]
     pub(crate) fn of_rays(simd: S, origin: [F; 3], direction: [F; 3], t_min: F, error: F) -> Self {
         let sure_before = F::splat(simd, 1.0 / SURE_AFTER);
-        let underflow = F::splat(simd, prepared::USUAL_UNDERFLOW);
+        let underflow = F::splat(simd, USUAL_UNDERFLOW);
         let (rounding, level) = (F::splat(simd, 0.0), PhantomData);
         Self { origin, direction, t_min, sure_before, error, underflow, rounding, level }
     }

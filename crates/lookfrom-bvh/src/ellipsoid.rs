@@ -5,7 +5,7 @@
 //! results from an equation in one unknown, by bisection: Eberly (2013), "Distance from a Point to an Ellipse, an
 //! Ellipsoid, or a Hyperellipsoid".
 
-use crate::closest_point::Nearest;
+use crate::nearest::Nearest;
 use crate::vector::dot;
 
 /// Maximum number of sweeps over all pairs of columns; a handful is enough.

@@ -9,8 +9,8 @@
 
 use std::ops::Range;
 
-use crate::batch::Question;
 use crate::bvh::Bvh;
+use crate::collector::BatchQuery;
 use crate::exact::ExactRay;
 use crate::node::{Child, Content, Slabs};
 use crate::prepared::PreparedRay;
@@ -33,23 +33,23 @@ fn is_possible(bvh: &Bvh) -> bool {
     fits_a_segment(bvh.statistics.depth)
 }
 
-/// Answers a query for each ray.
+/// Traces rays of a query, one visit each in turn.
 #[inline(never)]
-pub(crate) fn answer_in_turn<'a, S: Simd, C: Question, V: Visibility<'a>>(
+pub(crate) fn trace_interleaved<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
-    answers: &mut [C::Answer],
+    results: &mut [C::Result],
     stack: &mut Stack,
 ) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut waiting = 0..rays.len().min(answers.len());
+            let mut waiting = 0..rays.len().min(results.len());
             let mut in_flight = Vec::with_capacity(SEGMENTS);
             for segment in 0..SEGMENTS {
                 let bottom = segment * SEGMENT;
-                let first = start::<S, C, V>(simd, settings, rays, answers, &mut waiting, bottom, stack);
+                let first = start_next::<S, C, V>(simd, settings, rays, results, &mut waiting, bottom, stack);
                 in_flight.extend(first);
             }
             while !in_flight.is_empty() {
@@ -58,8 +58,8 @@ pub(crate) fn answer_in_turn<'a, S: Simd, C: Question, V: Visibility<'a>>(
                     if ray.visit(simd, settings.bvh, rays, stack) {
                         continue;
                     }
-                    answers[ray.number] = ray.state.collector.answer();
-                    let next = start(simd, settings, rays, answers, &mut waiting, ray.bottom, stack);
+                    results[ray.number] = ray.state.collector.result();
+                    let next = start_next(simd, settings, rays, results, &mut waiting, ray.bottom, stack);
                     let Some(next) = next else {
                         done = Some(index);
                         break;
@@ -86,13 +86,13 @@ struct InFlight<'a, S: Simd, C, V> {
     height: usize,
 }
 
-/// Starts the next of the waiting rays. Unusual ones before it are answered at once.
+/// Starts the next of the waiting rays. Unusual ones before it are traced at once.
 #[inline(always)]
-fn start<'a, S: Simd, C: Question, V: Visibility<'a>>(
+fn start_next<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
     simd: S,
     settings: &Settings<'a>,
     rays: &[Ray],
-    answers: &mut [C::Answer],
+    results: &mut [C::Result],
     waiting: &mut Range<usize>,
     bottom: usize,
     stack: &mut Stack,
@@ -104,17 +104,17 @@ fn start<'a, S: Simd, C: Question, V: Visibility<'a>>(
         if ray.t_min < ray.t_max
             && let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest)
         {
-            let state = TraversalState { instance: NONE, collector: C::ask(ray), visibility, observer: () };
+            let state = TraversalState { instance: NONE, collector: C::start(ray), visibility, observer: () };
             let path = TreePath::new(&prepared, &state);
             let slabs = Slabs::new(simd, &prepared);
             return Some(InFlight { slabs, number, prepared, path, state, bottom, height: bottom });
         }
-        answers[number] = answer_alone::<S, C, V>(simd, bvh, ray, visibility, stack);
+        results[number] = trace_alone::<S, C, V>(simd, bvh, ray, visibility, stack);
     }
     None
 }
 
-impl<'a, S: Simd, C: Question, V: Visibility<'a>> InFlight<'a, S, C, V> {
+impl<'a, S: Simd, C: BatchQuery, V: Visibility<'a>> InFlight<'a, S, C, V> {
     /// Visits a node or a leaf. Returns false when the ray is done.
     #[inline(always)]
     fn visit(&mut self, simd: S, bvh: &'a Bvh, rays: &[Ray], stack: &mut Stack) -> bool {
@@ -153,19 +153,19 @@ fn prefetch(bvh: &Bvh, child: Child) {
 
 #[cold]
 #[inline(never)]
-fn answer_alone<'a, S: Simd, C: Question, V: Visibility<'a>>(
+fn trace_alone<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
     visibility: V,
     stack: &mut Stack,
-) -> C::Answer {
-    let mut state = TraversalState { instance: NONE, collector: C::ask(ray), visibility, observer: () };
+) -> C::Result {
+    let mut state = TraversalState { instance: NONE, collector: C::start(ray), visibility, observer: () };
     if ray.t_min < ray.t_max {
         let rest = &mut TraversalStack::above(stack, REST);
         trace_any(simd, bvh, &ExactRay::new(ray), &mut state, rest);
     }
-    state.collector.answer()
+    state.collector.result()
 }
 
 #[cfg(test)]
@@ -186,13 +186,13 @@ mod tests {
     use crate::{Affine, Builder, Sphere, Triangles};
     use lookfrom_simd::Kernel;
 
-    struct InTurn<'a, 'b, C: Question, V>(&'b Settings<'a>, &'b [Ray], &'b mut [C::Answer], PhantomData<V>);
+    struct InTurn<'a, 'b, C: BatchQuery, V>(&'b Settings<'a>, &'b [Ray], &'b mut [C::Result], PhantomData<V>);
 
-    impl<'a, C: Question, V: Visibility<'a>> Kernel for InTurn<'a, '_, C, V> {
+    impl<'a, C: BatchQuery, V: Visibility<'a>> Kernel for InTurn<'a, '_, C, V> {
         type Output = ();
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) {
-            with_stack(|stack| answer_in_turn::<S, C, V>(simd, self.0, self.1, self.2, stack));
+            with_stack(|stack| trace_interleaved::<S, C, V>(simd, self.0, self.1, self.2, stack));
         }
     }
 

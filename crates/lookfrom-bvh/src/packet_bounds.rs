@@ -3,10 +3,11 @@
 
 use crate::aabb::Aabb;
 use crate::common_origin::Beams;
+use crate::error_bounds::{ROOM, SHORT};
+use crate::lanes::{least, least_of_each};
 use crate::node::{Entered, Node};
-use crate::prepared::{self, SHORT};
 use crate::ray::Ray;
-use crate::ray8::{GROUPS, RAYS, Ray8, least, least_of_each};
+use crate::ray8::{GROUPS, RAYS, Ray8};
 use lookfrom_simd::{Simd, f32x8, i32x8, prelude::*};
 
 /// Largest difference of directions in a packet, relative to their length.
@@ -86,7 +87,7 @@ impl<S: Simd> PacketBounds<S> {
             let (slow, fast) = (directions.min[axis], directions.max[axis]);
             near_side[axis] = usize::from(fast < 0.0);
             if slow > SHORT || fast < -SHORT {
-                let room = 4.0 * prepared::ROOM;
+                let room = 4.0 * ROOM;
                 let [a, b] = [1.0 / fast, 1.0 / slow];
                 let (least, most) = (a.min(b), a.max(b));
                 reciprocal[axis] = [least - least.abs() * room, most + most.abs() * room];

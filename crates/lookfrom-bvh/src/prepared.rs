@@ -7,40 +7,13 @@
 //! A scaled ray never starts behind its origin: for a ray with a negative `t_min` the origin is moved back along
 //! the ray. So its distances are positive, and their bits have the same order.
 
-use crate::conservative::{self, LARGEST_FILTERED, SURE_AFTER};
+use crate::error_bounds::{
+    ERROR, FAR, LARGEST_FILTERED, LARGEST_PRODUCT, LARGEST_RECIPROCAL, MOVED_ROOM, PRODUCT_ROOM, ROOM, SHORT,
+    SURE_AFTER, TINY, UNDERFLOW, USUAL_UNDERFLOW,
+};
 use crate::exact::ExactRay;
 use crate::ray::Ray;
 use lookfrom_simd::{Simd, f32x4, prelude::*};
-
-/// The largest product of an origin and a reciprocal, 2¹²⁶: reciprocals that would exceed it are reduced, including
-/// that of 0. So no slab distance is ever NaN, and inside a padded box such a component does not limit t.
-const LARGEST_PRODUCT: f32 = 8.507_059e37;
-
-/// Relative margin of a product of origin and reciprocal, 2⁻²²: for its rounding, and the origin's in an
-/// instance.
-const PRODUCT_ROOM: f32 = 2.384_185_8e-7;
-
-/// Relative margin for rounding in distances along a ray: 2⁻²⁰, sixteen units of rounding. Four are needed for a
-/// slab (reciprocal, product, and the f32 t that it is compared with), on either side.
-pub(crate) const ROOM: f32 = 9.536_743e-7;
-
-/// Absolute margin for a t so small that rounding is not relative to it: 2⁻¹⁰⁰.
-pub(crate) const TINY: f32 = 7.888_609e-31;
-
-/// Usual directions are longer than this, 2⁻²⁰, and no component is longer than its inverse.
-pub(crate) const SHORT: f32 = 9.536_743e-7;
-
-/// Upper limit of the coordinates of usual origins, 2²⁴.
-pub(crate) const FAR: f32 = 16_777_216.0;
-
-/// Largest reciprocal for usual origins.
-pub(crate) const LARGEST_RECIPROCAL: f32 = LARGEST_PRODUCT / FAR;
-
-/// The conservative triangle test's absolute error for usual directions.
-pub(crate) const USUAL_UNDERFLOW: f32 = conservative::UNDERFLOW / SHORT;
-
-/// Relative margin for rounding in f64 where a start is moved: 2⁻⁴⁸.
-const MOVED_ROOM: f64 = 3.552_713_678_800_501e-15;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PreparedRay {
@@ -176,7 +149,7 @@ impl ScaledRay {
             largest_reciprocal: [LARGEST_RECIPROCAL; 3],
             moved: 0.0,
             rounding,
-            error: conservative::ERROR * greatest(direction),
+            error: ERROR * greatest(direction),
             underflow: USUAL_UNDERFLOW,
             sure_before: 1.0 / SURE_AFTER,
         }
@@ -221,8 +194,8 @@ impl ScaledRay {
             largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
             moved,
             rounding: farthest + moved,
-            error: if in_range { conservative::ERROR * (length * shorten) } else { f32::INFINITY },
-            underflow: conservative::UNDERFLOW * 4.0,
+            error: if in_range { ERROR * (length * shorten) } else { f32::INFINITY },
+            underflow: UNDERFLOW * 4.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },
         })
     }

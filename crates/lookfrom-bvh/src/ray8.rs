@@ -1,14 +1,13 @@
 //! Eight rays of a packet, one in each lane.
 
 use crate::aabb::Aabb;
-use crate::conservative::{self, RayLanes};
+use crate::conservative::RayLanes;
+use crate::error_bounds::{ERROR, FAR, LARGEST_RECIPROCAL, ROOM, SHORT, TINY};
+use crate::lanes::{LANES, combined, greatest, smaller};
 use crate::origin_primitive::OriginPrimitive;
-use crate::prepared::{self, FAR, LARGEST_RECIPROCAL, SHORT};
+use crate::prepared;
 use crate::ray::{NONE, Ray};
 use lookfrom_simd::{Simd, f32x8, f32x16, i32x8, mask32x8, prelude::*, transposed};
-
-/// Number of rays in a group.
-pub(crate) const LANES: usize = 8;
 
 /// Number of groups in a packet.
 pub(crate) const GROUPS: usize = 8;
@@ -34,7 +33,7 @@ pub(crate) struct Ray8<S: Simd> {
     pub(crate) end: f32x8<S>,
     /// What is surely nearer than this is surely nearer than all hits so far.
     pub(crate) limit: f32x8<S>,
-    /// [`conservative::ERROR`] times the largest component of each direction.
+    /// [`ERROR`] times the largest component of each direction.
     error: f32x8<S>,
     /// The block of a sure hit whose exact test is deferred, and its lane in it.
     pub(crate) block: i32x8<S>,
@@ -87,11 +86,11 @@ impl<S: Simd> Ray8<S> {
             usual: (usual & finite).to_bitmask() as u32 & 0xff,
             origin,
             direction,
-            start: (t_min - (t_min * prepared::ROOM + prepared::TINY)).max(0.0),
+            start: (t_min - (t_min * ROOM + TINY)).max(0.0),
             range: [t_min, t_max],
             end,
             limit: end,
-            error: length * conservative::ERROR,
+            error: length * ERROR,
             block: i32x8::splat(simd, NO_BLOCK),
             lane: i32x8::splat(simd, 0),
             origin_ids: [i32x8::splat(simd, NONE as i32); 2],
@@ -156,7 +155,7 @@ impl<S: Simd> Ray8<S> {
 
     /// Ends a ray at a hit, with the same margin as [`Self::new`], unless it already ends sooner.
     pub(crate) fn shorten(&mut self, lane: usize, t: f32) {
-        let end = t + (t.abs() * prepared::ROOM + prepared::TINY);
+        let end = t + (t.abs() * ROOM + TINY);
         self.end[lane] = smaller(end, self.end[lane]);
         self.limit[lane] = smaller(end, self.limit[lane]);
     }
@@ -238,58 +237,5 @@ impl<S: Simd> Slabs8<S> {
 /// Ends of rays with the margin for boxes.
 #[inline(always)]
 fn with_room<S: Simd>(t: f32x8<S>) -> f32x8<S> {
-    t + (t.abs() * prepared::ROOM + prepared::TINY)
-}
-
-/// Two vectors of eight rays, side by side.
-#[inline(always)]
-pub(crate) fn combined<S: Simd>(simd: S, a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> [f32x16<S>; 3] {
-    [simd.combine_f32x8(a[0], b[0]), simd.combine_f32x8(a[1], b[1]), simd.combine_f32x8(a[2], b[2])]
-}
-
-/// The largest magnitude, lane by lane.
-#[inline(always)]
-fn greatest<S: Simd>([x, y, z]: [f32x8<S>; 3]) -> f32x8<S> {
-    x.abs().max(y.abs()).max(z.abs())
-}
-
-/// The minimum of the lanes.
-#[inline(always)]
-pub(crate) fn least<S: Simd>(numbers: f32x8<S>) -> f32 {
-    let numbers: [f32; LANES] = numbers.into();
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| smaller(numbers[i], numbers[i + 4]));
-    smaller(smaller(a, b), smaller(c, d))
-}
-
-/// The minimum of each of eight vectors.
-#[inline(always)]
-pub(crate) fn least_of_each<S: Simd>([a, b, c, d, e, f, g, h]: [f32x8<S>; GROUPS]) -> f32x8<S> {
-    let [[a, b], [c, d]] = [[halve(a, e), halve(c, g)], [halve(b, f), halve(d, h)]];
-    halve(halve(a, b), halve(c, d))
-}
-
-/// The lesser ones of each vector's halves; the lanes of the two vectors alternate.
-#[inline(always)]
-fn halve<S: Simd>(a: f32x8<S>, b: f32x8<S>) -> f32x8<S> {
-    a.zip_low(b).min(a.zip_high(b))
-}
-
-#[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_least_of_each_vector_is_in_its_lane() {
-        let simd = fearless_simd::Fallback::new();
-        let lanes = |i: usize| (0..LANES).map(move |lane| ((37 * i + 11 * lane) % 64) as f32);
-        let vectors: [_; GROUPS] =
-            std::array::from_fn(|i| f32x8::from_fn(simd, |lane| lanes(i).nth(lane).unwrap()));
-        let least: [f32; GROUPS] = least_of_each(vectors).into();
-        assert_eq!(least, std::array::from_fn(|i| lanes(i).fold(99.0, f32::min)));
-    }
+    t + (t.abs() * ROOM + TINY)
 }

@@ -2,7 +2,7 @@
 
 use crate::batch;
 use crate::bvh::Bvh;
-use crate::collector::{AllHits, AnyHit, ClosestHit, Collector};
+use crate::collector::{AllHits, AnyHit, BatchQuery, ClosestHit, Collector};
 use crate::dispatch::dispatch;
 use crate::observer::Observer;
 use crate::ray::{Hit, Ray};
@@ -12,12 +12,12 @@ use crate::traverse::trace;
 use crate::visibility::{Everything, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
 
-/// Traces one ray at the best available level and returns the collector. `ask` creates it inside the code for the
+/// Traces one ray at the best available level and returns the collector. `start` creates it inside the code for the
 /// level, so that it can be kept in registers.
 struct Trace<'a, F, V, O> {
     bvh: &'a Bvh,
     ray: &'a Ray,
-    ask: F,
+    start: F,
     visibility: V,
     observer: O,
 }
@@ -26,39 +26,39 @@ impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Observer> Ker
     type Output = C;
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> C {
-        let Self { bvh, ray, ask, visibility, observer } = self;
+        let Self { bvh, ray, start, visibility, observer } = self;
         with_stack(
             #[inline(always)]
-            |stack| trace(simd, bvh, ray, ask, visibility, observer, stack),
+            |stack| trace(simd, bvh, ray, start, visibility, observer, stack),
         )
     }
 }
 
 #[inline(always)]
-fn ask_everything<C: Collector>(bvh: &Bvh, ray: &Ray, ask: impl FnOnce(&Ray) -> C) -> C {
-    dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Everything, observer: () })
+fn trace_everything<C: Collector>(bvh: &Bvh, ray: &Ray, start: impl FnOnce(&Ray) -> C) -> C {
+    dispatch(bvh.level, Trace { bvh, ray, start, visibility: Everything, observer: () })
 }
 
 /// The general case, with any settings.
 #[inline(always)]
-fn ask<C: Collector>(
+fn trace_selected<C: Collector>(
     settings: &Settings<'_>,
     ray: &Ray,
-    ask: impl FnOnce(&Ray) -> C,
+    start: impl FnOnce(&Ray) -> C,
     observer: impl Observer,
 ) -> C {
     let bvh = settings.bvh;
-    dispatch(bvh.level, Trace { bvh, ray, ask, visibility: Masked::of(settings, 0), observer })
+    dispatch(bvh.level, Trace { bvh, ray, start, visibility: Masked::of(settings, 0), observer })
 }
 
 /// The closest hit in the whole tree.
 pub(crate) fn closest_hit_of_everything(bvh: &Bvh, ray: &Ray) -> Hit {
-    ask_everything(bvh, ray, ClosestHit::new).hit
+    trace_everything(bvh, ray, ClosestHit::start).hit
 }
 
 /// True if anything in the tree is hit.
 pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray) -> bool {
-    ask_everything(bvh, ray, AnyHit::new).found
+    trace_everything(bvh, ray, AnyHit::start).found
 }
 
 /// The closest hit.
@@ -86,20 +86,20 @@ pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) 
     let room = std::mem::take(hits);
     let all = move |ray: &Ray| AllHits::new(ray, room);
     *hits = match settings.visibility_kind() {
-        VisibilityKind::Everything => ask_everything(settings.bvh, ray, all).hits,
-        _ => ask(settings, ray, all, ()).hits,
+        VisibilityKind::Everything => trace_everything(settings.bvh, ray, all).hits,
+        _ => trace_selected(settings, ray, all, ()).hits,
     };
     sort(hits);
 }
 
 /// The closest hit, with an observer.
 pub(crate) fn observed_closest_hit(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> Hit {
-    ask(settings, ray, ClosestHit::new, observer).hit
+    trace_selected(settings, ray, ClosestHit::start, observer).hit
 }
 
 /// True if there is a hit, with an observer.
 pub(crate) fn observed_occluded(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> bool {
-    ask(settings, ray, AnyHit::new, observer).found
+    trace_selected(settings, ray, AnyHit::start, observer).found
 }
 
 /// All hits, sorted, with an observer. `hits` must be empty.
@@ -110,7 +110,7 @@ pub(crate) fn observed_all_hits(
     observer: &mut impl Observer,
 ) {
     let room = std::mem::take(hits);
-    *hits = ask(settings, ray, move |ray: &Ray| AllHits::new(ray, room), observer).hits;
+    *hits = trace_selected(settings, ray, move |ray: &Ray| AllHits::new(ray, room), observer).hits;
     sort(hits);
 }
 

@@ -38,12 +38,12 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
-    ask: impl FnOnce(&Ray) -> C,
+    start: impl FnOnce(&Ray) -> C,
     visibility: V,
     observer: O,
     stack: &mut Stack,
 ) -> C {
-    let mut state = TraversalState { instance: NONE, collector: ask(ray), visibility, observer };
+    let mut state = TraversalState { instance: NONE, collector: start(ray), visibility, observer };
     if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
         return state.collector;
     }

@@ -64,7 +64,7 @@ fn widest([x, y, z]: [f64; 3]) -> f64 {
 
 /// The crossing with a triangle that the conservative test found surely crossed, so that the rest of [`intersect_exact`]
 /// is not needed, up to its comparison with the ray's range. Its determinant is clear: it is the sum of three edge
-/// functions that exceed their error, and that error is `conservative::ERROR` relative to the same product as [`CLEAR`].
+/// functions that exceed their error, and that error is `error_bounds::ERROR` relative to the same product as [`CLEAR`].
 #[inline(always)]
 pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossing {
     meet_exactly(ray, corners).round()
