@@ -30,12 +30,12 @@ use crate::terminal::{Show, Way};
 use crate::values;
 
 pub(crate) use encoding::EncodingArguments;
-pub(crate) use farm::FarmArguments;
+pub(crate) use farm::{FarmArguments, Scheduler};
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
 pub(crate) use inspect::{InspectArguments, Samples};
 pub(crate) use memory::MemoryArguments;
 pub(crate) use model::ModelArguments;
-pub(crate) use series::{SeriesArguments, Views};
+pub(crate) use series::SeriesArguments;
 pub(crate) use variables::VariableArguments;
 #[cfg(feature = "view")]
 pub(crate) use view::ViewArguments;
@@ -291,7 +291,7 @@ pub(crate) struct CompareArguments {
     pub(crate) html: Option<PathBuf>,
 
     /// Samples per pixel of picture and reference [default: as recorded in the files]
-    #[arg(long, value_name = "N,M", value_parser = crate::compare::samples)]
+    #[arg(long, value_name = "N,M", value_parser = values::sample_counts)]
     pub(crate) samples: Option<[u64; 2]>,
 
     /// Sensor of the variances in pictures that do not record it: NAME, or NAME,KELVIN with its white balance
@@ -299,7 +299,7 @@ pub(crate) struct CompareArguments {
     /// Names are those of scene files: cie1931, canon_eos_5d_mkiv … Pictures of lookfrom record their sensor, those of pbrt do
     /// not. Without this option they are assumed to have the sensor of the other picture, or else cie1931 without a white
     /// balance.
-    #[arg(long, value_name = "NAME", value_parser = crate::compare::sensor)]
+    #[arg(long, value_name = "NAME", value_parser = values::sensor)]
     pub(crate) sensor: Option<Sensor>,
 
     /// Largest relative difference of a channel's mean from the reference's, unless noise explains more

@@ -6,18 +6,19 @@ use lookfrom::core::color;
 use lookfrom_scene::image::compare::{Comparison, Sampled, channels_of_both, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
 use lookfrom_scene::image::{self, Channels};
-use lookfrom_scene::settings::Sensor;
-use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
 use serde::Serialize;
 
 use crate::args::CompareArguments;
 use crate::exit::{self, BAD_SCENE, DONE, Failure, answer, say};
-use crate::html::{self, Shown};
 use crate::output;
 use lookfrom_scene::json;
 use lookfrom_scene::plural::{are, counted};
+
+mod html;
+
+use html::Shown;
 
 /// A difference of means up to this many standard errors is explained by noise.
 const MOST_STANDARD_ERRORS_OF_MEAN: f64 = 3.5;
@@ -321,41 +322,4 @@ impl Verdict {
             self.flip,
         )
     }
-}
-
-/// Samples per pixel of picture and reference, `N,M`.
-pub(crate) fn samples(typed: &str) -> Result<[u64; 2], String> {
-    let numbers: Option<Vec<u64>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[picture, reference]) if picture > 0 && reference > 0 => Ok([picture, reference]),
-        _ => Err("expected two numbers of samples per pixel, of the picture and of the reference: 64,1024"
-            .to_owned()),
-    }
-}
-
-/// A sensor, `NAME` or `NAME,KELVIN`.
-pub(crate) fn sensor(typed: &str) -> Result<Sensor, String> {
-    let (name, kelvin) = match typed.split_once(',') {
-        Some((name, kelvin)) => (name.trim(), Some(kelvin.trim())),
-        None => (typed.trim(), None),
-    };
-    let camera = match CameraSensor::named(name) {
-        None if name != Sensor::OBSERVER => {
-            let cameras = CameraSensor::all().map(CameraSensor::name);
-            let known: Vec<&str> = std::iter::once(Sensor::OBSERVER).chain(cameras).collect();
-            return Err(format!(
-                "expected a sensor, with an optional white balance after a comma: canon_eos_5d_mkiv,5000; the sensors are {}",
-                known.join(", ")
-            ));
-        }
-        camera => camera,
-    };
-    let white_balance = match kelvin.map(str::parse) {
-        None => None,
-        Some(Ok(kelvin)) if (500.0..=100_000.0).contains(&kelvin) => Some(kelvin),
-        Some(_) => {
-            return Err("expected a white balance in kelvin from 500 to 100000 after the comma".to_owned());
-        }
-    };
-    Ok(Sensor { camera, white_balance, ..Sensor::default() })
 }

@@ -16,32 +16,9 @@ use std::path::{Path, PathBuf};
 use clap::ArgMatches;
 use lookfrom_scene::plural::counted;
 
-use crate::args::FarmArguments;
+use crate::args::{FarmArguments, Scheduler};
 use crate::exit::{DONE, Failure, say};
 use crate::{files, film};
-
-/// A scheduler that we write files for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scheduler {
-    /// Open Job Description: AWS Deadline Cloud, and `openjd run`.
-    OpenJd,
-    /// Slurm: an array job and a dependent merge.
-    Slurm,
-    /// Dask's `distributed`.
-    Dask,
-    /// HyperQueue, on its own or inside Slurm and PBS.
-    HyperQueue,
-}
-
-impl Scheduler {
-    /// The words for them.
-    pub(crate) const WORDS: &'static [(&'static str, Self)] = &[
-        ("openjd", Self::OpenJd),
-        ("slurm", Self::Slurm),
-        ("dask", Self::Dask),
-        ("hyperqueue", Self::HyperQueue),
-    ];
-}
 
 /// What the files of all schedulers are made from.
 #[derive(Debug)]

@@ -14,7 +14,6 @@ mod farm;
 mod files;
 mod film;
 mod help;
-mod html;
 mod info;
 mod inspect;
 mod interrupt;

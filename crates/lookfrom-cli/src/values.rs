@@ -9,12 +9,14 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
-use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds};
+use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds, Sensor};
+use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::studio::Viewpoint;
 
 use lookfrom::session::{Exposure, Fireflies, MOST_SAMPLES};
 
-use crate::args::Views;
+/// Views by name.
+pub(crate) type Views = Vec<(&'static str, Viewpoint)>;
 
 /// AOVs of an EXR.
 pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
@@ -280,6 +282,43 @@ pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
         }
     }
     Ok(filter)
+}
+
+/// Samples per pixel of picture and reference, `N,M`.
+pub(crate) fn sample_counts(typed: &str) -> Result<[u64; 2], String> {
+    let numbers: Option<Vec<u64>> = typed.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[picture, reference]) if picture > 0 && reference > 0 => Ok([picture, reference]),
+        _ => Err("expected two numbers of samples per pixel, of the picture and of the reference: 64,1024"
+            .to_owned()),
+    }
+}
+
+/// A sensor, `NAME` or `NAME,KELVIN`.
+pub(crate) fn sensor(typed: &str) -> Result<Sensor, String> {
+    let (name, kelvin) = match typed.split_once(',') {
+        Some((name, kelvin)) => (name.trim(), Some(kelvin.trim())),
+        None => (typed.trim(), None),
+    };
+    let camera = match CameraSensor::named(name) {
+        None if name != Sensor::OBSERVER => {
+            let cameras = CameraSensor::all().map(CameraSensor::name);
+            let known: Vec<&str> = std::iter::once(Sensor::OBSERVER).chain(cameras).collect();
+            return Err(format!(
+                "expected a sensor, with an optional white balance after a comma: canon_eos_5d_mkiv,5000; the sensors are {}",
+                known.join(", ")
+            ));
+        }
+        camera => camera,
+    };
+    let white_balance = match kelvin.map(str::parse) {
+        None => None,
+        Some(Ok(kelvin)) if (500.0..=100_000.0).contains(&kelvin) => Some(kelvin),
+        Some(_) => {
+            return Err("expected a white balance in kelvin from 500 to 100000 after the comma".to_owned());
+        }
+    };
+    Ok(Sensor { camera, white_balance, ..Sensor::default() })
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use lookfrom_scene::image::compare::MOST_STANDARD_ERRORS;
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
 use lookfrom_scene::image::{Image, encode_png};
 
-use crate::develop::{byte, heat};
+use crate::heat::{byte, heat};
 use crate::message::Comparing;
 
 /// The pictures of a comparison as PNGs: of a wipe both, else one.

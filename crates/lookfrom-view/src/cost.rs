@@ -7,7 +7,7 @@ use lookfrom::session::Session;
 use lookfrom_scene::Result;
 use lookfrom_scene::image::encode_png;
 
-use crate::develop::{byte, heat};
+use crate::heat::{byte, heat};
 
 /// The most pixels of a map; larger views have a coarser one.
 const MOST_PIXELS: f64 = 150_000.0;

@@ -12,6 +12,7 @@ mod compare;
 mod cost;
 mod develop;
 mod document;
+mod heat;
 mod lobe;
 mod mailbox;
 mod message;

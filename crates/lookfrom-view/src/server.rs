@@ -49,12 +49,12 @@ pub struct Server {
 
 /// What all requests share.
 #[derive(Debug)]
-pub(crate) struct House {
+struct House {
     token: String,
     host: IpAddr,
-    pub(crate) document: Document,
+    document: Arc<Document>,
     /// Windows whose threads have not ended.
-    pub(crate) windows: Arc<AtomicUsize>,
+    windows: Arc<AtomicUsize>,
 }
 
 impl Server {
@@ -69,7 +69,7 @@ impl Server {
         getrandom::fill(&mut bits).map_err(io::Error::other)?;
         let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
         let (host, windows) = (settings.host, Arc::default());
-        let house = Arc::new(House { token, host, document: Document::new(settings), windows });
+        let house = Arc::new(House { token, host, document: Arc::new(Document::new(settings)), windows });
         Ok(Self { listener, address, house, patience: patience::PATIENCE })
     }
 
@@ -222,7 +222,7 @@ async fn socket(
     };
     // Longer messages than the longest are read, so that they can be answered, up to a limit.
     let upgrade = upgrade.max_message_size(16 * LONGEST).max_frame_size(16 * LONGEST);
-    upgrade.on_upgrade(move |socket| window::run(socket, house, counted, patience / 3))
+    upgrade.on_upgrade(move |socket| window::run(socket, house.document.clone(), counted, patience / 3))
 }
 
 fn no_token() -> Response {

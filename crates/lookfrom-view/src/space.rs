@@ -12,7 +12,7 @@ use lookfrom_scene::camera::{Camera as Written, Projection};
 use lookfrom_scene::image::{encode_png_with_alpha, srgb_from_linear};
 use lookfrom_scene::settings::{Filter, ImageSettings, Integrator, Layers, RenderSettings};
 
-use crate::develop::byte;
+use crate::heat::byte;
 use crate::message::{CameraWish, Header};
 use crate::view::check_size;
 

@@ -9,22 +9,22 @@ use axum::extract::ws::{Message, WebSocket};
 use futures_util::{SinkExt, StreamExt};
 use tokio::time::timeout;
 
+use crate::document::Document;
 use crate::mailbox::{Letter, Mailbox, Task};
 use crate::message::{Answer, Request};
 use crate::render;
-use crate::server::House;
 
 /// Runs a window until its socket closes, and pings it at an interval. However it ends, its thread is told.
-pub(crate) async fn run(socket: WebSocket, house: Arc<House>, counted: Counted, ping: Duration) {
+pub(crate) async fn run(socket: WebSocket, document: Arc<Document>, counted: Counted, ping: Duration) {
     let mailbox = Arc::new(Mailbox::default());
     let _closing = Closing(mailbox.clone());
-    house.document.add(&mailbox);
+    document.add(&mailbox);
     let thread = {
-        let (mailbox, house) = (mailbox.clone(), house.clone());
+        let (mailbox, document) = (mailbox.clone(), document.clone());
         std::thread::Builder::new().name("window".to_owned()).spawn(move || {
             let _counted = counted;
             let _closing = Closing(mailbox.clone());
-            render::run(&mailbox, &house.document);
+            render::run(&mailbox, &document);
         })
     };
     if thread.is_err() {

@@ -8,7 +8,6 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{MemoryArguments, Overrides};
-use crate::farm::Scheduler;
 use crate::values;
 
 pub(super) const EXAMPLES: &str = "\
@@ -19,6 +18,29 @@ Examples:
   lookfrom farm dask robot.glb --frames 0..48 --fps 24 --parts 4 -o job
 
 Each ends in pictures with the same bytes as those of one machine. Guide: docs/guide/farm.md";
+
+/// A scheduler that we write files for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scheduler {
+    /// Open Job Description: AWS Deadline Cloud, and `openjd run`.
+    OpenJd,
+    /// Slurm: an array job and a dependent merge.
+    Slurm,
+    /// Dask's `distributed`.
+    Dask,
+    /// HyperQueue, on its own or inside Slurm and PBS.
+    HyperQueue,
+}
+
+impl Scheduler {
+    /// The words for them.
+    pub(crate) const WORDS: &'static [(&'static str, Self)] = &[
+        ("openjd", Self::OpenJd),
+        ("slurm", Self::Slurm),
+        ("dask", Self::Dask),
+        ("hyperqueue", Self::HyperQueue),
+    ];
+}
 
 #[derive(Args, Debug)]
 pub(crate) struct FarmArguments {

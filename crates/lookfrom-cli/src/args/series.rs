@@ -6,9 +6,8 @@ use std::ops::Range;
 
 use clap::Args;
 use lookfrom::session::Series;
-use lookfrom_scene::studio::Viewpoint;
 
-use crate::values;
+use crate::values::{self, Views};
 
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SeriesArguments {
@@ -38,9 +37,6 @@ pub(crate) struct SeriesArguments {
     #[arg(long)]
     pub(crate) skip_existing: bool,
 }
-
-/// Views by name.
-pub(crate) type Views = Vec<(&'static str, Viewpoint)>;
 
 impl SeriesArguments {
     /// The pictures of each scene, with so many frames per second.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::compare::Verdict;
+use super::Verdict;
 
 /// A compared pair with the pictures to show.
 pub(crate) struct Shown {

@@ -1,193 +1,17 @@
-//! Do the modules use only what the map of the house allows, and do the libraries stay below the doors?
+//! Do crates and modules use only what the map of the house allows, and do the libraries stay below the doors?
 //!
-//! Reads the sources as text, which is cheaper than a crate for every module. What each module is for is in
-//! ARCHITECTURE.md; why the arrows run this way, in docs/decisions/0001-the-house.md.
+//! Reads the sources as text, which is cheaper than a crate for every module. The map is in `layers/tables.rs`; what each
+//! module is for, in ARCHITECTURE.md; why the arrows run this way, in docs/decisions/0001-the-house.md.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each module of this crate and the modules it may use. Rows may name only rows above them, so that there is no circle.
-const MAY_USE: &[(&str, &[&str])] = &[
-    ("clock", &[]),
-    ("parallel", &[]),
-    ("hash", &[]),
-    ("vector", &[]),
-    ("elementary", &[]),
-    ("optics", &["vector"]),
-    ("math", &["elementary", "optics"]),
-    ("spectrum", &[]),
-    ("statistics", &[]),
-    ("lanes", &["spectrum", "vector"]),
-    ("points", &["lanes", "vector"]),
-    ("warp", &["elementary", "vector"]),
-    ("color", &["math", "spectrum"]),
-    ("sampler", &["hash", "lanes"]),
-    ("bsdf", &["elementary", "hash", "lanes", "math", "optics", "sampler", "spectrum", "vector", "warp"]),
-    ("film", &["hash", "lanes", "parallel", "sampler", "spectrum"]),
-    ("denoise", &["film", "parallel"]),
-    ("develop", &["film"]),
-    ("exposure", &["film", "math"]),
-    ("noise", &["hash"]),
-    ("filter", &["sampler"]),
-    ("distribution", &["sampler", "lanes"]),
-    ("camera", &["math", "vector", "warp"]),
-    ("interior_stack", &[]),
-    ("texture", &["color", "hash", "lanes", "noise", "spectrum", "vector"]),
-    ("interaction", &["interior_stack", "math", "points", "texture"]),
-    ("footprint", &["interaction", "texture"]),
-    (
-        "material",
-        &[
-            "bsdf",
-            "footprint",
-            "interior_stack",
-            "math",
-            "optics",
-            "points",
-            "spectrum",
-            "interaction",
-            "texture",
-            "vector",
-            "warp",
-        ],
-    ),
-    ("primitive", &["lanes", "math", "points", "interaction", "texture", "vector", "warp"]),
-    (
-        "light",
-        &[
-            "distribution",
-            "elementary",
-            "lanes",
-            "math",
-            "parallel",
-            "points",
-            "sampler",
-            "primitive",
-            "spectrum",
-            "interaction",
-            "texture",
-            "vector",
-            "warp",
-        ],
-    ),
-    (
-        "world",
-        &[
-            "bsdf",
-            "distribution",
-            "footprint",
-            "interior_stack",
-            "light",
-            "material",
-            "math",
-            "points",
-            "primitive",
-            "spectrum",
-            "interaction",
-            "texture",
-            "warp",
-        ],
-    ),
-    ("view", &["camera"]),
-    (
-        "integrator",
-        &[
-            "bsdf",
-            "hash",
-            "interior_stack",
-            "lanes",
-            "light",
-            "material",
-            "math",
-            "optics",
-            "points",
-            "sampler",
-            "primitive",
-            "spectrum",
-            "interaction",
-            "texture",
-            "vector",
-            "warp",
-            "world",
-        ],
-    ),
-    (
-        "render",
-        &[
-            "interior_stack",
-            "camera",
-            "clock",
-            "color",
-            "film",
-            "filter",
-            "footprint",
-            "integrator",
-            "lanes",
-            "light",
-            "material",
-            "math",
-            "parallel",
-            "sampler",
-            "spectrum",
-            "interaction",
-            "texture",
-            "vector",
-            "view",
-            "warp",
-            "world",
-        ],
-    ),
-    (
-        "inspect",
-        &[
-            "bsdf",
-            "camera",
-            "develop",
-            "film",
-            "integrator",
-            "light",
-            "material",
-            "math",
-            "render",
-            "primitive",
-            "spectrum",
-            "interaction",
-            "texture",
-            "world",
-        ],
-    ),
-    (
-        "session",
-        &[
-            "math",
-            "clock",
-            "color",
-            "denoise",
-            "develop",
-            "exposure",
-            "film",
-            "inspect",
-            "integrator",
-            "render",
-            "view",
-            "world",
-        ],
-    ),
-];
+use tables::{CRATES, LADDERS, Ladder, MODULES};
+
+mod tables;
 
 /// Folders that gather modules without being one.
 const GROUPS: &[&str] = &["core", "post", "shading", "view"];
-
-/// Each crate of the workspace and the crates of the workspace that it may use. Rows may name only rows above them.
-const CRATES: &[(&str, &[&str])] = &[
-    ("lookfrom-simd", &[]),
-    ("lookfrom-test-data", &[]),
-    ("lookfrom-bvh", &["lookfrom-simd"]),
-    ("lookfrom-scene", &["lookfrom-test-data"]),
-    ("lookfrom", &["lookfrom-bvh", "lookfrom-scene", "lookfrom-simd", "lookfrom-test-data"]),
-    ("lookfrom-view", &["lookfrom", "lookfrom-scene"]),
-    ("lookfrom-cli", &["lookfrom", "lookfrom-scene", "lookfrom-view"]),
-];
 
 /// What a library must not do: only doors speak and decide when the program ends.
 const FOR_DOORS: &[&str] = &["print!(", "println!(", "dbg!(", "process::exit", "process::abort"];
@@ -219,23 +43,47 @@ fn code(path: &Path) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
-/// What stands after each `crate::` (and the group): the name of a module, or nothing where a brace follows.
-fn named_from_the_root(code: &str) -> Vec<String> {
-    let is_identifier = |c: char| c.is_alphanumeric() || c == '_';
-    let identifier = |code: &str| -> String { code.chars().take_while(|&c| is_identifier(c)).collect() };
-    let named = |rest: &str| {
-        let first = identifier(rest);
-        match rest[first.len()..].strip_prefix("::") {
-            Some(rest) if GROUPS.contains(&first.as_str()) && is_in_group(&first, &identifier(rest)) => {
-                identifier(rest)
-            }
-            _ => first,
-        }
+/// Whether a character is a part of names.
+fn is_identifier(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// The name that a text begins with.
+fn identifier(code: &str) -> &str {
+    code.split(|c| !is_identifier(c)).next().unwrap_or_default()
+}
+
+/// What stands after each `crate::`, or in the braces there: names of modules, also where they are in groups.
+fn named_from_the_root<'a>(code: &'a str, groups: &[&str]) -> Vec<&'a str> {
+    let found = code.match_indices("crate::").filter(|(at, _)| !code[..*at].ends_with(is_identifier));
+    found.flat_map(|(at, found)| named_first(&code[at + found.len()..], groups)).collect()
+}
+
+/// The first name of each of the paths that a text begins with: one, or several in braces.
+fn named_first<'a>(code: &'a str, groups: &[&str]) -> Vec<&'a str> {
+    let Some(inside) = code.strip_prefix('{') else {
+        let first = identifier(code);
+        let second = code[first.len()..].strip_prefix("::").map(identifier);
+        return match second {
+            Some(second) if groups.contains(&first) && is_in_group(first, second) => vec![second],
+            _ => vec![first],
+        };
     };
-    code.match_indices("crate::")
-        .filter(|(at, _)| !code[..*at].ends_with(is_identifier))
-        .map(|(at, found)| named(&code[at + found.len()..]))
-        .collect()
+    let (mut names, mut depth, mut start) = (Vec::new(), 0, 0);
+    for (at, c) in inside.char_indices() {
+        if depth == 0 && (c == ',' || c == '}') {
+            names.extend(named_first(inside[start..at].trim(), groups));
+            start = at + 1;
+        }
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            _ => {}
+        }
+    }
+    names.retain(|name| !name.is_empty());
+    names
 }
 
 /// Whether a name in a group is that of a module, and not of something that the group has itself.
@@ -243,14 +91,21 @@ fn is_in_group(group: &str, name: &str) -> bool {
     crate_folder("lookfrom/src").join(group).join(name).with_extension("rs").is_file()
 }
 
+/// The names in a row of a table.
+fn allows(row: &str, name: &str) -> bool {
+    row.split_whitespace().any(|allowed| allowed == name)
+}
+
 #[test]
-fn the_table_has_no_circle() {
-    for (row, (module, allowed)) in MAY_USE.iter().enumerate() {
-        for used in *allowed {
-            assert!(
-                MAY_USE[..row].iter().any(|(above, _)| above == used),
-                "{module} may use {used}, which is not above it in the table"
-            );
+fn the_tables_have_no_circle() {
+    for table in [CRATES, MODULES] {
+        for (row, (name, allowed)) in table.iter().enumerate() {
+            for used in allowed.split_whitespace() {
+                assert!(
+                    table[..row].iter().any(|(above, _)| *above == used),
+                    "{name} may use {used}, which is not above it in the table"
+                );
+            }
         }
     }
 }
@@ -272,15 +127,13 @@ fn modules_use_only_what_the_table_allows() {
         if groups == 0 && names.len() == 1 && GROUPS.contains(&module) && module != "view" {
             continue;
         }
-        let Some((_, allowed)) = MAY_USE.iter().find(|(row, _)| *row == module) else {
+        let Some((_, allowed)) = MODULES.iter().find(|(row, _)| *row == module) else {
             faults.push(format!("{module} is not in the table: give it a row below all that it uses"));
             continue;
         };
         let code = code(path);
-        for used in named_from_the_root(&code) {
-            if used.is_empty() {
-                faults.push(format!("{}: write one `use crate::…` a module", inside.display()));
-            } else if used != module && !allowed.contains(&used.as_str()) {
+        for used in named_from_the_root(&code, GROUPS) {
+            if used != module && !allows(allowed, used) {
                 faults.push(format!("{}: {module} → {used} is not allowed", inside.display()));
             }
         }
@@ -289,21 +142,75 @@ fn modules_use_only_what_the_table_allows() {
             faults.push(format!("{}: `super::` leads out of the module; write `crate::`", inside.display()));
         }
     }
-    assert!(faults.is_empty(), "arrows that the table in {} does not have:\n{}", file!(), faults.join("\n"));
+    assert!(faults.is_empty(), "arrows that the table does not have:\n{}", faults.join("\n"));
+}
+
+/// The pairs of modules of which one uses the other. Each module uses itself.
+fn arrows(name: &str) -> Vec<(String, String)> {
+    let root = crate_folder(name).join("src");
+    let files = sources(&root);
+    let is_root = |path: &Path| ["lib.rs", "main.rs"].iter().any(|file| path == root.join(file));
+    let declared: String = files.iter().filter(|path| is_root(path)).map(|path| code(path)).collect();
+    let mut arrows = Vec::new();
+    for path in files.iter().filter(|path| !is_root(path)) {
+        let inside = path.strip_prefix(&root).expect("a file of the crate");
+        let module = inside.iter().next().expect("a file or folder").to_string_lossy();
+        let module = module.trim_end_matches(".rs");
+        let code = code(path);
+        assert!(
+            !code.contains(&"super::".repeat(inside.iter().count())),
+            "{}: `super::` leads out of the module; write `crate::`",
+            path.display()
+        );
+        arrows.push((module.to_owned(), module.to_owned()));
+        let used = named_from_the_root(&code, &[]).into_iter().filter_map(|name| module_of(&declared, name));
+        arrows.extend(used.map(|used| (module.to_owned(), used.to_owned())));
+    }
+    arrows.sort();
+    arrows.dedup();
+    arrows
+}
+
+/// The module of a name in the root of a crate: itself, or from where the root exports it; none for what the root defines.
+fn module_of<'a>(root: &'a str, name: &'a str) -> Option<&'a str> {
+    let mut items = root.split(';').map(str::trim);
+    items.find_map(|item| {
+        if item.ends_with(&format!("mod {name}")) {
+            return Some(name);
+        }
+        let (_, exported) = item.split_once("pub use ")?;
+        exported.split(|c| !is_identifier(c)).any(|part| part == name).then(|| identifier(exported))
+    })
+}
+
+#[test]
+fn other_crates_are_ladders() {
+    let mut faults = Vec::new();
+    for Ladder { name, rungs, exceptions } in LADDERS {
+        let rung = |module: &str| rungs.iter().position(|rung| allows(rung, module));
+        let mut excepted: Vec<_> = exceptions.iter().flat_map(|(_, arrows)| arrows.split(", ")).collect();
+        for (module, used) in arrows(name) {
+            let arrow = format!("{module} > {used}");
+            if rung(&module).is_none() {
+                faults.push(format!("{name}: {module} is on no rung: give it one below all that it uses"));
+            } else if module != used && rung(&used) >= rung(&module) {
+                match excepted.iter().position(|exception| *exception == arrow) {
+                    Some(place) => _ = excepted.swap_remove(place),
+                    None => faults.push(format!("{name}: {arrow}, which is not on a rung above")),
+                }
+            }
+        }
+        faults.extend(excepted.iter().map(|arrow| format!("{name}: no exception is needed for {arrow}")));
+    }
+    assert!(faults.is_empty(), "arrows that the ladders do not have:\n{}", faults.join("\n"));
 }
 
 #[test]
 fn crates_use_only_what_the_table_allows() {
-    for (row, (name, allowed)) in CRATES.iter().enumerate() {
-        for used in *allowed {
-            assert!(
-                CRATES[..row].iter().any(|(above, _)| above == used),
-                "{used} is not above {name} in the table"
-            );
-        }
+    for (name, allowed) in CRATES {
         let folder = crate_folder(name);
         let manifest = folder.join("Cargo.toml");
-        for (other, _) in CRATES.iter().filter(|(other, _)| other != name && !allowed.contains(other)) {
+        for (other, _) in CRATES.iter().filter(|(other, _)| other != name && !allows(allowed, other)) {
             let path = format!("{}::", other.replace('-', "_"));
             for file in sources(&folder.join("src")) {
                 assert!(!names_the_crate(&code(&file), &path), "{} names {other}", file.display());
@@ -334,8 +241,9 @@ fn libraries_return_and_doors_speak() {
 
 #[test]
 fn arrows_are_found() {
-    let code = "use crate::light::Light;\nfn f(x: &crate::film::Film) {}\nuse other_crate::math;\nuse crate::{a, b};";
-    assert_eq!(named_from_the_root(code), ["light", "film", ""]);
+    let code = "use crate::light::Light;\nfn f(x: &crate::film::Film) {}\nuse other_crate::math;\nuse crate::{a::{b, c}, d};";
+    assert_eq!(named_from_the_root(code, GROUPS), ["light", "film", "a", "d"]);
+    assert_eq!(module_of("mod a;\npub use b::{C, D};", "D"), Some("b"));
     assert!(
         names_the_crate("use lookfrom::world;", "lookfrom::")
             && !names_the_crate("my_lookfrom::x", "lookfrom::")

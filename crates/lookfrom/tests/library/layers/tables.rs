@@ -1,0 +1,169 @@
+//! The map of the house: what may use what.
+
+/// The crates of the workspace, each with those that it may use. Rows name only rows above them, so that there is no circle.
+pub(super) const CRATES: &[(&str, &str)] = &[
+    ("lookfrom-simd", ""),
+    ("lookfrom-test-data", ""),
+    ("lookfrom-bvh", "lookfrom-simd"),
+    ("lookfrom-scene", "lookfrom-test-data"),
+    ("lookfrom", "lookfrom-bvh lookfrom-scene lookfrom-simd lookfrom-test-data"),
+    ("lookfrom-view", "lookfrom lookfrom-scene"),
+    ("lookfrom-cli", "lookfrom lookfrom-scene lookfrom-view"),
+];
+
+/// The modules of `lookfrom`, each with those that it may use. Rows name only rows above them, so that there is no circle.
+pub(super) const MODULES: &[(&str, &str)] = &[
+    ("clock", ""),
+    ("parallel", ""),
+    ("hash", ""),
+    ("vector", ""),
+    ("elementary", ""),
+    ("optics", "vector"),
+    ("math", "elementary optics"),
+    ("spectrum", ""),
+    ("statistics", ""),
+    ("lanes", "spectrum vector"),
+    ("points", "lanes vector"),
+    ("warp", "elementary vector"),
+    ("color", "math spectrum"),
+    ("sampler", "hash lanes"),
+    ("bsdf", "elementary hash lanes math optics sampler spectrum vector warp"),
+    ("film", "hash lanes parallel sampler spectrum"),
+    ("denoise", "film parallel"),
+    ("develop", "film"),
+    ("exposure", "film math"),
+    ("noise", "hash"),
+    ("filter", "sampler"),
+    ("distribution", "sampler lanes"),
+    ("camera", "math vector warp"),
+    ("interior_stack", ""),
+    ("texture", "color hash lanes noise spectrum vector"),
+    ("interaction", "interior_stack math points texture"),
+    ("footprint", "interaction texture"),
+    ("material", "bsdf footprint interior_stack math optics points spectrum interaction texture vector warp"),
+    ("primitive", "lanes math points interaction texture vector warp"),
+    (
+        "light",
+        "distribution elementary lanes math parallel points sampler primitive spectrum interaction \
+         texture vector warp",
+    ),
+    (
+        "world",
+        "bsdf distribution footprint interior_stack light material math points primitive spectrum \
+         interaction texture warp",
+    ),
+    ("view", "camera"),
+    (
+        "integrator",
+        "bsdf hash interior_stack lanes light material math optics points sampler primitive spectrum \
+         interaction texture vector warp world",
+    ),
+    (
+        "render",
+        "interior_stack camera clock color film filter footprint integrator lanes light material math \
+         parallel sampler spectrum interaction texture vector view warp world",
+    ),
+    (
+        "inspect",
+        "bsdf camera develop film integrator light material math render primitive spectrum interaction \
+         texture world",
+    ),
+    ("session", "math clock color denoise develop exposure film inspect integrator render view world"),
+];
+
+/// The modules of another crate, rung by rung: a module may use those of all rungs above its own.
+pub(super) struct Ladder {
+    pub(super) name: &'static str,
+    pub(super) rungs: &'static [&'static str],
+    /// Modules that use others of their rung or below, as `user > used`, by reason.
+    pub(super) exceptions: &'static [(&'static str, &'static str)],
+}
+
+/// The ladders of the other crates.
+pub(super) const LADDERS: &[Ladder] = &[
+    Ladder { name: "lookfrom-simd", rungs: &["dispatch lane_mask level real transpose"], exceptions: &[] },
+    Ladder {
+        name: "lookfrom-bvh",
+        rungs: &[
+            "aabb dispatch error_bounds faces lanes masks observer ray reference testing vector",
+            "affine collector exact nearest origin_primitive procedural ray_f64",
+            "ellipsoid origin prepared sphere triangle",
+            "conservative item node",
+            "common_origin ray8 stack statistics",
+            "bvh coherence packet_bounds",
+            "build settings validate",
+            "refit visibility",
+            "traverse",
+            "interleaved packet",
+            "batch",
+            "closest_point single traverse_f64",
+            "trace_ray",
+            "query",
+        ],
+        exceptions: &[],
+    },
+    Ladder {
+        name: "lookfrom-scene",
+        rungs: &[
+            "error json parallel plural stamps suggest variables",
+            "budget camera material warning",
+            "contents files medium",
+            "digest inputs packed spectrum",
+            "excerpt image",
+            "atmosphere light settings",
+            "shape texture",
+            "scene text",
+            "chain count duplicates model",
+            "boolean ies stl subdivision",
+            "obj ply",
+            "pbrt studio",
+            "gltf",
+            "toml",
+            "load",
+        ],
+        exceptions: &[
+            (
+                "ids of a scene's parts are in `scene`",
+                "camera > scene, light > scene, material > scene, medium > scene, shape > scene, texture > scene",
+            ),
+            (
+                "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
+                "spectrum > model, model > obj, model > ply, model > stl, model > subdivision",
+            ),
+            (
+                "models in a scene, and their animations, are read as those of the command line",
+                "gltf > load, toml > load",
+            ),
+        ],
+    },
+    Ladder {
+        name: "lookfrom-view",
+        rungs: &[
+            "assets heat message patience",
+            "compare cost mailbox words",
+            "document",
+            "view",
+            "develop lobe shot space",
+            "render told",
+            "window",
+            "server",
+        ],
+        exceptions: &[],
+    },
+    Ladder {
+        name: "lookfrom-cli",
+        rungs: &[
+            "pipe preview values",
+            "diagnostic",
+            "exit",
+            "interrupt output report scenes terminal",
+            "args naming",
+            "compare develop files film help overrides prepare",
+            "bench completions farm info inspect man merge progress view",
+            "picture",
+            "render",
+            "resume",
+        ],
+        exceptions: &[],
+    },
+];
