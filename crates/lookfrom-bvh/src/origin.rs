@@ -1,24 +1,8 @@
-//! Origins of rays that leave a surface without hitting it again: Wächter, Binder (2019), with error bounds.
-//!
-//! Not offset by an epsilon, but just beyond the error of the point it starts from: after Wächter & Binder (2019),
-//! "A Fast and Robust Method for Avoiding Self-Intersection", and the error bounds of Pharr, Jakob, Humphreys,
-//! Physically Based Rendering. Points are computed in f64 here, so their errors are far below the spacing of f32.
-//! It remains to round each coordinate to f32 *away* from the surface: a step of about one unit in the last place.
-//!
-//! Proof: a triangle, a sphere seen from outside, and any affine image of them lie on one side of the tangent plane
-//! at the origin point. The ray's origin is on the other side and its direction leads away, so the whole ray is on
-//! the other side. Inside a sphere, rounding moves each coordinate toward that of the centre (itself an f32), hence
-//! inwards. Inside an instanced sphere this holds only as long as its radii of curvature are large compared with
-//! the spacing of f32.
+//! Points of surfaces that rays leave without hitting them again: one at a time, by arrays. The formulas, for any width, and
+//! their proof are those of [`Points`].
 
 use crate::affine::{Affine, inverse_matrix};
-use crate::vector::{cross, cross_magnitude, dot, round_toward, subtract, wide};
-
-/// Unit of rounding of f64, 2⁻⁵³.
-const UNIT: f64 = f64::EPSILON / 2.0;
-
-/// Unit of rounding of f32, 2⁻²⁴.
-const UNIT32: f64 = 5.960_464_477_539_063e-8;
+use lookfrom_simd::{Placement, Points, Vector, amplification};
 
 /// A point on a surface with its error bound.
 ///
@@ -51,7 +35,7 @@ impl Point {
         Self::on_triangle_with_normal(p0, p1, p2, u, v).0
     }
 
-    /// The same, and `(p1 − p0) × (p2 − p0)`, which is needed anyway; its length is twice the area.
+    /// [`Self::on_triangle`], and `(p1 − p0) × (p2 − p0)`, which is needed anyway; its length is twice the area.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -67,22 +51,8 @@ impl Point {
         u: f32,
         v: f32,
     ) -> (Self, [f64; 3]) {
-        let [p0, p1, p2] = [p0, p1, p2].map(wide);
-        let (u, v) = (f64::from(u), f64::from(v));
-        let [e1, e2] = [subtract(p1, p0), subtract(p2, p0)];
-        let position = [0, 1, 2].map(|i| p0[i] + u * e1[i] + v * e2[i]);
-
-        // Error of a ray's hit relative to the plane: errors of n = e1 × e2, relative to its length.
-        let n = cross(e1, e2);
-        let reach = [0, 1, 2].map(|i| e1[i].abs() + e2[i].abs());
-        let length = dot(n, n).sqrt();
-        let decision = 8.0 * UNIT * dot(cross_magnitude(e1, e2), reach) / length;
-        let decision = if decision.is_finite() { decision } else { 0.0 };
-        let error = [0, 1, 2].map(|i| {
-            let magnitude = p0[i].abs() + (u * e1[i]).abs() + (v * e2[i]).abs() + reach[i];
-            8.0 * UNIT * magnitude + decision
-        });
-        (Self { position, error }, n)
+        let (points, normal) = Points::<f32>::on_triangles([p0, p1, p2].map(Vector::from), u, v);
+        (points.into(), normal.into())
     }
 
     /// The point of a sphere that is nearest to `hit`, which should be on the sphere up to its errors.
@@ -93,14 +63,8 @@ impl Point {
     /// assert_eq!(point.position, [0.0, 0.0, 2.0]);
     /// ```
     pub fn on_sphere(center: [f32; 3], radius: f32, hit: [f64; 3]) -> Self {
-        let center = wide(center);
-        let radius = f64::from(radius);
-        let f = subtract(hit, center);
-        let length = dot(f, f).sqrt();
-        let stretch = if length > 0.0 { radius / length } else { 0.0 };
-        let position = [0, 1, 2].map(|i| center[i] + stretch * f[i]);
-        let error = [0, 1, 2].map(|i| 8.0 * UNIT * (center[i].abs() + 2.0 * radius));
-        Self { position, error }
+        let center = Vector::from(center).widen();
+        Points::<f32>::on_spheres(center, f64::from(radius), hit.into()).into()
     }
 
     /// The point under an affine map, for a hit in an instance: `world_from_object` is the instance's.
@@ -115,31 +79,12 @@ impl Point {
     /// assert_eq!(point.position, [0.25, 0.5, 5.0]);
     /// ```
     pub fn transformed(&self, world_from_object: &Affine) -> Self {
-        let matrix = &world_from_object.matrix;
-        let relative = world_from_object.vector(self.position);
-        let position = [0, 1, 2].map(|i| relative[i] + world_from_object.translation[i]);
-        let size = self.position.map(f64::abs);
-
-        // The amplification by the inverse transformation: |M| |M⁻¹| |position − translation|, and M M⁻¹ − 1.
+        let Affine { matrix, translation } = world_from_object;
         let inverse = inverse_matrix(matrix).unwrap_or([[0.0; 3]; 3]);
-        let way = relative.map(|x| x.abs() * (1.0 + 1e-6));
-        let error = [0, 1, 2].map(|i| {
-            let row = matrix[i];
-            let mut error = 0.0;
-            for j in 0..3 {
-                let mut product = if i == j { -1.0 } else { 0.0 };
-                let mut magnitude = 0.0;
-                for k in 0..3 {
-                    product += row[k] * inverse[k][j];
-                    magnitude += (row[k] * inverse[k][j]).abs();
-                }
-                error += (product.abs() + 8.0 * UNIT * magnitude) * way[j];
-                let object_rounding = UNIT32 * (1.0 + 1e-6) * size[j];
-                error += row[j].abs() * (self.error[j] + 8.0 * UNIT * size[j] + object_rounding);
-            }
-            error + 4.0 * UNIT * (way[i] + world_from_object.translation[i].abs() + position[i].abs())
-        });
-        Self { position, error }
+        let amplification = amplification(matrix, &inverse).map(Vector::from);
+        let (matrix, inverse) = (matrix.map(Vector::from), inverse.map(Vector::from));
+        let translation = Vector::from(*translation);
+        self.points().placed(&Placement { matrix, translation, inverse, amplification }).into()
     }
 
     /// The origin of a ray that leaves the point in a direction.
@@ -155,14 +100,14 @@ impl Point {
     /// assert_eq!(below, [0.25, 0.25, 1.0_f32.next_down()]);
     /// ```
     pub fn origin<D: Copy + Into<f64>>(&self, normal: [f64; 3], direction: [D; 3]) -> [f32; 3] {
-        let length = dot(normal, normal).sqrt();
+        let length = Vector::from(normal).length();
         if !(length > 0.0 && length.is_finite()) {
             return self.position.map(|x| x as f32);
         }
         self.leave(normal.map(|x| x / length), direction)
     }
 
-    /// The same for a normal of unit length, up to rounding.
+    /// [`Self::origin`] for a normal of unit length, up to rounding.
     ///
     /// ```
     /// use lookfrom_bvh::Point;
@@ -172,19 +117,17 @@ impl Point {
     #[inline]
     pub fn leave<D: Copy + Into<f64>>(&self, unit_normal: [f64; 3], direction: [D; 3]) -> [f32; 3] {
         let direction: [f64; 3] = direction.map(Into::into);
-        let side = if dot(unit_normal, direction) < 0.0 { -1.0 } else { 1.0 };
-        let normal = unit_normal.map(|x| x * side);
+        self.points().exits(unit_normal.into()).toward_wide(direction.into()).into()
+    }
 
-        // The step along the normal that covers the error in its direction, and the step's own rounding.
-        let step = (0..3)
-            .map(|i| normal[i].abs() * (self.error[i] + 4.0 * UNIT * self.position[i].abs()))
-            .sum::<f64>()
-            * (1.0 + 1e-6);
-        [0, 1, 2].map(|i| {
-            let moved = self.position[i] + step * normal[i];
-            let rounded = round_toward(moved, normal[i] > 0.0);
-            if normal[i] == 0.0 { moved as f32 } else { rounded }
-        })
+    fn points(&self) -> Points<f32> {
+        Points { position: self.position.into(), error: self.error.into() }
+    }
+}
+
+impl From<Points<f32>> for Point {
+    fn from(Points { position, error }: Points<f32>) -> Self {
+        Self { position: position.into(), error: error.into() }
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use lookfrom_simd::round_toward;
+
 /// Numbers, or lanes of numbers.
 pub(crate) trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
@@ -33,30 +35,14 @@ pub(crate) fn cross_magnitude(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] + a[2] * b[1], a[2] * b[0] + a[0] * b[2], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// `x` rounded to the nearest f32 that is not below (`up`) or not above it. Without a branch that depends on `x`,
-/// since it could not be predicted.
-#[inline]
-pub(crate) fn round_toward(x: f64, up: bool) -> f32 {
-    let nearest = x as f32;
-    let wide = f64::from(nearest);
-    let is_wrong = if up { wide < x } else { wide > x };
-    // The next float is one step of the bits, forward or back by sign, except from zero.
-    if nearest == 0.0 && is_wrong {
-        return if up { f32::from_bits(1) } else { -f32::from_bits(1) };
-    }
-    let bits = nearest.to_bits();
-    let step = if (bits >> 31 == 0) == up { 1 } else { u32::MAX };
-    f32::from_bits(bits.wrapping_add(if is_wrong { step } else { 0 }))
-}
-
 /// The smallest f32 that is not below `x`.
 pub(crate) fn round_up(x: f64) -> f32 {
-    round_toward(x, true)
+    round_toward(x, true, false)
 }
 
 /// The largest f32 that is not above `x`.
 pub(crate) fn round_down(x: f64) -> f32 {
-    round_toward(x, false)
+    round_toward(x, false, true)
 }
 
 #[cfg(test)]

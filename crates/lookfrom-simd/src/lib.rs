@@ -4,8 +4,12 @@
 mod dispatch;
 mod lane_mask;
 mod level;
+mod placement;
+mod points;
 mod real;
+mod rounding;
 mod transpose;
+mod vector;
 
 pub use dispatch::{Kernel, dispatch, dispatch_wide, is_wide};
 pub use fearless_simd::{
@@ -13,5 +17,9 @@ pub use fearless_simd::{
 };
 pub use lane_mask::LaneMask;
 pub use level::{UnmetLevel, choose_level, level};
+pub use placement::{Placement, amplification};
+pub use points::{Exits, Lift, Points};
 pub use real::{Bits, Float, Mask, Real};
+pub use rounding::round_toward;
 pub use transpose::transposed;
+pub use vector::Vector;

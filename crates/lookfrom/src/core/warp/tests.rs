@@ -2,9 +2,11 @@
 
 use super::*;
 use crate::core::hash::mix;
+use crate::core::lanes::{LANES, by_lane, gather, scatter};
 use crate::core::sampler::{ONE_MINUS_EPSILON, Sampler};
 use crate::core::statistics::chi_square_deviate;
 use glam::{DVec3, Vec2};
+use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
 
 const N: u32 = 200_000;
 
@@ -189,4 +191,37 @@ fn bits_are_pinned() {
     assert_eq!(bits(cosine_hemisphere([0.2, 0.9], n)), [0x3b91_5480, 0xbf2a_48f3, 0xbf3f_2604]);
     assert_eq!(bits(uniform_sphere([0.2, 0.9])), [0xbf08_8977, 0x3f4c_578c, 0xbe8f_5c24]);
     assert_eq!(bits(uniform_cone([0.7, 0.4], 1e-6).into()), [0x3a09_00c7, 0xb962_fe7c, 0x3f7f_fffd]);
+}
+
+/// Bases about eight normals, and places in the disk.
+struct Eight<'a>(&'a [Vec3; LANES], &'a [[f32; 2]; LANES]);
+
+impl Kernel for Eight<'_> {
+    type Output = [([f32; 3], [f32; 3], [f32; 2]); LANES];
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let (s, t) = basis_about(gather(simd, &by_lane!(lane => self.0[lane].to_array())));
+        let (s, t) = (scatter(s), scatter(t));
+        let [x, y]: [[f32; LANES]; 2] =
+            concentric_disk([0, 1].map(|k| f32x8::load_array(simd, by_lane!(lane => self.1[lane][k]))))
+                .map(Into::into);
+        by_lane!(lane => (s[lane], t[lane], [x[lane], y[lane]]))
+    }
+}
+
+#[test]
+fn eight_at_once_are_eight_one_by_one() {
+    let mut levels = vec![Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    let (normals, numbers): (Vec<Vec3>, Vec<[f32; 2]>) = normals().zip(corners().chain(numbers())).unzip();
+    for (normals, numbers) in normals.as_chunks::<LANES>().0.iter().zip(numbers.as_chunks::<LANES>().0) {
+        let expected: [_; LANES] = std::array::from_fn(|lane| {
+            let (s, t) = orthonormal_basis(normals[lane]);
+            (s.to_array(), t.to_array(), concentric_disk(numbers[lane]))
+        });
+        for &level in &levels {
+            assert_eq!(dispatch(level, Eight(normals, numbers)), expected, "{normals:?} {numbers:?}");
+        }
+    }
 }

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::core::hash;
     use crate::core::lanes::{by_lane, scatter, scatter_f64};
-    use crate::core::points::Placement;
+    use crate::core::points::{Placement, placement};
     use crate::primitive::MaterialBinding;
 
     /// A number of any exponent from 2⁻²⁰ to 2²⁰.
@@ -213,7 +213,7 @@ mod tests {
                 let row = |k: u64| [0, 1, 2].map(|j| f64::from(number(64 * seed(lane) + 40 + 3 * k + j)));
                 let map = lookfrom_bvh::Affine { matrix: [row(0), row(1), row(2)], translation: row(3) };
                 let inverse = map.inverse().map_or(map.matrix, |inverse| inverse.matrix);
-                Placement::new(&map, &inverse)
+                placement(&map, &inverse)
             });
             for &level in &levels {
                 let eight = dispatch(level, Eight { meshes: &meshes, on, placements: &placements });

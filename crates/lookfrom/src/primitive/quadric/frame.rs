@@ -5,7 +5,7 @@ use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::UNIT;
 use crate::core::lanes::{LANES, by_lane};
-use crate::core::points::{Placement, Points, gather_placements};
+use crate::core::points::{Placement, Points, gather_placements, placement};
 use crate::core::vector::Vector;
 
 /// The transforms of quadrics.
@@ -19,7 +19,7 @@ pub(crate) struct QuadricFrames<R: Real> {
 impl QuadricFrames<f32> {
     pub(super) fn new(render_from_object: &Affine, object_from_render: &Affine, reverse: bool) -> Self {
         Self {
-            render_from_object: Placement::new(render_from_object, &object_from_render.matrix),
+            render_from_object: placement(render_from_object, &object_from_render.matrix),
             orientation: if reverse { -1.0 } else { 1.0 },
         }
     }

@@ -81,7 +81,11 @@ pub(super) struct Ladder {
 
 /// The ladders of the other crates.
 pub(super) const LADDERS: &[Ladder] = &[
-    Ladder { name: "lookfrom-simd", rungs: &["dispatch lane_mask level real transpose"], exceptions: &[] },
+    Ladder {
+        name: "lookfrom-simd",
+        rungs: &["dispatch lane_mask level real transpose", "rounding vector", "points", "placement"],
+        exceptions: &[],
+    },
     Ladder {
         name: "lookfrom-bvh",
         rungs: &[
