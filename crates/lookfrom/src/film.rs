@@ -4,8 +4,8 @@
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
 //! denoiser, are in [`aov`], those of eight pixels side by side in `first_hits`; variances in the sensor's channels in
-//! `channels`; noise estimates in `noise`; firefly suppression in `fireflies`; which samples it holds, in `ledger`; its
-//! numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
+//! `channels`; noise estimates in `noise`; firefly suppression in `fireflies`; which sums it has, in `layout`, which
+//! samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
 //! In a tile, which a thread fills, a pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled. The
 //! film keeps them packed, in `plane`: in about half of that.
@@ -15,6 +15,7 @@ pub mod aov;
 mod channels;
 mod fireflies;
 mod first_hits;
+mod layout;
 mod ledger;
 mod light_paths;
 mod noise;
@@ -29,19 +30,19 @@ pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 use self::channels::ChannelSums;
 pub use self::fireflies::Firefly;
 pub(crate) use self::first_hits::{AovColumns, FirstHitSums};
+pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
 use self::light_paths::LightPathSums;
 use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 use self::plane::Plane;
 pub(crate) use self::stored::StoredRows;
-use self::stored::{Stored, for_each_plane};
+use self::stored::{Sums, for_each_plane};
 pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
-use self::tile::Kinds;
 
 use std::ops::Range;
 
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds};
+use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
@@ -60,6 +61,7 @@ pub struct Film {
     width: u32,
     height: u32,
     area: PixelBounds,
+    layout: Layout,
     pixels: Plane<Pixel>,
     layers: Plane<LayerSums>,
     channels: Plane<ChannelSums>,
@@ -122,12 +124,7 @@ impl Film {
     ///
     /// An error if the picture has more than [`MOST_PIXELS`] or there is no memory for it.
     pub fn new(width: u32, height: u32, crop: Option<PixelBounds>) -> Result<Self> {
-        Self::with_layers(width, height, crop, Layers::None)
-    }
-
-    /// As [`Film::new`], with memory for AOVs.
-    pub fn with_layers(width: u32, height: u32, crop: Option<PixelBounds>, layers: Layers) -> Result<Self> {
-        Self::for_image(&ImageSettings { width, height, crop, layers, ..ImageSettings::default() })
+        Self::for_image(&ImageSettings { width, height, crop, ..ImageSettings::default() })
     }
 
     /// A black film with memory for everything that the settings need: AOVs, alpha.
@@ -135,87 +132,56 @@ impl Film {
     /// # Errors
     /// `Limit` as [`Film::new`].
     pub fn for_image(image: &ImageSettings) -> Result<Self> {
-        let &ImageSettings { width, height, crop, .. } = image;
+        Self::with_layout([image.width, image.height], area_of(image), Layout::of_image(image))
+    }
+
+    /// A black film of an area of a picture, with the sums of a layout.
+    ///
+    /// # Errors
+    /// `Limit` as [`Film::new`].
+    pub(crate) fn with_layout([width, height]: [u32; 2], area: PixelBounds, layout: Layout) -> Result<Self> {
+        fn plane<T: Sums>(has: bool, [width, height]: [u32; 2]) -> Result<Plane<T>> {
+            if has { Plane::new(width, height) } else { Ok(Plane::none()) }
+        }
         let pixels = u64::from(width) * u64::from(height);
         if pixels > MOST_PIXELS {
             return Err(too_large(format!(
                 "a picture of {width} × {height} = {pixels} pixels; at most {MOST_PIXELS} are possible"
             )));
         }
-        let whole = PixelBounds { x0: 0, y0: 0, x1: width, y1: height };
-        let area = common(whole, crop.unwrap_or(whole));
-        let kinds = FilmTile::for_image(PixelBounds { x1: area.x0, ..area }, image)?.kinds;
-        Self::with_kinds(width, height, area, kinds)
-    }
-
-    fn with_kinds(width: u32, height: u32, area: PixelBounds, kinds: Kinds) -> Result<Self> {
-        fn plane<T: Stored + Copy + Default + PartialEq>(
-            has: bool,
-            [width, height]: [u32; 2],
-        ) -> Result<Plane<T>> {
-            if has { Plane::new(width, height) } else { Ok(Plane::none()) }
-        }
         let size = [width, height];
         Ok(Self {
             width,
             height,
             area,
+            layout,
             pixels: plane(true, size)?,
-            layers: plane(kinds.layers, size)?,
-            channels: plane(kinds.channels, size)?,
-            features: plane(kinds.features, size)?,
-            light_paths: (0..kinds.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
-            alphas: plane(kinds.alphas, size)?,
-            alpha_squares: plane(kinds.alpha_squares, size)?,
+            layers: plane(layout.aovs, size)?,
+            channels: plane(layout.sensor, size)?,
+            features: plane(layout.features, size)?,
+            light_paths: (0..layout.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
+            alphas: plane(layout.alpha, size)?,
+            alpha_squares: plane(layout.alpha_squares(), size)?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),
         })
     }
 
-    /// The kinds of its sums.
-    fn kinds(&self) -> Kinds {
-        Kinds {
-            layers: !self.layers.is_empty(),
-            channels: !self.channels.is_empty(),
-            features: !self.features.is_empty(),
-            light_paths: self.light_paths.len(),
-            alphas: !self.alphas.is_empty(),
-            alpha_squares: !self.alpha_squares.is_empty(),
-        }
-    }
-
-    /// A black tile with the same kinds of sums.
+    /// A black tile with the same sums.
     fn tile(&self, area: PixelBounds) -> Result<FilmTile> {
-        FilmTile::of_kinds(area, self.kinds())
+        FilmTile::with_layout(area, self.layout)
     }
 
     /// The bytes of a film for these settings, with those that are needed at the same time to develop and encode its picture:
-    /// an estimate, by what was measured (docs/benchmarks/memory.md).
+    /// an estimate.
     pub fn memory(image: &ImageSettings) -> u64 {
-        /// Of a pixel of the film's area.
-        const LIGHT: u64 = 55;
-        const LAYERS: u64 = 120;
-        const FEATURES: u64 = 65;
-        const DENOISER: u64 = 10;
-        const ALPHA: u64 = 20;
-        const LIGHT_PATHS: u64 = 30;
-        /// Of a pixel of the picture, in which a crop has its place.
-        const DEVELOPED: u64 = 30;
-        const OPACITY: u64 = 6;
-        let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
-        let PixelBounds { x0, y0, x1, y1 } = common(whole, image.crop.unwrap_or(whole));
-        let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
-        let if_any = |has: bool, bytes: u64| if has { bytes } else { 0 };
-        let has_alpha = image.background != Background::Environment;
-        let summed = LIGHT
-            + if_any(image.layers != Layers::None, LAYERS)
-            + if_any(image.denoise, FEATURES + DENOISER)
-            + if_any(has_alpha, ALPHA)
-            + image.light_paths.len() as u64 * LIGHT_PATHS;
-        let developed = DEVELOPED + if_any(has_alpha, OPACITY);
-        let picture = u64::from(image.width) * u64::from(image.height);
-        pixels.saturating_mul(summed).saturating_add(picture.saturating_mul(developed))
+        Layout::of_image(image).memory([image.width, image.height], area_of(image))
+    }
+
+    /// As [`Film::memory`], for a film with the same sums, of an area of the same picture.
+    pub(crate) fn memory_of(&self, area: PixelBounds) -> u64 {
+        self.layout.memory([self.width, self.height], area)
     }
 
     /// Columns of the picture.
@@ -255,30 +221,22 @@ impl Film {
     /// As [`Film::merge`].
     pub fn add_tile(&mut self, tile: &FilmTile) -> Result<()> {
         let area = tile.area;
-        self.check_same(area, tile.kinds)?;
+        self.check_same(area, tile.layout)?;
         self.ledger.merge(&tile.ledger).map_err(|overlap| twice(&overlap))?;
         let columns = area.x1.saturating_sub(area.x0) as usize;
         let index = |x: u32, y: u32| (y - area.y0) as usize * columns + (x - area.x0) as usize;
-        self.pixels.change(area, |x, y, sums| sums.merge(&tile.pixels[index(x, y)]));
-        self.alphas.change(area, |x, y, sum| *sum = sum.wrapping_add(tile.alphas[index(x, y)]));
-        self.alpha_squares
-            .change(area, |x, y, sum| *sum = sum.saturating_add(tile.alpha_squares[index(x, y)]));
-        self.layers.change(area, |x, y, sums| sums.merge(&tile.layers[index(x, y)]));
-        self.channels.change(area, |x, y, sums| sums.merge(&tile.channels[index(x, y)]));
-        // Only the first samples of a pixel have any.
-        let none = AovSums::default();
-        if tile.features.iter().any(|sums| *sums != none) {
-            self.features.change(area, |x, y, sums| sums.merge(&tile.features[index(x, y)]));
-        }
-        for (mine, theirs) in self.light_paths.iter_mut().zip(&tile.light_paths) {
-            mine.change(area, |x, y, sums| sums.merge(&theirs[index(x, y)]));
-        }
+        for_each_plane!([&mut] self => mine, [&] tile => theirs; {
+            // Of denoiser features, only the first samples of a pixel have any.
+            if theirs.iter().any(|sums| *sums != Default::default()) {
+                mine.change(area, |x, y, sums| Sums::merge(sums, &theirs[index(x, y)]));
+            }
+        });
         self.drop_samples(tile.dropped, tile.first_dropped);
         Ok(())
     }
 
     /// Whether sums of an area can be added.
-    fn check_same(&self, area: PixelBounds, kinds: Kinds) -> Result<()> {
+    fn check_same(&self, area: PixelBounds, layout: Layout) -> Result<()> {
         let PixelBounds { x0, y0, x1, y1 } = area;
         if x0 >= x1 || y0 >= y1 {
             return Ok(());
@@ -290,24 +248,9 @@ impl Film {
                 mine.x0, mine.y0, mine.x1, mine.y1
             )));
         }
-        match kinds == self.kinds() {
+        match layout == self.layout {
             true => Ok(()),
-            false => Err(invalid(format!("a film of {kinds} cannot be added to one of {}", self.kinds()))),
-        }
-    }
-
-    /// Image settings for which [`Film::memory`] tells that of this film.
-    pub(crate) fn settings(&self) -> ImageSettings {
-        let kinds = self.kinds();
-        ImageSettings {
-            width: self.width,
-            height: self.height,
-            crop: Some(self.area),
-            layers: if kinds.layers { Layers::Geometry } else { Layers::None },
-            denoise: kinds.features,
-            light_paths: vec![LightPathLayer::default(); kinds.light_paths],
-            background: if kinds.alphas { Background::Transparent } else { Background::Environment },
-            ..ImageSettings::default()
+            false => Err(invalid(format!("a film of {layout} cannot be added to one of {}", self.layout))),
         }
     }
 
@@ -330,17 +273,9 @@ impl Film {
             return Err(Error::invalid(&Location::default(), message)
                 .hint("merge only renders of the same scene at the same size"));
         }
-        self.check_same(other.area, other.kinds())?;
+        self.check_same(other.area, other.layout)?;
         self.ledger.merge(&other.ledger).map_err(|overlap| twice(&overlap))?;
-        self.pixels.merge(&other.pixels, Pixel::merge);
-        self.alphas.merge(&other.alphas, |sum, add| *sum = sum.wrapping_add(*add));
-        self.alpha_squares.merge(&other.alpha_squares, |sum, add| *sum = sum.saturating_add(*add));
-        self.layers.merge(&other.layers, LayerSums::merge);
-        self.channels.merge(&other.channels, ChannelSums::merge);
-        self.features.merge(&other.features, AovSums::merge);
-        for (mine, theirs) in self.light_paths.iter_mut().zip(&other.light_paths) {
-            mine.merge(theirs, LightPathSums::merge);
-        }
+        for_each_plane!([&mut] self => mine, [&] other => theirs; mine.merge(theirs));
         self.drop_samples(other.dropped, other.first_dropped);
         Ok(())
     }
@@ -362,17 +297,13 @@ impl Film {
 
     /// Forgets the sums of rows, of which nothing is wanted any more, as far as whole blocks end within them.
     pub(crate) fn forget(&mut self, rows: &Range<u32>) {
-        for_each_plane!([&mut] self, plane, _prefix => plane.forget(rows));
+        for_each_plane!([&mut] self => plane; plane.forget(rows));
     }
 
-    /// Whether it is as [`Film::for_image`] makes it: of these pixels, with these kinds of sums.
+    /// Whether it is as [`Film::for_image`] makes it: of these pixels, with these sums.
     pub fn is_for(&self, image: &ImageSettings) -> bool {
-        let PixelBounds { x0, y0, .. } = self.area();
-        let one = PixelBounds { x0, y0, x1: x0 + 1, y1: y0 + 1 };
-        let like = Self::for_image(&ImageSettings { crop: Some(one), ..image.clone() });
-        let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
-        (self.width, self.height, self.area()) == (image.width, image.height, image.crop.unwrap_or(whole))
-            && like.is_ok_and(|like| like.stored_channels() == self.stored_channels())
+        (self.width, self.height, self.area) == (image.width, image.height, area_of(image))
+            && self.layout == Layout::of_image(image)
     }
 
     pub(crate) fn ledger_mut(&mut self) -> &mut SampleLedger {
@@ -506,7 +437,7 @@ impl Film {
     }
 
     /// Sums of a kind of a pixel; `None` where there are none, and outside of [`Film::area`].
-    fn sums_of<T: Stored + Copy + Default + PartialEq>(&self, plane: &Plane<T>, x: u32, y: u32) -> Option<T> {
+    fn sums_of<T: Sums>(&self, plane: &Plane<T>, x: u32, y: u32) -> Option<T> {
         let PixelBounds { x0, y0, x1, y1 } = self.area;
         let is_inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
         if is_inside { plane.get(x, y) } else { None }
@@ -517,6 +448,12 @@ impl Film {
 pub(crate) fn composited(light: [f32; 3], alpha: f32, background: [f32; 3]) -> [f32; 3] {
     let share = 1.0 - alpha.clamp(0.0, 1.0);
     std::array::from_fn(|c| light[c] + share * background[c])
+}
+
+/// The pixels of a film for these settings.
+fn area_of(image: &ImageSettings) -> PixelBounds {
+    let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
+    common(whole, image.crop.unwrap_or(whole))
 }
 
 /// The intersection of two rectangles; if it is empty, the empty rectangle at the origin.

@@ -6,7 +6,7 @@
 //! those of AOVs 208.
 
 use super::pixel::{TWO_TO_64, fixed_point};
-use super::stored::{Named, Stored, channels_of, store_fields};
+use super::stored::{Stored, Sums, channels_of, store_fields};
 
 /// Number of samples of a pixel that count for the denoiser.
 pub const FEATURE_SAMPLES: u32 = 16;
@@ -82,46 +82,11 @@ store_fields!(AovSums {
     position: [u32; 3] = ["first_p.X", "first_p.Y", "first_p.Z"],
 });
 
-impl Stored for LayerSums {
-    const WORDS: usize = AovSums::WORDS + <[i64; 3]>::WORDS + <[i128; 5]>::WORDS;
-
-    fn store(&self, put: &mut impl FnMut(u32)) {
-        self.shared.store(put);
-        self.ng.store(put);
-        self.places.store(put);
-    }
-
-    fn load(take: &mut impl FnMut() -> u32) -> Self {
-        Self { shared: Stored::load(take), ng: Stored::load(take), places: Stored::load(take) }
-    }
-
-    const NUMBERS: usize = AovSums::NUMBERS + <[i64; 3]>::NUMBERS + <[i128; 5]>::NUMBERS;
-
-    #[inline(always)]
-    fn put_numbers(&self, put: &mut impl FnMut(i128)) {
-        self.shared.put_numbers(put);
-        self.ng.put_numbers(put);
-        self.places.put_numbers(put);
-    }
-
-    #[inline(always)]
-    fn take_numbers(take: &mut impl FnMut() -> i128) -> Self {
-        Self {
-            shared: Stored::take_numbers(take),
-            ng: Stored::take_numbers(take),
-            places: Stored::take_numbers(take),
-        }
-    }
-}
-
-impl Named for LayerSums {
-    fn channels(prefix: &str) -> Vec<String> {
-        let mut channels = AovSums::channels(prefix);
-        channels.extend(channels_of(prefix, &["ng.X", "ng.Y", "ng.Z"], <[i64; 3]>::WORDS));
-        channels.extend(channels_of(prefix, &["p.X", "p.Y", "p.Z", "u", "v"], <[i128; 5]>::WORDS));
-        channels
-    }
-}
+store_fields!(LayerSums {
+    shared: AovSums,
+    ng: [i64; 3] = ["ng.X", "ng.Y", "ng.Z"],
+    places: [i128; 5] = ["p.X", "p.Y", "p.Z", "u", "v"],
+});
 
 impl Default for AovSums {
     fn default() -> Self {

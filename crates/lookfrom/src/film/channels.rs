@@ -3,7 +3,7 @@
 //! Sums of fixed-point numbers, as those of light. A pixel takes 112 bytes.
 
 use super::pixel::merge_sums;
-use super::stored::{Named, Stored, channels_of, store_fields};
+use super::stored::{Stored, Sums, channels_of, store_fields};
 use super::{BRIGHTEST, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
 
 /// Sums over the samples of a pixel.

@@ -5,7 +5,7 @@
 
 use super::fixed_point;
 use super::pixel::{mean, merge_sums};
-use super::stored::{Named, Stored, channels_of, store_fields};
+use super::stored::{Stored, Sums, channels_of, store_fields};
 
 /// The sums of a layer over the samples of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

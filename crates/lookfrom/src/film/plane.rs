@@ -10,7 +10,7 @@ use std::ops::Range;
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::PixelBounds;
 
-use super::stored::Stored;
+use super::stored::{Stored, Sums};
 use super::tile::room;
 
 /// Side of a block: that of the parts of a picture which threads render.
@@ -32,7 +32,7 @@ pub(super) struct Plane<T> {
     of: PhantomData<T>,
 }
 
-impl<T: Stored + Copy + Default + PartialEq> Plane<T> {
+impl<T: Sums> Plane<T> {
     /// No sums.
     pub(super) fn none() -> Self {
         Self { width: 0, height: 0, blocks: Vec::new(), of: PhantomData }
@@ -99,8 +99,8 @@ impl<T: Stored + Copy + Default + PartialEq> Plane<T> {
     }
 
     /// Adds the sums of another plane of the same picture.
-    pub(super) fn merge(&mut self, other: &Self, add: impl Fn(&mut T, &T)) {
-        let (mut sums, mut others, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+    pub(super) fn merge(&mut self, other: &Self) {
+        let (mut sums, mut others, mut bytes) = (Vec::<T>::new(), Vec::new(), Vec::new());
         let columns = self.width.div_ceil(SIDE);
         let sizes = (self.width, self.height);
         for ((index, block), theirs) in (0..).zip(&mut self.blocks).zip(&other.blocks) {
@@ -111,7 +111,7 @@ impl<T: Stored + Copy + Default + PartialEq> Plane<T> {
             let count = side(sizes.0, index % columns) * side(sizes.1, index / columns);
             unpack(block, count, &mut sums);
             unpack(theirs, count, &mut others);
-            sums.iter_mut().zip(&others).for_each(|(sums, others)| add(sums, others));
+            sums.iter_mut().zip(&others).for_each(|(sums, others)| sums.merge(others));
             pack(&sums, &mut bytes);
             replace(block, &bytes);
         }

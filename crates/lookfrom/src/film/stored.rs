@@ -7,7 +7,7 @@
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::PixelBounds;
 
-use super::plane::{Plane, SIDE};
+use super::plane::SIDE;
 use super::{Film, FilmTile, Pixel};
 
 /// A number, or several, that are stored as words, the lowest first.
@@ -87,9 +87,12 @@ impl<T: Stored, const N: usize> Stored for [T; N] {
     }
 }
 
-/// Implements [`Stored`] for a struct, field by field, and lists the names of its numbers.
+/// Implements [`Stored`] for a struct, field by field, and [`Sums`], with the names of its numbers where its fields do not
+/// have names of their own.
 macro_rules! store_fields {
-    ($sums:ty { $($field:ident: $kind:ty = [$($name:literal),*]),* $(,)? }) => {
+    (@channels $prefix:ident, $kind:ty) => { <$kind>::channels($prefix) };
+    (@channels $prefix:ident, $kind:ty, $names:expr) => { channels_of($prefix, &$names, <$kind>::WORDS) };
+    ($sums:ty { $($field:ident: $kind:ty $(= $names:expr)?),* $(,)? }) => {
         impl Stored for $sums {
             const WORDS: usize = 0 $(+ <$kind>::WORDS)*;
 
@@ -114,21 +117,29 @@ macro_rules! store_fields {
             }
         }
 
-        impl Named for $sums {
+        impl Sums for $sums {
             fn channels(prefix: &str) -> Vec<String> {
                 let mut channels = Vec::new();
-                $(channels.extend(channels_of(prefix, &[$($name),*], <$kind>::WORDS));)*
+                $(channels.extend(store_fields!(@channels prefix, $kind $(, $names)?));)*
                 channels
+            }
+
+            fn merge(&mut self, other: &Self) {
+                // The method of the type itself.
+                <$sums>::merge(self, other);
             }
         }
     };
 }
 pub(super) use store_fields;
 
-/// Sums of a pixel whose numbers have names.
-pub(super) trait Named: Stored {
+/// Sums of a pixel.
+pub(super) trait Sums: Stored + Copy + Default + PartialEq {
     /// The names of the channels, in the order of the words.
     fn channels(prefix: &str) -> Vec<String>;
+
+    /// Adds other sums, of which the default changes nothing.
+    fn merge(&mut self, other: &Self);
 }
 
 /// The channels of numbers that have `words` words together.
@@ -143,18 +154,18 @@ store_fields!(Pixel {
     samples: u64 = ["samples"],
 });
 
-/// Evaluates an expression for each kind of sums that a film or tile may have: with all of that kind, borrowed by `&` or `&mut`,
-/// and the prefix of its channels.
+/// Evaluates an expression for each kind of sums that films or tiles may have: with all of that kind, of each of these films,
+/// borrowed by `&` or `&mut`.
 macro_rules! for_each_plane {
-    ([$($borrow:tt)+] $tile:expr, $plane:ident, $prefix:ident => $body:expr) => {{
-        { let ($plane, $prefix) = ($($borrow)+ $tile.pixels, "film"); $body }
-        { let ($plane, $prefix) = ($($borrow)+ $tile.alphas, "film.alpha"); $body }
-        { let ($plane, $prefix) = ($($borrow)+ $tile.alpha_squares, "film.alpha"); $body }
-        { let ($plane, $prefix) = ($($borrow)+ $tile.channels, "film.sensor"); $body }
-        { let ($plane, $prefix) = ($($borrow)+ $tile.layers, "film.aov"); $body }
-        { let ($plane, $prefix) = ($($borrow)+ $tile.features, "film.feature"); $body }
-        for (index, $plane) in ($($borrow)+ $tile.light_paths).into_iter().enumerate() {
-            let $prefix = &format!("film.light_path.{index}");
+    ($([$($borrow:tt)+] $film:expr => $plane:ident),+; $body:expr) => {{
+        { $(let $plane = $($borrow)+ $film.pixels;)+ $body }
+        { $(let $plane = $($borrow)+ $film.alphas;)+ $body }
+        { $(let $plane = $($borrow)+ $film.alpha_squares;)+ $body }
+        { $(let $plane = $($borrow)+ $film.channels;)+ $body }
+        { $(let $plane = $($borrow)+ $film.layers;)+ $body }
+        { $(let $plane = $($borrow)+ $film.features;)+ $body }
+        for index in 0..[$($film.light_paths.len()),+].into_iter().min().unwrap_or(0) {
+            $(let $plane = $($borrow)+ $film.light_paths[index];)+
             $body
         }
     }};
@@ -162,28 +173,30 @@ macro_rules! for_each_plane {
 
 pub(super) use for_each_plane;
 
-impl Named for i128 {
+impl Sums for i128 {
     fn channels(prefix: &str) -> Vec<String> {
         channels_of(prefix, &["sum"], Self::WORDS)
     }
+
+    fn merge(&mut self, other: &Self) {
+        *self = self.wrapping_add(*other);
+    }
 }
 
-impl Named for u128 {
+impl Sums for u128 {
     fn channels(prefix: &str) -> Vec<String> {
         channels_of(prefix, &["square"], Self::WORDS)
+    }
+
+    fn merge(&mut self, other: &Self) {
+        *self = self.saturating_add(*other);
     }
 }
 
 impl Film {
     /// The names of the channels that hold its sums exactly, each of 32-bit unsigned integers.
     pub fn stored_channels(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        for_each_plane!([&] self, plane, prefix => {
-            if !plane.is_empty() {
-                names.extend(names_of(plane, prefix));
-            }
-        });
-        names
+        self.layout.channels()
     }
 
     /// Writes a row of all channels: the bytes of `width` numbers of the first, in little endian, of the second … Pixels
@@ -194,7 +207,7 @@ impl Film {
             return;
         }
         let mut to = Row { bytes, width: self.width as usize, first: 0 };
-        for_each_plane!([&] self, plane, _prefix => {
+        for_each_plane!([&] self => plane; {
             if !plane.is_empty() {
                 to.store(x0, |each| plane.row(row, x0, x1, each));
             }
@@ -239,7 +252,7 @@ impl<'a> StoredRows<'a> {
         }
         let pixels = self.band.row(row, x0, x1);
         let mut first = 0;
-        for_each_plane!([&mut] self.band, plane, _prefix => {
+        for_each_plane!([&mut] self.band => plane; {
             load(plane.get_mut(pixels.clone()), x0 as usize, &mut first, &numbers);
         });
         Ok(())
@@ -293,8 +306,4 @@ fn load<'a, T: Stored>(
         *sums = T::load(&mut || words.next().unwrap_or(0));
     }
     *first += T::WORDS;
-}
-
-fn names_of<T: Named>(_plane: &Plane<T>, prefix: &str) -> Vec<String> {
-    T::channels(prefix)
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::core::hash::mix;
-use lookfrom_scene::settings::Background;
+use lookfrom_scene::settings::{Background, Layers};
 use proptest::prelude::*;
 
 const SIZE: u32 = 4;
@@ -309,16 +309,16 @@ fn layers_are_means_whatever_the_order() {
         position: [k * 1e3, -k, 7.0],
         uv: [k * 1e-3, 0.5],
     };
-    let mut films = [Film::with_layers(2, 1, None, Layers::Geometry).unwrap(), film_with_layers()];
+    let mut films = [film_with_layers(), film_with_layers()];
     for (film, order) in films.iter_mut().zip([[0, 1, 2], [2, 0, 1]]) {
         for k in order {
-            let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+            let mut tile = FilmTile::for_image(whole, &with_layers()).unwrap();
             tile.add(0, 0, k, [1.0; 3]);
             tile.add_first_hit(0, 0, k, Some(&of(k as f32)));
             film.add_tile(&tile).unwrap();
         }
         // One more sample, whose position is NaN: it counts as a miss.
-        let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+        let mut tile = FilmTile::for_image(whole, &with_layers()).unwrap();
         tile.add_first_hit(0, 0, 3, Some(&Aovs { position: [f32::NAN; 3], ..of(1.0) }));
         film.add_tile(&tile).unwrap();
     }
@@ -328,7 +328,7 @@ fn layers_are_means_whatever_the_order() {
     assert_eq!((mean.position, mean.ng, mean.uv), ([1e3, -1.0, 7.0], [0.0, 0.0, -1.0], [1e-3, 0.5]));
     assert_eq!((films[0].aovs(1, 0), films[0].aovs(9, 9)), (None, None));
     // A mean of normals is normalised, and 0 where they cancel.
-    let mut tile = FilmTile::with_layers(whole, Layers::Geometry).unwrap();
+    let mut tile = FilmTile::for_image(whole, &with_layers()).unwrap();
     tile.add_first_hit(0, 0, 0, Some(&Aovs { ns: [1.0, 0.0, 0.0], ..of(0.0) }));
     let other = Aovs { ng: [0.0, 0.0, 1.0], ns: [0.0, 1.0, 0.0], ..of(0.0) };
     tile.add_first_hit(0, 0, 1, Some(&other));
@@ -343,8 +343,12 @@ fn layers_are_means_whatever_the_order() {
     assert!(!plain.has_layers() && plain == FilmTile::new(whole).unwrap());
 }
 
+fn with_layers() -> ImageSettings {
+    ImageSettings { width: 2, height: 1, layers: Layers::Geometry, ..ImageSettings::default() }
+}
+
 fn film_with_layers() -> Film {
-    Film::with_layers(2, 1, None, Layers::Geometry).unwrap()
+    Film::for_image(&with_layers()).unwrap()
 }
 
 #[test]

@@ -1,34 +1,23 @@
 //! Tiles of a film, each filled by one thread.
 
-use std::fmt;
 use std::ops::Range;
 
 use lookfrom_scene::Result;
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
 use super::aov::{AovSums, LayerSums};
 use super::channels::ChannelSums;
+use super::layout::Layout;
 use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
 use super::pixel::{Pixel, fixed_point, fixed_point_square};
 use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
 
-/// The kinds of sums that a film or tile has besides light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Kinds {
-    pub(super) layers: bool,
-    pub(super) channels: bool,
-    pub(super) features: bool,
-    pub(super) light_paths: usize,
-    pub(super) alphas: bool,
-    pub(super) alpha_squares: bool,
-}
-
 /// The light of a rectangle of a film, for one thread to fill.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilmTile {
     pub(super) area: PixelBounds,
-    pub(super) kinds: Kinds,
+    pub(super) layout: Layout,
     pub(super) pixels: Vec<Pixel>,
     /// One per pixel, or none.
     pub(super) layers: Vec<LayerSums>,
@@ -53,12 +42,7 @@ impl FilmTile {
     ///
     /// An error if the area has more than [`MOST_PIXELS`] or there is no memory for it.
     pub fn new(area: PixelBounds) -> Result<Self> {
-        Self::with_layers(area, Layers::None)
-    }
-
-    /// As [`FilmTile::new`], with memory for AOVs.
-    pub fn with_layers(area: PixelBounds, layers: Layers) -> Result<Self> {
-        Self::for_image(area, &ImageSettings { layers, ..ImageSettings::default() })
+        Self::for_image(area, &ImageSettings::default())
     }
 
     /// As [`FilmTile::new`], with memory for everything that the settings need: AOVs, alpha.
@@ -66,21 +50,11 @@ impl FilmTile {
     /// # Errors
     /// `Limit` as [`FilmTile::new`].
     pub fn for_image(area: PixelBounds, image: &ImageSettings) -> Result<Self> {
-        let has_layers = image.layers == Layers::Geometry;
-        let has_alpha = image.background != Background::Environment;
-        let kinds = Kinds {
-            layers: has_layers,
-            channels: has_layers && !image.sensor.measures_xyz(),
-            features: image.denoise,
-            light_paths: image.light_paths.len(),
-            alphas: has_alpha,
-            alpha_squares: has_alpha && image.denoise,
-        };
-        Self::of_kinds(area, kinds)
+        Self::with_layout(area, Layout::of_image(image))
     }
 
-    /// A black tile with sums of these kinds.
-    pub(super) fn of_kinds(area: PixelBounds, kinds: Kinds) -> Result<Self> {
+    /// A black tile with the sums of a layout.
+    pub(super) fn with_layout(area: PixelBounds, layout: Layout) -> Result<Self> {
         let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
         if count > MOST_PIXELS {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
@@ -88,14 +62,14 @@ impl FilmTile {
         let of = |has: bool| if has { count } else { 0 };
         Ok(Self {
             area,
-            kinds,
+            layout,
             pixels: empty(count)?,
-            layers: empty(of(kinds.layers))?,
-            channels: empty(of(kinds.channels))?,
-            features: empty(of(kinds.features))?,
-            light_paths: (0..kinds.light_paths).map(|_| empty(count)).collect::<Result<_>>()?,
-            alphas: empty(of(kinds.alphas))?,
-            alpha_squares: empty(of(kinds.alpha_squares))?,
+            layers: empty(of(layout.aovs))?,
+            channels: empty(of(layout.sensor))?,
+            features: empty(of(layout.features))?,
+            light_paths: (0..layout.light_paths).map(|_| empty(count)).collect::<Result<_>>()?,
+            alphas: empty(of(layout.alpha))?,
+            alpha_squares: empty(of(layout.alpha_squares()))?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),
@@ -246,26 +220,6 @@ impl FilmTile {
         let PixelBounds { x0, y0, x1, .. } = self.area;
         let start = (y - y0) as usize * (x1 - x0) as usize;
         start + (from - x0) as usize..start + (to - x0) as usize
-    }
-}
-
-impl fmt::Display for Kinds {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kinds = [
-            ("alpha", self.alphas),
-            ("AOVs", self.layers),
-            ("variances in the sensor's channels", self.channels),
-            ("denoiser features", self.features),
-        ];
-        formatter.write_str("light")?;
-        for (kind, _) in kinds.iter().filter(|(_, has)| *has) {
-            write!(formatter, " and {kind}")?;
-        }
-        match self.light_paths {
-            0 => Ok(()),
-            1 => formatter.write_str(" and 1 layer of light paths"),
-            count => write!(formatter, " and {count} layers of light paths"),
-        }
     }
 }
 

@@ -12,13 +12,13 @@ use std::path::Path;
 
 use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::image::{ExrChannel, ExrHeader, ExrRows, write_exr};
-use lookfrom_scene::settings::{Background, ImageSettings, Layers, LightPathLayer, PixelBounds, Sensor};
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Result};
 
 use super::layers;
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
 use super::{Developed, Development, encode, finish, header};
-use crate::film::{Film, MOST_PIXELS, SampleId, SampleLedger, StoredRows, union};
+use crate::film::{Film, Layout, MOST_PIXELS, SampleId, SampleLedger, StoredRows, union};
 
 /// A film and its provenance, as a file has them.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +46,7 @@ impl FilmFile {
         let Opened { rows, places, file } = Opened::new(bytes, path)?;
         let Self { mut film, provenance } = file;
         let what = format!("a film of {} × {} pixels", film.width(), film.height());
-        let _memory = budget.reserve(Film::memory(&film.settings()), &what, &Location::file(path))?;
+        let _memory = budget.reserve(film.memory_of(film.area()), &what, &Location::file(path))?;
         let width = film.width() as usize;
         let area = film.area();
         let mut sums = StoredRows::of(&mut film, area)?;
@@ -100,8 +100,7 @@ impl FilmFile {
         let film = &self.film;
         let what = format!("the merged film of {} × {} pixels", film.width(), film.height());
         let area = other.map_or(film.area(), |other| union(film.area(), other.film.area()));
-        let bytes = Film::memory(&ImageSettings { crop: Some(area), ..film.settings() });
-        budget.reserve(bytes, &what, &Location::file(path))
+        budget.reserve(film.memory_of(area), &what, &Location::file(path))
     }
 }
 
@@ -139,14 +138,17 @@ impl<B: AsRef<[u8]>> Opened<B> {
         }
         let provenance = Provenance::of_texts(&texts)?;
 
-        // An empty film of the same kind.
+        // An empty film with the same sums.
         let [x0, y0, x1, y1] = texts.read("film.area", numbers)?;
         let area = PixelBounds { x0, y0, x1, y1 };
         if x0 >= x1 || y0 >= y1 || x1 > found.width || y1 > found.height {
             return Err(texts.damaged("film.area is not a part of the picture"));
         }
-        let mut film =
-            Film::for_image(&image_of(found, area)).map_err(|error| Error { at: at.clone(), ..error })?;
+        let is_of_sums = |(_, kind): &&(String, ExrChannel)| *kind == ExrChannel::Uint;
+        let names: Vec<&str> = found.channels.iter().filter(is_of_sums).map(|(name, _)| &**name).collect();
+        let layout = Layout::of_channels(&names);
+        let mut film = Film::with_layout([found.width, found.height], area, layout)
+            .map_err(|error| Error { at: at.clone(), ..error })?;
         let place = |name: &String| {
             let place =
                 found.channels.iter().position(|(known, kind)| known == name && *kind == ExrChannel::Uint);
@@ -231,30 +233,6 @@ pub(super) fn fill(film: &Film, rows: &encode::Rows<'_>, row: u32, bytes: &mut [
     let (of_picture, of_sums) = bytes.split_at_mut(rows.channels().len() * film.width() as usize * 4);
     rows.fill(row, of_picture);
     film.store_row(row, of_sums);
-}
-
-/// Image settings whose film has the sums that the channels of a file are of.
-fn image_of(found: &ExrHeader, area: PixelBounds) -> ImageSettings {
-    let has = |channel: &str| found.channels.iter().any(|(name, _)| name == channel);
-    let has_alpha = has("film.alpha.sum.0");
-    ImageSettings {
-        width: found.width,
-        height: found.height,
-        crop: Some(area),
-        layers: if has("film.aov.samples.0") { Layers::Geometry } else { Layers::None },
-        denoise: has("film.feature.samples.0"),
-        light_paths: (0..)
-            .take_while(|index| has(&format!("film.light_path.{index}.sum.R.0")))
-            .map(|_| LightPathLayer::default())
-            .collect(),
-        background: if has_alpha { Background::Transparent } else { Background::Environment },
-        sensor: Sensor {
-            // Any sensor that does not measure X, Y and Z.
-            white_balance: has("film.sensor.samples.0").then_some(5000.0),
-            ..Sensor::default()
-        },
-        ..ImageSettings::default()
-    }
 }
 
 /// Numbers with spaces between them.

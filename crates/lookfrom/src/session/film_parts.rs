@@ -88,7 +88,7 @@ impl<'a> FilmParts<'a> {
     pub fn are_bands(&self) -> bool {
         self.whole.as_ref().is_some_and(|FilmFile { film, provenance }| {
             !self.need_all(&provenance.development)
-                && self.most_bytes() + band_bytes(film) < Film::memory(&film.settings())
+                && self.most_bytes() + band_bytes(film) < film.memory_of(film.area())
         })
     }
 

@@ -1,0 +1,143 @@
+//! Which sums a film has besides those of light: by the settings of a picture, or by the channels of a film's file.
+
+use std::fmt;
+
+use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
+
+use super::aov::{AovSums, LayerSums};
+use super::channels::ChannelSums;
+use super::light_paths::LightPathSums;
+use super::pixel::Pixel;
+use super::stored::Sums;
+
+/// The kinds of sums that a film or tile has besides light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layout {
+    pub(super) alpha: bool,
+    pub(super) aovs: bool,
+    /// Variances in the channels of a sensor that does not measure X, Y and Z.
+    pub(super) sensor: bool,
+    /// Denoiser features.
+    pub(super) features: bool,
+    /// Number of layers of light-path expressions.
+    pub(super) light_paths: usize,
+}
+
+/// Prefixes of the names of channels.
+const ALPHA: &str = "film.alpha";
+const AOVS: &str = "film.aov";
+const SENSOR: &str = "film.sensor";
+const FEATURES: &str = "film.feature";
+
+fn light_path(index: usize) -> String {
+    format!("film.light_path.{index}")
+}
+
+impl Layout {
+    /// The layout for these settings.
+    pub(super) fn of_image(image: &ImageSettings) -> Self {
+        let aovs = image.layers == Layers::Geometry;
+        Self {
+            alpha: image.background != Background::Environment,
+            aovs,
+            sensor: aovs && !image.sensor.measures_xyz(),
+            features: image.denoise,
+            light_paths: image.light_paths.len(),
+        }
+    }
+
+    /// The layout of the film of a file that has these channels of integers, and perhaps others.
+    pub(crate) fn of_channels(names: &[&str]) -> Self {
+        let has = |prefix: &str| {
+            names.iter().any(|name| name.strip_prefix(prefix).is_some_and(|rest| rest.starts_with('.')))
+        };
+        Self {
+            alpha: has(ALPHA),
+            aovs: has(AOVS),
+            sensor: has(SENSOR),
+            features: has(FEATURES),
+            light_paths: (0..).take_while(|&index| has(&light_path(index))).count(),
+        }
+    }
+
+    /// Whether there are squares of alpha: for its variance, which the denoiser needs.
+    pub(super) fn alpha_squares(self) -> bool {
+        self.alpha && self.features
+    }
+
+    /// The names of the channels of a file, in the order of its sums.
+    pub(crate) fn channels(self) -> Vec<String> {
+        let mut names = Pixel::channels("film");
+        let mut add = |has: bool, channels: Vec<String>| names.extend(channels.into_iter().filter(|_| has));
+        add(self.alpha, i128::channels(ALPHA));
+        add(self.alpha_squares(), u128::channels(ALPHA));
+        add(self.sensor, ChannelSums::channels(SENSOR));
+        add(self.aovs, LayerSums::channels(AOVS));
+        add(self.features, AovSums::channels(FEATURES));
+        (0..self.light_paths).for_each(|index| add(true, LightPathSums::channels(&light_path(index))));
+        names
+    }
+
+    /// The bytes of a film of this layout, which has an area of a picture, with those that are needed at the same time to
+    /// develop and encode the picture: an estimate, by what was measured (docs/benchmarks/memory.md).
+    pub(super) fn memory(self, [width, height]: [u32; 2], area: PixelBounds) -> u64 {
+        /// Of a pixel of the film's area.
+        const LIGHT: u64 = 55;
+        const AOVS: u64 = 120;
+        const FEATURES: u64 = 65;
+        const DENOISER: u64 = 10;
+        const ALPHA: u64 = 20;
+        const LIGHT_PATHS: u64 = 30;
+        /// Of a pixel of the picture, in which a crop has its place.
+        const DEVELOPED: u64 = 30;
+        const OPACITY: u64 = 6;
+        let summed = LIGHT
+            + u64::from(self.aovs) * AOVS
+            + u64::from(self.features) * (FEATURES + DENOISER)
+            + u64::from(self.alpha) * ALPHA
+            + self.light_paths as u64 * LIGHT_PATHS;
+        let developed = DEVELOPED + u64::from(self.alpha) * OPACITY;
+        let PixelBounds { x0, y0, x1, y1 } = area;
+        let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
+        let picture = u64::from(width) * u64::from(height);
+        pixels.saturating_mul(summed).saturating_add(picture.saturating_mul(developed))
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = [
+            ("alpha", self.alpha),
+            ("AOVs", self.aovs),
+            ("variances in the sensor's channels", self.sensor),
+            ("denoiser features", self.features),
+        ];
+        formatter.write_str("light")?;
+        for (kind, _) in kinds.iter().filter(|(_, has)| *has) {
+            write!(formatter, " and {kind}")?;
+        }
+        match self.light_paths {
+            0 => Ok(()),
+            1 => formatter.write_str(" and 1 layer of light paths"),
+            count => write!(formatter, " and {count} layers of light paths"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_tell_the_layout() {
+        for bits in 0..48 {
+            let has = |bit: u32| bits >> bit & 1 != 0;
+            let [alpha, aovs, sensor, features] = [0, 1, 2, 3].map(has);
+            let layout = Layout { alpha, aovs, sensor, features, light_paths: bits as usize / 16 };
+            let channels = layout.channels();
+            let mut names: Vec<&str> = channels.iter().map(String::as_str).collect();
+            names.sort_unstable();
+            assert_eq!(Layout::of_channels(&names), layout);
+        }
+    }
+}
