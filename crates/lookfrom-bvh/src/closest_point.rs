@@ -43,9 +43,9 @@ pub struct ClosestPoint {
     pub position: [f32; 3],
     /// Its distance from the query point, not negative.
     pub distance: f32,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0.
+    /// First coordinate. Of a triangle: β, the weight of its second corner. Of a sphere: 0.
     pub u: f32,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0.
+    /// Second coordinate. Of a triangle: γ, the weight of its third corner. Of a sphere: 0.
     pub v: f32,
     /// Number of the primitive in its geometry.
     pub primitive: u32,

@@ -30,13 +30,13 @@ pub(crate) struct Beams<S: Simd> {
 pub(crate) struct CommonOriginBlock {
     /// The triangles whose signs are clear. The other fields are right for these only.
     pub(crate) clear: u32,
-    /// Those of them that show their front faces.
+    /// Triangles among them that show their front faces.
     pub(crate) front: u32,
     /// `sides[side][axis]`: vectors whose dot products with a direction are the edge functions.
     sides: [[Row; 3]; 3],
     /// Their magnitudes.
     magnitudes: [[Row; 3]; 3],
-    /// Likewise the determinant.
+    /// Vectors whose dot products with a direction are the determinants.
     normal: [Row; 3],
     /// Lower and upper bound of t times the determinant.
     near: Row,

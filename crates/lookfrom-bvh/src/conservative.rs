@@ -293,7 +293,7 @@ pub(crate) struct TriangleEdges<S: Simd, F: Numbers<S> = Lanes<S>> {
 }
 
 impl<S: Simd> TriangleEdges<S> {
-    /// The same triangles in the other half of vectors twice as wide, too.
+    /// These triangles in both halves of vectors twice as wide.
     #[inline(always)]
     pub(crate) fn twice(&self, simd: S) -> TriangleEdges<S, f32x16<S>> {
         let Self { corner, edges: [e, f], normal, extent, level } = *self;

@@ -47,7 +47,7 @@ impl Ray {
         Self { origin, t_min: 0.0, direction, t_max: f32::INFINITY }
     }
 
-    /// The same ray with another `t_max`.
+    /// This ray with another `t_max`.
     ///
     /// ```
     /// use lookfrom_bvh::Ray;
@@ -77,9 +77,9 @@ impl Ray {
 pub struct Hit {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f32,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own.
+    /// First coordinate. Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own.
     pub u: f32,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own.
+    /// Second coordinate. Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own.
     pub v: f32,
     /// Number of the primitive in its geometry.
     pub primitive: u32,

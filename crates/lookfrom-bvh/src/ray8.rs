@@ -31,7 +31,7 @@ pub(crate) struct Ray8<S: Simd> {
     pub(crate) range: [f32x8<S>; 2],
     /// `t_max` or the nearest hit so far, with a margin; −∞ for a ray that is done.
     pub(crate) end: f32x8<S>,
-    /// What is surely nearer than this is surely nearer than all hits so far.
+    /// A distance before which everything is surely nearer than all hits so far.
     pub(crate) limit: f32x8<S>,
     /// [`ERROR`] times the largest component of each direction.
     error: f32x8<S>,
@@ -160,7 +160,7 @@ impl<S: Simd> Ray8<S> {
         self.limit[lane] = smaller(end, self.limit[lane]);
     }
 
-    /// The same for some rays.
+    /// Ends some rays at hits, as [`Self::shorten`].
     #[inline(always)]
     pub(crate) fn shorten_some(&mut self, rays: mask32x8<S>, t: f32x8<S>) {
         let end = with_room(t);
@@ -202,7 +202,7 @@ impl<S: Simd> Slabs8<S> {
         Self { axes: [slabs(ox, dx), slabs(oy, dy), slabs(oz, dz)] }
     }
 
-    /// Those of all groups of a packet.
+    /// All groups of a packet.
     #[inline(always)]
     pub(crate) fn of_groups(simd: S, [a, b, c, d, e, f, g, h]: &[Ray8<S>; GROUPS]) -> [Self; GROUPS] {
         [

@@ -66,10 +66,10 @@ impl From<Ray> for RayF64 {
 pub struct HitF64 {
     /// The ray's parameter: the hit is at `origin + t · direction`. Infinite for a miss.
     pub t: f64,
-    /// Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own,
+    /// First coordinate. Of a triangle: β, the weight of its second corner. Of a sphere: 0. Of a procedural shape: its own,
     /// in f32.
     pub u: f64,
-    /// Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own,
+    /// Second coordinate. Of a triangle: γ, the weight of its third corner. Of a sphere: 0. Of a procedural shape: its own,
     /// in f32.
     pub v: f64,
     /// Number of the primitive in its geometry.

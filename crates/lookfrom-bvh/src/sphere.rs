@@ -105,8 +105,7 @@ pub(crate) fn lines<S: Simd>(origin: [f32x8<S>; 3], direction: [f32x8<S>; 3]) ->
     )
 }
 
-/// The same for eight lines, of which those of a mask count: those that hit the sphere, and both hits. `None` where there
-/// are none.
+/// Lines among the rays of a mask that hit the sphere, and both hits of each. `None` where there are none.
 #[inline(always)]
 pub(crate) fn intersect_lanes<S: Simd>(
     simd: S,

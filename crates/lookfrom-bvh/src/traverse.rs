@@ -273,7 +273,7 @@ pub(crate) fn intersect_exact<C: Collector, V, O>(
         .is_some_and(|crossing| report(crossing, block, lane, state))
 }
 
-/// The same for a sure hit.
+/// Reports a sure hit, intersected exactly.
 ///
 /// Not inlined: compiled for AVX-512, its scattered loads become vectors of 512 bits, which slow down the
 /// surrounding code.

@@ -70,7 +70,7 @@ pub(crate) fn intersect_sure(ray: &ExactRay, corners: &[[f32; 3]; 3]) -> Crossin
     meet_exactly(ray, corners).round()
 }
 
-/// The same for eight rays and their triangles: t, and the weights of the second and third corners.
+/// Crossings of eight rays with their triangles, which they surely hit: t, and the weights of the second and third corners.
 #[inline(always)]
 pub(crate) fn intersect_sure_lanes<S: Simd>(
     origin: [f32x8<S>; 3],

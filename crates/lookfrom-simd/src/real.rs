@@ -23,7 +23,7 @@ pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + No
         !(!self).any()
     }
 
-    /// The same answer in each lane of a mask as wide as this one.
+    /// A mask as wide as this one with `value` in every lane.
     #[inline(always)]
     fn like(self, value: bool) -> Self {
         if value { self | !self } else { self & !self }
@@ -51,7 +51,7 @@ pub trait Float:
     /// The result of comparisons.
     type Mask: Mask;
 
-    /// The same number in each lane of a value as wide as this one.
+    /// `value` in every lane, as many as this one has.
     fn like(self, value: Self::Scalar) -> Self;
     /// Square root, correctly rounded.
     fn sqrt(self) -> Self;
@@ -104,7 +104,7 @@ pub trait Bits:
     /// One of them.
     type Scalar: Copy;
 
-    /// The same number in each lane of a value as wide as this one.
+    /// `value` in every lane, as many as this one has.
     fn like(self, value: Self::Scalar) -> Self;
     /// The sum, less 2ⁿ if it is that large.
     fn wrapping_add(self, other: Self) -> Self;
@@ -135,7 +135,7 @@ pub trait Real:
     fn from_integer(integer: Self::Bits) -> Self;
     /// Numbers of 0 … 2³¹ without their fractions; any integers for others.
     fn to_integer(self) -> Self::Bits;
-    /// What a table has at each index.
+    /// The entries of a table at each index.
     fn lookup(index: Self::Bits, at: impl Fn(usize) -> f32) -> Self;
     /// A function of each number, one by one.
     fn map(self, f: impl Fn(f32) -> f32) -> Self;
@@ -143,11 +143,11 @@ pub trait Real:
     fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self;
     /// `yes` where the mask is set, `no` elsewhere.
     fn select_bits(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits;
-    /// The same integers with 64 bits.
+    /// Integers with 64 bits of equal value.
     fn extend(bits: Self::Bits) -> Self::Bits64;
     /// The lower 32 bits.
     fn low_half(bits: Self::Bits64) -> Self::Bits;
-    /// The same numbers in double precision.
+    /// Numbers of double precision of equal value.
     fn widen(self) -> Self::Double;
     /// Rounded to single precision.
     fn narrow(wide: Self::Double) -> Self;

@@ -99,7 +99,7 @@ impl<F: Float> Vector<F> {
 }
 
 impl<F: Float<Scalar: From<f32>>> Vector<F> {
-    /// Of unit length. A vector without a length, or too short to tell, becomes NaN.
+    /// The vector of unit length in this direction. A vector without a length, or too short to tell, becomes NaN.
     #[inline(always)]
     pub fn normalize(self) -> Self {
         self * self.length_recip()
@@ -111,7 +111,7 @@ impl<F: Float<Scalar: From<f32>>> Vector<F> {
         length.like(F::Scalar::from(1.0)) / length
     }
 
-    /// Of unit length, and whether there is such a vector.
+    /// The vector of unit length in this direction, and whether there is one.
     #[inline(always)]
     pub fn try_normalize(self) -> (Self, F::Mask) {
         let recip = self.length_recip();

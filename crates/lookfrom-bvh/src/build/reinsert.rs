@@ -37,7 +37,7 @@ struct Spot {
     parent: u32,
     /// [`NONE`] for a leaf.
     left: u32,
-    /// Of a leaf: the index of the reference.
+    /// Index of the reference, of a leaf.
     right: u32,
 }
 

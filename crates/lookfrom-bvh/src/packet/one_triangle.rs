@@ -49,7 +49,7 @@ impl<S: Simd> Tested<S> {
         }
     }
 
-    /// Those of two groups side by side.
+    /// The results of two groups that were tested side by side.
     #[inline(always)]
     fn halves(simd: S, tested: &ConservativeTest<S, f32x16<S>>) -> [Self; 2] {
         let crossed = tested.surely_crossed.to_bitmask() as u32;
@@ -117,7 +117,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         }
     }
 
-    /// The same with two groups at a time.
+    /// The test with two groups at a time.
     #[inline(always)]
     fn test_pairs(
         &mut self,
@@ -211,13 +211,13 @@ mod tests {
     use crate::testing::Random;
     use lookfrom_simd::Kernel;
 
-    /// What is known of a group: the rays of masks, and the bounds of sure hits.
+    /// The result for a group: the rays of masks, and the bounds of sure hits.
     type Known = ([u32; 5], [[f32; LANES]; 2]);
 
     struct TwoGroups<'a>(&'a TriangleBlock, &'a [Ray]);
 
     impl Kernel for TwoGroups<'_> {
-        /// Of two groups, one by one and side by side.
+        /// Results of two groups, one by one and side by side.
         type Output = [[Known; 2]; 2];
 
         #[inline(always)]

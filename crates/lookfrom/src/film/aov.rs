@@ -140,7 +140,7 @@ impl AovSums {
         met.into_iter().for_each(|aovs| self.add_hit(sample, aovs));
     }
 
-    /// The same for a sample that has been counted.
+    /// Adds the hit of a sample that has been counted.
     pub(super) fn add_hit(&mut self, sample: u32, aovs: &Aovs) {
         if !aovs.is_finite() {
             return;
@@ -194,7 +194,7 @@ impl LayerSums {
         Self { shared, ng, places }
     }
 
-    /// Those that the denoiser needs, too.
+    /// The sums that the denoiser needs, too.
     pub(super) fn shared(&self) -> &AovSums {
         &self.shared
     }

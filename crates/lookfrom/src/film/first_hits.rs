@@ -16,7 +16,7 @@ use crate::core::lanes::{Columns, LANES, load, row, set_row};
 /// Positions and texture coordinates from this magnitude on are multiples of 2⁻⁴⁷: 2⁻²⁴.
 const LEAST: f32 = 1.0 / 16_777_216.0;
 
-/// Those below this are less than 2⁵¹ multiples of 2⁻²³: 2²⁸.
+/// Positions and texture coordinates below this are less than 2⁵¹ multiples of 2⁻²³: 2²⁸.
 const BOUND: f32 = 268_435_456.0;
 
 /// Number of multiples of 2⁻²³ in 1.

@@ -191,7 +191,7 @@ impl FilmTile {
         self.record_part(self.area, samples)
     }
 
-    /// The same for the pixels of a part.
+    /// Records that it has these samples of the pixels of a part.
     ///
     /// # Errors
     /// As [`FilmTile::record`].
