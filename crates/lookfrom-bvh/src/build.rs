@@ -333,7 +333,8 @@ impl Builder {
 
     /// Builds the tree.
     ///
-    /// Primitives that no ray can hit are left out and counted in [`Statistics::left_out`]: coordinates that are
+    /// Primitives that no ray can hit are left out and counted in
+    /// [`Statistics::left_out`](crate::Statistics::left_out): coordinates that are
     /// NaN, infinite or beyond 2¹⁰⁰, triangles without area, radii that are not positive, empty boxes, empty
     /// instances.
     ///

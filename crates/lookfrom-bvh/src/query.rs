@@ -12,7 +12,7 @@ use crate::{batch, single};
 /// A query of a [`Bvh`], in builder style; created by [`Bvh::query`].
 ///
 /// A query initially sees everything. Setters such as [`Self::mask`] narrow it and return it; methods such as
-/// [`Self::closest_hit`] trace rays, either [`Ray`](crate::Ray)s or [`RayF64`](crate::RayF64)s. A query is small
+/// [`Self::closest_hit`] trace rays, either [`Ray`]s or [`RayF64`](crate::RayF64)s. A query is small
 /// and `Copy` (except with an observer), so it can be created once and used often.
 ///
 /// ```
@@ -227,7 +227,7 @@ impl<O: Observer> Query<'_, O> {
     ///
     /// For a [`RayF64`](crate::RayF64) `t` is right to about 10⁻¹⁵ of sizes and distances, `u` and `v` to about
     /// 10⁻¹⁰ (less where a triangle is seen nearly edge-on); procedural shapes are queried in f32. It takes several
-    /// times as long as a [`Ray`](crate::Ray).
+    /// times as long as a [`Ray`].
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, RayF64, Triangles};
@@ -278,7 +278,7 @@ impl<O: Observer> Query<'_, O> {
         R::all_hits(&self.settings, ray, hits, &mut self.observer);
     }
 
-    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`](crate::Ray)s
+    /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`]s
     /// are traced in packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
     ///
     /// ```
