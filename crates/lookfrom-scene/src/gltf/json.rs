@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer};
 
 mod material;
 mod parse;
+mod pointer;
 
 pub(crate) use material::{
     Iridescence, Material, MaterialExtensions, SpecularGlossiness, TextureInfo, Volume,
@@ -51,7 +52,8 @@ impl<'de> Deserialize<'de> for Whole {
                 }
             }
         }
-        deserializer.deserialize_any(Number)
+        // By `deserialize_any`, a wrong array would be told at its first value.
+        deserializer.deserialize_u64(Number)
     }
 }
 

@@ -1,8 +1,10 @@
 //! From the text of a glTF file to its structures, or to what is wrong with it and where.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::Root;
+use super::pointer::pointer_at;
 
 /// The error of a text that is not glTF.
 pub(in crate::gltf) struct Wrong {
@@ -18,21 +20,27 @@ pub(in crate::gltf) struct Wrong {
 
 /// Parses the text.
 pub(in crate::gltf) fn parse(text: &str) -> Result<Root, Wrong> {
-    // First without the path to the error: tracking it costs time and is only needed for a message.
     serde_json::from_str(text).map_err(|error| {
-        let mut deserializer = serde_json::Deserializer::from_str(text);
-        let path = serde_path_to_error::deserialize::<_, Root>(&mut deserializer).err();
         let message = error.to_string();
         // The message ends with line and column, which are reported separately.
         let message = message.split(" at line ").next().unwrap_or_default();
         // An array that is too long is a syntax error for serde_json, since it should have ended; so is a number too large
         // for f64. Both are valid JSON.
         let is_out_of_range = message == "number out of range";
-        let is_too_long = !error.is_data()
-            && !is_out_of_range
-            && serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
+        let is_too_long =
+            message == "trailing characters" && serde_json::from_str::<IgnoredAny>(text).is_ok();
         let is_json = error.is_data() || is_too_long || is_out_of_range;
-        let pointer = path.filter(|_| is_json).map(|error| pointer(error.path()));
+        let pointer = is_json.then(|| {
+            let position = position(text, &error);
+            if is_too_long {
+                // The position is one byte into the first value too many.
+                let mut pointer = pointer_at(text, position - 1);
+                pointer.truncate(pointer.rfind('/').unwrap_or(0));
+                pointer
+            } else {
+                pointer_at(text, position)
+            }
+        });
         Wrong {
             message: if is_too_long {
                 "the array has too many values".to_owned()
@@ -46,6 +54,12 @@ pub(in crate::gltf) fn parse(text: &str) -> Result<Root, Wrong> {
             column: u32::try_from(error.column()).unwrap_or(0),
         }
     })
+}
+
+/// The byte of a text to which the line and column of an error lead.
+fn position(text: &str, error: &serde_json::Error) -> usize {
+    let lines_before = text.split_inclusive('\n').take(error.line().saturating_sub(1));
+    lines_before.map(str::len).sum::<usize>() + error.column()
 }
 
 /// The version in `asset` of a JSON text that does not parse as glTF 2.0; `None` if there is none.
@@ -80,19 +94,4 @@ fn in_words_of_json(message: &str) -> String {
         None => message.to_owned(),
     };
     words.into_iter().fold(message, |message, (word, meant)| message.replace(word, meant))
-}
-
-fn pointer(path: &serde_path_to_error::Path) -> String {
-    use serde_path_to_error::Segment;
-    let mut pointer = String::new();
-    for segment in path {
-        match segment {
-            Segment::Seq { index } => pointer.push_str(&format!("/{index}")),
-            Segment::Map { key } => {
-                pointer.push_str(&format!("/{}", key.replace('~', "~0").replace('/', "~1")));
-            }
-            Segment::Enum { .. } | Segment::Unknown => {}
-        }
-    }
-    pointer
 }
