@@ -43,6 +43,7 @@ pub mod suggest;
 mod text;
 pub mod texture;
 pub mod toml;
+mod validate;
 pub mod variables;
 pub mod warning;
 

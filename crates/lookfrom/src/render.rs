@@ -191,8 +191,9 @@ impl Renderer {
     /// rendering are added to `warnings`.
     ///
     /// # Errors
-    /// As [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
+    /// As [`Scene::validate`], [`View::of_scene`], [`World::compile`] and [`Renderer::new`].
     pub fn of_scene(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+        scene.validate()?;
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene, scene.bounds());
         let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;

@@ -200,8 +200,9 @@ impl Session {
     /// A session of a scene that was made or read elsewhere.
     ///
     /// # Errors
-    /// As [`Session::open`].
+    /// As [`Session::open`] and [`Scene::validate`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
+        scene.validate()?;
         let identity = options.film.then(|| Identity::of_scene(&scene, options));
         let memory = options.budget.reserve(scene.bytes(), "the scene", &Location::default())?;
         Self::prepare(

@@ -33,4 +33,5 @@ mod sides;
 mod smooth_meshes;
 mod support;
 mod surfaces;
+mod valid;
 mod warnings;

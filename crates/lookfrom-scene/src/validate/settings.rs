@@ -1,0 +1,61 @@
+//! Validation of the camera's medium and of the settings of picture and integrator. The camera itself is validated when its
+//! matrices are computed.
+
+use super::Part;
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::scene::Scene;
+use crate::settings::{Background, Filter, ImageSettings, MOST_PIXELS, RenderSettings};
+
+/// Maximum of a filter's radius in pixels.
+const WIDEST: f32 = 16.0;
+
+pub(super) fn check(scene: &Scene) -> Result<()> {
+    let nowhere = Location::default();
+    if let Some(camera) = &scene.camera {
+        Part::new(scene, &camera.at, "the camera").medium(camera.medium)?;
+    }
+    check_image(&Part::new(scene, &nowhere, "the picture"), &scene.image)?;
+    check_render(&Part::new(scene, &nowhere, "the integrator"), &scene.render)
+}
+
+fn check_image(part: &Part<'_>, image: &ImageSettings) -> Result<()> {
+    let (width, height) = (u64::from(image.width), u64::from(image.height));
+    if width * height > MOST_PIXELS {
+        let message = format!("{width}×{height} pixels are more than the limit of {MOST_PIXELS}");
+        return Err(Error::new(ErrorKind::Limit, part.at, message));
+    }
+    part.number("exposure", image.exposure.into(), "stops from -64 to 64", image.exposure.abs() <= 64.0)?;
+    check_filter(part, image.filter)?;
+    if let Background::Color(rgb) = image.background {
+        part.finite("background", &rgb.map(f64::from))?;
+    }
+    let sensor = &image.sensor;
+    part.positive("imaging_ratio", sensor.imaging_ratio.into())?;
+    if let Some(kelvin) = sensor.white_balance {
+        part.positive("white_balance", kelvin.into())?;
+    }
+    let most = sensor.max_component;
+    part.number("max_component", most.into(), "a number greater than 0", most > 0.0)
+}
+
+fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {
+    let (radius, parameters) = match filter {
+        Filter::Box { radius } | Filter::Triangle { radius } | Filter::BlackmanHarris { radius } => {
+            (radius, [0.0; 2])
+        }
+        Filter::Gaussian { radius, sigma } => {
+            part.positive("sigma of the filter", sigma.into())?;
+            (radius, [sigma, 0.0])
+        }
+        Filter::Mitchell { radius, b, c } => (radius, [b, c]),
+    };
+    part.finite("filter", &parameters.map(f64::from))?;
+    let is_valid = radius > 0.0 && radius <= WIDEST;
+    part.number("radius of the filter", radius.into(), "pixels, more than 0 and at most 16", is_valid)
+}
+
+fn check_render(part: &Part<'_>, render: &RenderSettings) -> Result<()> {
+    part.at_least_zero("min_contribution", render.min_contribution.into())?;
+    let distance = render.occlusion_distance;
+    part.number("occlusion_distance", distance.into(), "a number greater than 0", distance > 0.0)
+}
