@@ -47,7 +47,15 @@ use crate::studio;
 /// `Io` and `Limit` if the file cannot be read, `Syntax` if it is not glTF, `Unsupported` if it is not version 2,
 /// `Invalid` if its content is invalid.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
-    let content = context.read(path)?;
+    from_bytes(context.read(path)?, path, context)
+}
+
+/// As [`read`], of the content of a file; messages and relative file names use `path`.
+pub(crate) fn from_bytes(
+    content: Reserved<Vec<u8>>,
+    path: &Path,
+    context: &mut LoadContext<'_>,
+) -> Result<Scene> {
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { image, render, ..Scene::default() };
     let model = document_model(content, path, context, &mut scene)?;
@@ -55,18 +63,22 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Reads a glTF file as a part of another scene: its meshes, materials and images are added to the scene; the rest is
+/// The content of a glTF file as a part of another scene: its meshes, materials and images are added to the scene; the rest is
 /// returned, at the places that the file gives it.
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<load::Model> {
-    let content = context.read(path)?;
+pub(crate) fn model(
+    content: Reserved<Vec<u8>>,
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<load::Model> {
     Ok(document_model(content, path, context, scene)?.into_parts())
 }
 
 /// Whether a file's content is that of a glTF file: the signature of a GLB container, or JSON with an `asset`.
-pub fn is_gltf(content: &[u8]) -> bool {
+pub(crate) fn is_gltf(content: &[u8]) -> bool {
     let text = content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content).trim_ascii_start();
     // `asset` may come later in the file; then only the file's extension identifies it.
     let beginning = &text[..text.len().min(1 << 16)];

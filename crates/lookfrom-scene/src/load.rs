@@ -1,15 +1,17 @@
-//! Selection of the reader of a file, by its extension, or else by its first bytes.
+//! Selection of the reader of a file by its format.
 
 use std::path::Path;
 
 use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{CameraChoice, LoadContext};
+use crate::format::Format;
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
 use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Mesh, Part, Shape};
-use crate::{duplicates, gltf, model, packed, pbrt, studio, subdivision, toml};
+use crate::source::Source;
+use crate::{duplicates, gltf, model, pbrt, studio, subdivision, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -44,48 +46,48 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
 }
 
 fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
-    if is_toml(path) {
-        return toml::read(path, context);
+    let source = Source::open(path, context)?;
+    match source.format {
+        Some(Format::Toml) => toml::from_bytes(&source.bytes, path, context),
+        Some(Format::Pbrt) => pbrt::from_bytes(source.bytes, path, context),
+        Some(Format::Gltf) => {
+            let scene = gltf::from_bytes(source.bytes, path, context)?;
+            let mut scene = Scene { source_format: SourceFormat::Gltf, ..scene };
+            subdivide(&mut scene.meshes, path, context)?;
+            Ok(scene)
+        }
+        Some(Format::Obj | Format::Ply | Format::Stl) => scene_of_model(&source, context),
+        None if is_stream(path, context) => toml::from_bytes(&source.bytes, path, context),
+        None => Err(unknown_format(path)),
     }
-    if is_pbrt(path, context) {
-        return pbrt::read(path, context);
-    }
-    if is_gltf(path, context) {
-        let mut scene = Scene { source_format: SourceFormat::Gltf, ..gltf::read(path, context)? };
-        subdivide(&mut scene.meshes, path, context)?;
-        return Ok(scene);
-    }
+}
+
+/// The scene of a model without a camera and lights, which the studio completes.
+fn scene_of_model(source: &Source<'_>, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let file = Location::file(source.path);
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
-    let parts = match model(path, context, &mut scene) {
-        Ok(model) => {
-            let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
-            let is_odd = model.z_is_up && model::stand::stands_on_y(points);
-            scene.z_is_up = model.z_is_up && !is_odd;
-            if is_odd {
-                let message = "y is up: with z up, as is the custom of this format, it would fall over; --up z shows it so";
-                context.notice(&Location::file(path), message);
-            }
-            model.parts
-        }
-        Err(error) if error.kind == ErrorKind::Unsupported && is_stream(path, context) => {
-            return toml::read(path, context);
-        }
-        Err(error) => return Err(error),
-    };
+    let parts = model::of_source(source, context, &mut scene)?;
+    let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
+    // Programs for construction and for printers put parts onto the plane of x and y.
+    let is_custom = source.format == Some(Format::Stl);
+    let is_odd = is_custom && model::stand::stands_on_y(points);
+    scene.z_is_up = is_custom && !is_odd;
+    if is_odd {
+        let message =
+            "y is up: with z up, as is the custom of this format, it would fall over; --up z shows it so";
+        context.notice(&file, message);
+    }
     let default = MaterialId(scene.materials.len() as u32);
     let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };
     scene.materials.push(Material::new("default", Location::default(), clay));
-    scene.shapes = shapes(parts, &Location::file(path), default);
+    scene.shapes = shapes(parts, &file, default);
     Ok(scene)
 }
 
 /// Whether a file has the name of a scene or of a model, as [`scene`] reads them.
 pub fn has_known_name(path: &Path) -> bool {
-    is_toml(path)
-        || extension(&packed::unpacked_name(path)) == "pbrt"
-        || GLTF.contains(&&*extension(path))
-        || model::is_model(path)
+    Format::of_name(path).is_some()
 }
 
 /// Whether a path is a pipe, whose name says nothing: `-`, or one of the system's without an extension.
@@ -95,35 +97,15 @@ fn is_stream(path: &Path, context: &LoadContext<'_>) -> bool {
 
 /// Whether a file has the name of a scene in our own format.
 pub fn is_toml(path: &Path) -> bool {
-    extension(path) == "toml"
-}
-
-/// Whether a file is a scene of pbrt, by its name (`.pbrt`, `.pbrt.gz`), or by its content if the name is inconclusive.
-fn is_pbrt(path: &Path, context: &LoadContext<'_>) -> bool {
-    let is_other = model::is_model(path) || GLTF.contains(&&*extension(path));
-    extension(&packed::unpacked_name(path)) == "pbrt"
-        || (!is_other && packed::read(path, context).is_ok_and(|bytes| pbrt::is_pbrt(&bytes)))
-}
-
-/// The extensions of glTF files.
-const GLTF: &[&str] = &["gltf", "glb"];
-
-/// Whether a file is a glTF file, by its name, or by its content if the name is inconclusive.
-pub(crate) fn is_gltf(path: &Path, context: &LoadContext<'_>) -> bool {
-    GLTF.contains(&&*extension(path))
-        || (!model::is_model(path) && context.read(path).is_ok_and(|bytes| gltf::is_gltf(&bytes)))
-}
-
-fn extension(path: &Path) -> String {
-    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+    Format::of_name(path) == Some(Format::Toml)
 }
 
 /// The parts of a merged file that are not added to the scene directly.
 #[derive(Clone, Default)]
 pub(crate) struct Model {
     pub(crate) parts: Vec<Part>,
-    /// Whether z is up by the custom of the format, not y.
-    pub(crate) z_is_up: bool,
+    /// Whether the file is a glTF file.
+    pub(crate) is_gltf: bool,
     /// The selected camera of the file.
     pub(crate) camera: Option<Camera>,
     pub(crate) lights: Vec<Light>,
@@ -131,26 +113,33 @@ pub(crate) struct Model {
 
 /// The parts of a model file; its materials are added to the scene.
 pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
-    let unsupported = |message: String| {
-        Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-            .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
-    };
-    if extension(&packed::unpacked_name(path)) == "pbrt" {
-        return Err(unsupported("a scene of pbrt cannot be a part of another scene".to_owned()));
+    let of_pbrt = || unsupported(path, "a scene of pbrt cannot be a part of another scene");
+    if Format::of_name(path) == Some(Format::Pbrt) {
+        return Err(of_pbrt());
     }
-    let first = scene.meshes.len();
-    if is_gltf(path, context) {
-        let model = gltf::model(path, context, scene)?;
-        subdivide(&mut scene.meshes[first..], path, context)?;
-        return Ok(model);
+    let source = Source::open(path, context)?;
+    match source.format {
+        Some(Format::Gltf) => {
+            let first = scene.meshes.len();
+            let model = gltf::model(source.bytes, path, context, scene)?;
+            subdivide(&mut scene.meshes[first..], path, context)?;
+            Ok(model)
+        }
+        Some(Format::Obj | Format::Ply | Format::Stl) => {
+            Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
+        }
+        Some(Format::Pbrt) => Err(of_pbrt()),
+        Some(Format::Toml) | None => Err(unknown_format(path)),
     }
-    let (parts, z_is_up) = model::read_with_up(path, context, scene).map_err(|error| match error.kind {
-        ErrorKind::Unsupported if !model::is_model(path) => unsupported(
-            "the format is not known, neither by the name nor by the content of the file".to_owned(),
-        ),
-        _ => error,
-    })?;
-    Ok(Model { parts, z_is_up, ..Model::default() })
+}
+
+fn unknown_format(path: &Path) -> Error {
+    unsupported(path, "the format is not known, neither by the name nor by the content of the file")
+}
+
+fn unsupported(path: &Path, message: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, &Location::file(path), message)
+        .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
 }
 
 /// Subdivides meshes as [`LoadContext::import`] says.

@@ -38,10 +38,12 @@ use self::medium::NamedMedium;
 use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
+use crate::budget::Reserved;
 use crate::chain;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
+use crate::packed;
 use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
 
@@ -53,6 +55,15 @@ use crate::settings::ColorMode;
 /// for excessive sizes and nesting, and the errors of the files that are named. All missing files are reported at once, as
 /// [`Error::more`].
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    from_bytes(packed::read(path, context)?, path, context)
+}
+
+/// As [`read`], of the content of the main file.
+pub(crate) fn from_bytes(
+    bytes: Reserved<Vec<u8>>,
+    path: &Path,
+    context: &mut LoadContext<'_>,
+) -> Result<Scene> {
     let mut scene = Scene { vertex_normals: VertexNormals::AsGiven, ..Scene::default() };
     scene.render.color = ColorMode::Spectral;
     let gray = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
@@ -83,7 +94,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         missing: Missing::default(),
         film_diagonal: 35.0,
     };
-    let result = reader.file(path).and_then(|()| reader.finish(path));
+    let result = reader.text(path, bytes).and_then(|()| reader.finish(path));
     if let Some(error) = reader.missing.and(result) {
         return Err(error);
     }

@@ -84,15 +84,20 @@ pub fn from_bytes(
     Ok(parts)
 }
 
+/// Whether a content is that of an STL file: text that begins as one, or of the length of a binary one.
+pub(crate) fn is_stl(bytes: &[u8]) -> bool {
+    is_binary_by_length(bytes) || is_text(bytes)
+}
+
 /// Whether the length matches a binary file with the number of triangles in its header.
-pub(crate) fn is_binary_by_length(bytes: &[u8]) -> bool {
+fn is_binary_by_length(bytes: &[u8]) -> bool {
     claimed_triangles(bytes)
         .is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64)
 }
 
 /// Whether the file has the text format. Headers of binary files may start with `solid`, too; but the numbers
 /// behind them have zeros among their bytes, which no text has.
-pub(crate) fn is_text(bytes: &[u8]) -> bool {
+fn is_text(bytes: &[u8]) -> bool {
     let text = text::utf8(&bytes[..bytes.len().min(1 << 12)]).to_ascii_lowercase();
     let is_word = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
     !is_binary_by_length(bytes)

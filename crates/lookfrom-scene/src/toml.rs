@@ -79,6 +79,12 @@ pub use self::vocabulary::vocabulary;
 /// With line and column, and all errors that one run can find: `Syntax` for malformed TOML, `Invalid` for an unknown or
 /// invalid key, type, number or name, `Limit` for excessive sizes and nesting, and the errors of the files that it names.
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let bytes = context.read(path)?;
+    from_bytes(&bytes, path, context)
+}
+
+/// As [`read`], of the content of the main file.
+pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let given = variables::given(context);
     let mut reader = Reader {
         variables: Variables::new(&given, context),
@@ -106,7 +112,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         knows_all_names: true,
         errors: Vec::new(),
     };
-    reader.file(path)?;
+    reader.scene_text(path, bytes)?;
     reader.errors.extend(reader.variables.errors(reader.knows_all_names));
     if let Some(error) = Error::all(reader.errors) {
         return Err(error);
@@ -169,13 +175,12 @@ struct Reader<'s, 'f> {
 }
 
 impl Reader<'_, '_> {
-    /// Reads a file; errors in its tables are recorded.
-    fn file(&mut self, path: &Path) -> Result<()> {
+    /// Reads the text of a file; errors in its tables are recorded.
+    fn scene_text(&mut self, path: &Path, bytes: &[u8]) -> Result<()> {
         let whole = Location::file(path);
-        let bytes = self.context.read(path)?;
-        let memory = bytes.len() as u64 + document::memory(&bytes);
+        let memory = bytes.len() as u64 + document::memory(bytes);
         let _parsing = self.context.budget.reserve(memory, "the parsed scene", &whole)?;
-        let text = str::from_utf8(&bytes).map(str::to_owned).map_err(|error| {
+        let text = str::from_utf8(bytes).map(str::to_owned).map_err(|error| {
             let valid = error.valid_up_to();
             let line = bytes[..valid].iter().filter(|&&byte| byte == b'\n').count() + 1;
             Error::syntax(&whole.at(u32::try_from(line).unwrap_or(0), 0), "the text is not UTF-8")

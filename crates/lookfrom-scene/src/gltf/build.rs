@@ -63,7 +63,7 @@ impl Model {
             shapes.iter().map(|shape| part(shape, &instance.world_from_object))
         });
         let parts = self.shapes.iter().map(|shape| part(shape, &DMat4::IDENTITY)).chain(repeated).collect();
-        load::Model { parts, z_is_up: false, camera: self.eye.map(|eye| eye.camera), lights: self.lights }
+        load::Model { parts, is_gltf: true, camera: self.eye.map(|eye| eye.camera), lights: self.lights }
     }
 }
 

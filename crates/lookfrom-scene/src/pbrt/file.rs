@@ -6,6 +6,7 @@ use super::Reader;
 use super::directive::DIRECTIVES;
 use super::lexer::{Lexer, Token};
 use super::text::{Place, Text};
+use crate::budget::Reserved;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::model::PARSED;
@@ -28,9 +29,8 @@ pub(super) struct Model {
 }
 
 impl Reader<'_, '_> {
-    /// Reads a scene file, the first or an included one.
-    pub(super) fn file(&mut self, path: &Path) -> Result<()> {
-        let bytes = packed::read(path, self.context)?;
+    /// Reads the text of a scene file, the first or an included one.
+    pub(super) fn text(&mut self, path: &Path, bytes: Reserved<Vec<u8>>) -> Result<()> {
         let whole = Location::file(path);
         if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
             return Err(Error::syntax(&whole, "the text is UTF-16").hint("save it as UTF-8"));
@@ -90,7 +90,7 @@ impl Reader<'_, '_> {
             ));
             return Err(error.hint("included files are scenes of pbrt"));
         }
-        match self.file(&path) {
+        match packed::read(&path, self.context).and_then(|bytes| self.text(&path, bytes)) {
             // Only this file: missing files that it names have been noted already.
             Err(error) if error.kind == ErrorKind::Io => self.missing.add_text(&path, place.blame(error)),
             result => result.map_err(|error| place.blame(error)),

@@ -68,7 +68,8 @@ impl Reader<'_, '_> {
         let camera = self.scene.camera.take();
         let image = self.has_image.then(|| self.scene.image.clone());
         let render = self.has_render.then(|| (self.scene.render.clone(), self.names_integrator));
-        self.file(path)?;
+        let bytes = self.context.read(path)?;
+        self.scene_text(path, &bytes)?;
         self.scene.camera = camera.or(self.scene.camera.take());
         self.scene.image = image.unwrap_or_else(|| self.scene.image.clone());
         if let Some(before) = render {

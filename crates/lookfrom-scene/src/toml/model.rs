@@ -9,8 +9,8 @@ use super::{Reader, transform};
 use crate::camera::{Camera, Projection, View};
 use crate::error::Result;
 use crate::files::{CameraChoice, ImportOptions};
+use crate::format::Format;
 use crate::light::{Light, LightKind};
-use crate::load;
 use crate::shape::Part;
 use crate::subdivision::MOST_LEVELS;
 
@@ -37,11 +37,14 @@ impl Reader<'_, '_> {
             OPERAND,
             transform::KEYS,
         ]);
+        let refuse_choice = || match CHOICE.iter().find_map(|key| table.find(key)) {
+            Some(key) => Err(key.error(format!("`{}` is only for glTF files", key.key()))),
+            None => Ok(()),
+        };
+        // Where the name tells no format, the content will.
         let path = self.resolve(file, "the name of a model file")?;
-        if let Some(key) = CHOICE.iter().find_map(|key| table.find(key))
-            && !load::is_gltf(&path, self.context)
-        {
-            return Err(key.error(format!("`{}` is only for glTF files", key.key())));
+        if Format::of_name(&path).is_some_and(|format| format != Format::Gltf) {
+            refuse_choice()?;
         }
         let (choice, has_camera) = self.choice(table);
         let stray = ["lights", "camera"].into_iter().find_map(|key| table.find(key));
@@ -51,6 +54,9 @@ impl Reader<'_, '_> {
                 .hint("give it to a [[mesh]] outside of objects"));
         }
         let model = self.model(file, &choice)?;
+        if !model.is_gltf {
+            refuse_choice()?;
+        }
         if table.or("lights", false, Value::boolean) {
             self.scene
                 .lights

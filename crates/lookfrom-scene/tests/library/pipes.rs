@@ -1,8 +1,10 @@
-//! Files that can be read only once: named pipes and process substitutions.
+//! Files that can be read only once, named pipes and process substitutions; and that others are read only once, too.
 
+use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
 
-use lookfrom_scene::{Disk, LoadContext, load};
+use lookfrom_scene::{Disk, Files, LoadContext, Memory, Result, load};
 
 /// A named pipe into which a text is written once.
 fn pipe(name: &str, text: &'static str) -> std::path::PathBuf {
@@ -24,5 +26,33 @@ fn pipes_are_read_once() {
             load::scene(&path, &mut LoadContext::new(&Disk)).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.shapes.len(), 1, "{}", path.display());
         std::fs::remove_file(path).expect("it is there");
+    }
+}
+
+/// Files that count how often they are read.
+struct Counting(Memory, AtomicU32);
+
+impl Files for Counting {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.read(path, limit)
+    }
+}
+
+#[test]
+fn a_file_without_a_known_name_is_read_once() {
+    let contents = [
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        "[[sphere]]\nradius = 1\n",
+        "WorldBegin\nShape \"sphere\"\n",
+        r#"{"asset": {"version": "2.0"}}"#,
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n",
+    ];
+    for content in contents {
+        let memory = Memory([("scene".into(), content.as_bytes().to_vec())].into());
+        let files = Counting(memory, AtomicU32::new(0));
+        load::scene(Path::new("scene"), &mut LoadContext::new(&files))
+            .unwrap_or_else(|error| panic!("{content}: {error}"));
+        assert_eq!(files.1.into_inner(), 1, "{content}");
     }
 }

@@ -1,0 +1,90 @@
+//! The formats of scenes and models: how names and content tell them.
+
+use std::path::Path;
+
+use crate::model::{number, scan, text};
+use crate::{gltf, packed, pbrt, stl};
+
+/// A format of scenes or models.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Toml,
+    Pbrt,
+    Gltf,
+    Ply,
+    Stl,
+    Obj,
+}
+
+/// What is known of a format.
+struct Row {
+    format: Format,
+    /// Extensions in lower case.
+    extensions: &'static [&'static str],
+    /// Whether files may be compressed, with `.gz` after the extension.
+    may_be_packed: bool,
+    /// Whether a content is of this format.
+    sniff: fn(&[u8]) -> bool,
+}
+
+/// All formats; where the content decides, the first that it suits.
+const FORMATS: &[Row] = &[
+    Row { format: Format::Toml, extensions: &["toml"], may_be_packed: false, sniff: |_| false },
+    Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: pbrt::is_pbrt },
+    Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: gltf::is_gltf },
+    Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
+    Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
+    Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
+];
+
+impl Format {
+    /// The format that a name tells, by its extension in upper or lower case.
+    pub(crate) fn of_name(path: &Path) -> Option<Self> {
+        let unpacked = packed::unpacked_name(path);
+        let has_name = |row: &&Row| {
+            let name = if row.may_be_packed { &unpacked } else { path };
+            let extension = name.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+            extension.is_some_and(|extension| row.extensions.contains(&&*extension))
+        };
+        FORMATS.iter().find(has_name).map(|row| row.format)
+    }
+
+    /// The format of a content, given the one that the name tells. Names of scenes are believed; a model may have the
+    /// name of another format, unless the content only looks like an OBJ file.
+    pub(crate) fn of_content(content: &[u8], named: Option<Self>) -> Option<Self> {
+        let may_be = |row: &&Row| match named {
+            None => true,
+            Some(named) => named.is_model() && row.format.is_model() && row.format != Self::Obj,
+        };
+        let found = FORMATS.iter().filter(may_be).find(|row| (row.sniff)(content));
+        found.map(|row| row.format).or(named)
+    }
+
+    /// Whether it is one of models that have neither a camera nor lights.
+    pub(crate) fn is_model(self) -> bool {
+        matches!(self, Self::Obj | Self::Ply | Self::Stl)
+    }
+
+    /// Whether files may be compressed.
+    pub(crate) fn may_be_packed(self) -> bool {
+        FORMATS.iter().any(|row| row.format == self && row.may_be_packed)
+    }
+}
+
+fn is_ply(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ', ..])
+}
+
+/// Whether there is a vertex among the first lines.
+fn looks_like_obj(bytes: &[u8]) -> bool {
+    let text = text::utf8(&bytes[..bytes.len().min(1 << 16)]).into_owned();
+    let mut scanner = scan::Scanner::joining_lines(&text);
+    loop {
+        if scanner.word() == b"v" && (0..3).all(|_| number::parse_f32(scanner.word()).is_some()) {
+            return true;
+        }
+        if !scanner.next_line() {
+            return false;
+        }
+    }
+}
