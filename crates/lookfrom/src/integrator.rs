@@ -133,7 +133,7 @@ impl Path {
         is_back || !world.passes_alpha_test(surface, u)
     }
 
-    /// The same path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
+    /// This path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
     /// to infinity.
     fn absorbed(&self, world: &World, hit: &Hit, mode: &SpectralMode) -> Self {
         if self.interior.is_empty() {
@@ -151,7 +151,7 @@ impl Path {
         }
     }
 
-    /// The same path continued behind a surface that it passes.
+    /// This path continued behind a surface that it passes.
     fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
@@ -182,7 +182,7 @@ impl SampleStream {
         self.sampler.two(self.sample, self.hashed(dimension))
     }
 
-    /// The same; at a camera ray, points that are also well distributed together with those in the pixel. For decisions of
+    /// [`Self::two`]; at a camera ray, points that are also well distributed together with those in the pixel. For decisions of
     /// which no two count in one term of the light, as the points on several lights, or that on a light and the direction
     /// of the bounce.
     pub fn two_with_pixel(&self, dimension: u32) -> [f32; 2] {

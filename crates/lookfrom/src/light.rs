@@ -89,7 +89,7 @@ pub enum Light {
 /// The emission spectrum of a light: colour times scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionSpectrum {
-    /// Of the type [`SpectrumType::Illuminant`](crate::shading::texture::SpectrumType::Illuminant).
+    /// The colour, of the type [`SpectrumType::Illuminant`](crate::shading::texture::SpectrumType::Illuminant).
     pub color: SpectrumTexture,
     /// Factor of the colour.
     pub scale: f32,
@@ -107,7 +107,7 @@ impl EmissionSpectrum {
         self.at(textures, &TexturePoint::NOWHERE, mode)
     }
 
-    /// The same for eight samples, of colours that do not vary.
+    /// The emission of eight samples, by colours that do not vary.
     #[inline(always)]
     pub(crate) fn even_lanes<S: Simd>(
         simd: S,

@@ -52,7 +52,7 @@ pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 7;
+pub const SAMPLING_VERSION: u32 = 8;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.
@@ -211,13 +211,13 @@ impl Renderer {
         camera_warnings::sees_only_backs(self)
     }
 
-    /// The same with a custom integrator in place of the one in the settings.
+    /// This renderer with a custom integrator in place of the one in the settings.
     #[must_use]
     pub fn with_integrator(self, integrator: impl Integrator + 'static) -> Self {
         Self { integrator: Arc::new(integrator), is_plugged_in: true, ..self }
     }
 
-    /// The same world and settings with another view.
+    /// A renderer of this world with these settings and another view.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -229,7 +229,7 @@ impl Renderer {
         })
     }
 
-    /// The same settings with another world, or the same one with other lights, and a view of it.
+    /// A renderer with these settings of another world, or the same one with other lights, and a view of it.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -237,7 +237,7 @@ impl Renderer {
         Self { world, ..self.clone() }.with_view(view)
     }
 
-    /// The same view of the same world with other settings, and the integrator that they name.
+    /// A renderer of this view and world with other settings, and the integrator that they name.
     ///
     /// # Errors
     /// As [`Renderer::new`].
@@ -364,7 +364,7 @@ impl Renderer {
         self.render_pixels(&mut Batch::default(), &[tile.area()], samples, tile)
     }
 
-    /// The same for the pixels of parts of a tile, in the memory of earlier batches.
+    /// [`Renderer::render_tile`] for the pixels of parts of a tile, in the memory of earlier batches.
     fn render_pixels(
         &self,
         batch: &mut Batch,

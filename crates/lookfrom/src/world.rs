@@ -274,7 +274,7 @@ impl World {
         self.materials.iter().any(Material::has_bump_map)
     }
 
-    /// The same world seen by a camera with these pixels.
+    /// This world seen by a camera with these pixels.
     pub(crate) fn seen_by(self: Arc<Self>, footprint: PixelFootprint) -> Arc<Self> {
         match self.footprint == Some(footprint) {
             true => self,
@@ -282,7 +282,7 @@ impl World {
         }
     }
 
-    /// What shading frames are bent by.
+    /// Data that shading frames are bent by.
     pub(crate) fn relief(&self) -> Relief<'_> {
         Relief { textures: &self.textures, footprint: self.footprint.as_ref() }
     }
@@ -325,7 +325,7 @@ impl World {
         self.environments.iter().fold(Spectrum::BLACK, |sum, &index| sum + self.sky_of(index, ray, mode))
     }
 
-    /// The same where it is the same along all rays.
+    /// [`World::sky`], where it is the same along all rays.
     pub(crate) fn even_sky(&self, mode: &SpectralMode) -> Option<Spectrum> {
         self.environments.iter().try_fold(Spectrum::BLACK, |sum, &index| match &self.lights[index as usize] {
             Light::Environment(environment) => Some(sum + environment.even(&self.textures, mode)?),
@@ -384,7 +384,7 @@ impl World {
         Some((self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, mode), medium.scale))
     }
 
-    /// The same world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,
+    /// This world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,
     /// no BVH is built.
     #[must_use]
     pub fn with_surroundings_turned(&self, rotation: &DMat3) -> Self {

@@ -86,7 +86,7 @@ pub(crate) fn load_spectrum<W: Width>(width: W, [a, b, c, d]: &Columns<4>) -> Sp
     Spectrum([width.load_f32(a), width.load_f32(b), width.load_f32(c), width.load_f32(d)])
 }
 
-/// The same spectrum in each lane.
+/// One spectrum in each lane.
 #[inline(always)]
 pub(crate) fn splat_spectrum<W: Width>(width: W, Spectrum([a, b, c, d]): Spectrum) -> Spectrum<W::Real> {
     Spectrum([width.splat(a), width.splat(b), width.splat(c), width.splat(d)])

@@ -133,7 +133,7 @@ fn two<R: Real>(kind: Kind, key: R::Bits64, sample: R::Bits, dimension: R::Bits6
     }
 }
 
-/// The same; in the lanes of a mask, in the third and fourth dimension of [`PIXEL`]'s pattern.
+/// [`two`]; in the lanes of a mask, in the third and fourth dimension of [`PIXEL`]'s pattern.
 #[inline(always)]
 fn two_with_pixel<R: Real>(
     kind: Kind,

@@ -66,7 +66,7 @@ impl<R: Real> Spectrum<R> {
         Self([f(a, e), f(b, g), f(c, h), f(d, i)])
     }
 
-    /// The same value in each lane.
+    /// One value in each lane.
     #[inline(always)]
     pub(crate) fn splat(value: R) -> Self {
         Self([value; 4])

@@ -44,7 +44,7 @@ pub fn cosine_about_z<R: Real>(u: [R; 2]) -> Vector<R> {
     Vector { x, y, z: height }
 }
 
-/// The same about `n`, which must have unit length.
+/// [`cosine_about_z`] about `n`, which must have unit length.
 pub fn cosine_hemisphere(u: [f32; 2], n: Vec3) -> Vec3 {
     let Vector { x, y, z } = cosine_about_z(u);
     let (s, t) = orthonormal_basis(n);
@@ -144,7 +144,7 @@ pub fn orthonormal_basis(n: Vec3) -> (Vec3, Vec3) {
     (s.into(), t.into())
 }
 
-/// The same at any width.
+/// [`orthonormal_basis`] at any width.
 #[inline(always)]
 pub fn basis_about<F: Float<Scalar: From<f32>>>(n: Vector<F>) -> (Vector<F>, Vector<F>) {
     // The only branch is the sign of z, which keeps the denominator away from 0.

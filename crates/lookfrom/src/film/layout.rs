@@ -81,14 +81,14 @@ impl Layout {
     /// The bytes of a film of this layout, which has an area of a picture, with those that are needed at the same time to
     /// develop and encode the picture: an estimate, by what was measured (docs/benchmarks/memory.md).
     pub(super) fn memory(self, [width, height]: [u32; 2], area: PixelBounds) -> u64 {
-        /// Of a pixel of the film's area.
+        /// Bytes of a pixel of the film's area.
         const LIGHT: u64 = 55;
         const AOVS: u64 = 120;
         const FEATURES: u64 = 65;
         const DENOISER: u64 = 10;
         const ALPHA: u64 = 20;
         const LIGHT_PATHS: u64 = 30;
-        /// Of a pixel of the picture, in which a crop has its place.
+        /// Bytes of a pixel of the picture, in which a crop has its place.
         const DEVELOPED: u64 = 30;
         const OPACITY: u64 = 6;
         let summed = LIGHT

@@ -45,7 +45,7 @@ impl<P: Probe> StepOutput<'_, P> {
         }
     }
 
-    /// The same, attenuated by the medium that the path is in; `even_sky` is [`World::even_sky`].
+    /// [`StepOutput::add_surroundings`], attenuated by the medium that the path is in; `even_sky` is [`World::even_sky`].
     #[inline]
     pub(super) fn add_surroundings_behind_medium(
         &mut self,

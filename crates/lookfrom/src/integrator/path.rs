@@ -9,7 +9,7 @@ mod lanes;
 use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
 
-use lanes::{HitBatch, Scattered, Waiting};
+use lanes::{HitBatch, Waiting};
 
 use crate::core::lanes::are_shaded_together;
 use crate::core::math::power_heuristic;
@@ -120,7 +120,7 @@ impl Integrator for PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let in_lanes = self.light_sampling != LightSampling::None && are_shaded_together();
-        let mut waiting = Waiting::default();
+        let mut waiting = Waiting::new(in_lanes);
         let batch = HitBatch { world, paths, hits, streams };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
@@ -132,8 +132,8 @@ impl Integrator for PathTracer {
                 && let Some(class) = batch.mesh_class(self, index)
             {
                 waiting.push_hit(self, &batch, (class, index), output);
-            } else if let Some(vertex) = self.arrive(world, &streams.of(path), path, hit, output) {
-                waiting.push_vertex(self, world, vertex, in_lanes, output);
+            } else {
+                self.arrive(world, &streams.of(path), (path, hit), &mut waiting, output);
             }
         }
         waiting.flush(self, &batch, output);
@@ -147,10 +147,7 @@ impl Integrator for PathTracer {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        if let Some(vertex) = self.arrive(world, stream, path, hit, output) {
-            let mut scattered = Scattered::NONE;
-            self.scatter_vertex(world, &vertex, &mut scattered, output);
-        }
+        self.arrive(world, stream, (path, hit), &mut Waiting::new(false), output);
     }
 }
 
@@ -164,20 +161,19 @@ struct Vertex {
 }
 
 impl PathTracer {
-    /// Brings a path to what it has hit, adds the emission there, and finds the BSDF. `None` where the path ends, or goes
-    /// on through a surface that is not there.
-    #[inline]
+    /// Brings a path to what it has hit, adds the emission there, and finds the BSDF: a vertex that waits to be scattered,
+    /// unless the path ends, or goes on through a surface that is not there.
     fn arrive<P: Probe>(
         &self,
         world: &World,
         stream: &SampleStream,
-        path: &Path,
-        hit: &Hit,
+        (path, hit): (&Path, &Hit),
+        waiting: &mut Waiting,
         output: &mut StepOutput<'_, P>,
-    ) -> Option<Vertex> {
+    ) {
         if path.previous.is_catcher {
             if !hit.is_hit() && self.finds_what_it_expects(path) {
-                return None;
+                return;
             }
             self.expect_sky(world, path, output);
         }
@@ -191,7 +187,7 @@ impl PathTracer {
             if !output.shows_background(&path) {
                 self.add_sky(world, &path, output);
             }
-            return None;
+            return;
         }
         let surface = world.surface(&path.ray, hit);
 
@@ -202,7 +198,7 @@ impl PathTracer {
         };
         if path.goes_through(world, &surface, presence) {
             output.queues.paths.push(path.passed(&surface));
-            return None;
+            return;
         }
 
         // A shadow catcher shows what is behind it, less the light that is blocked.
@@ -225,7 +221,7 @@ impl PathTracer {
             let direction = Vec3::from_array(path.ray.direction);
             let interior = path.interior.leaving(&world.materials, &surface, direction, true);
             output.queues.paths.push(Path { interior, ..path.passed(&surface) });
-            return None;
+            return;
         };
         if self.regularize && path.previous.blurred {
             shading.bsdf.regularize();
@@ -238,11 +234,10 @@ impl PathTracer {
             beta: path.beta,
         });
         // Most lamps reflect nothing.
-        if path.depth >= self.depth || shading.bsdf.lobes() == Lobes::NONE {
-            return None;
+        if path.depth < self.depth && shading.bsdf.lobes() != Lobes::NONE {
+            let vertex = Vertex { path, surface, shading, stream: *stream, is_catcher };
+            waiting.push_vertex(self, world, vertex, output);
         }
-
-        Some(Vertex { path, surface, shading, stream: *stream, is_catcher })
     }
 
     fn add_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {

@@ -19,7 +19,7 @@ pub struct BatchStreams<'a> {
 }
 
 impl BatchStreams<'_> {
-    /// Those of a path.
+    /// The random numbers of a path.
     #[inline(always)]
     pub fn of(&self, path: &Path) -> SampleStream {
         let SampleId { pixel, sample } = self.ids[path.slot as usize];
@@ -31,7 +31,7 @@ impl BatchStreams<'_> {
 pub(in crate::integrator) struct SampleStreams<R: Lanes> {
     samplers: PixelSamplers<R>,
     sample: R::Bits,
-    /// Of the address, before the dimension.
+    /// A hash of the address, before the dimension.
     mixed: R::Bits64,
     /// The camera rays.
     are_first: R::Mask,

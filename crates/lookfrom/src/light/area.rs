@@ -107,7 +107,7 @@ pub(crate) struct AreaSamples<R: Real> {
 }
 
 impl<R: Real> AreaSamples<R> {
-    /// Of the directions and distances to the points.
+    /// Samples by the directions and distances to the points.
     #[inline(always)]
     fn new(
         points: Points<R>,

@@ -117,7 +117,7 @@ pub(super) fn lanes(light: Spectrum, mode: &SpectralMode) -> Vec<f64> {
     light.0[..used].iter().map(|lane| f64::from(*lane)).collect()
 }
 
-/// What is done with a colour where light has wavelengths.
+/// The words for a colour where light has wavelengths.
 pub(super) fn as_spectrum(mode: &SpectralMode) -> &'static str {
     if matches!(mode, SpectralMode::Rgb) { "" } else { ", made a spectrum of the light's white" }
 }

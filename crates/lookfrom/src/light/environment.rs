@@ -37,7 +37,7 @@ pub struct Environment {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Sky {
-    /// The same everywhere.
+    /// One colour everywhere.
     Constant(EmissionSpectrum),
     /// Linear in the height y of the unit direction.
     Gradient {
@@ -124,7 +124,7 @@ impl Environment {
         }
     }
 
-    /// The same light with its environment map, if it has one, rotated in the world; the portal stays where it is.
+    /// This light with its environment map, if it has one, rotated in the world; the portal stays where it is.
     pub(crate) fn turned(&self, rotation: &DMat3, textures: &Textures) -> Self {
         let Sky::Image(sky) = &self.sky else { return self.clone() };
         let world_from_light = (*rotation * sky.world_from_light.as_dmat3()).as_mat3();

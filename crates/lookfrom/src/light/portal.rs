@@ -34,7 +34,7 @@ pub struct Opening {
     corner: DVec3,
     /// … and the one across.
     opposite: DVec3,
-    /// Of unit length: along both sides, and outward.
+    /// Directions of unit length: along both sides, and outward.
     axes: [DVec3; 3],
     area: f64,
 }

@@ -16,7 +16,7 @@ pub struct Scale {
 pub struct Total {
     /// All light that it emits, or an illuminance: see [`Power::total`](lookfrom_scene::light::Power::total).
     pub power: f32,
-    /// The same, if its colour were white of luminance 1.
+    /// The scale, if its colour were white of luminance 1.
     pub of_white: f32,
     /// The luminance of its colour; 1 for one that is divided by it already.
     pub luminance: f32,

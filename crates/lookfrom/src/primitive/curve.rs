@@ -189,7 +189,7 @@ impl Procedural for Curves {
 /// The search for the nearest intersection of a ray and a strand.
 struct Search<'a> {
     strand: &'a Strand,
-    /// Of unit length, in the strand's space.
+    /// The direction, of unit length, in the strand's space.
     direction: DVec3,
     /// The range of depths that count.
     nearest: [f64; 2],

@@ -38,7 +38,7 @@ pub(crate) struct Triangles<R: Real> {
 }
 
 impl Triangles<f32> {
-    /// The same triangle in each lane.
+    /// This triangle in each lane.
     #[inline(always)]
     pub(crate) fn splat<S: Simd>(&self, simd: S) -> Triangles<f32x8<S>> {
         let like = f32x8::splat(simd, 0.0);
@@ -220,7 +220,7 @@ impl<R: Real> Triangles<R> {
 }
 
 impl<R: Real> TrianglePoints<R> {
-    /// The same points in instances, where the mask is set.
+    /// These points in instances, where the mask is set.
     #[inline(always)]
     pub(crate) fn placed(self, mask: WideMask<R>, placement: &Placement<R>) -> Self {
         let points = self.points.placed(placement);

@@ -38,7 +38,7 @@ pub(crate) struct Subject {
 }
 
 impl Subject {
-    /// What `bounds` hold, such as a scene without what was added to it.
+    /// The contents of `bounds`, such as a scene without what was added to it.
     pub(crate) fn of_scene(scene: &Scene, bounds: Bounds) -> Self {
         let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
         Self { bounds, at, is_model: scene.source_format != SourceFormat::Scene }

@@ -351,7 +351,7 @@ fn rows(area: &PixelBounds) -> impl Iterator<Item = PixelBounds> + use<> {
     (area.y0..area.y1).map(move |y| PixelBounds { y0: y, y1: y + 1, ..area })
 }
 
-/// What a mutex guards, though a thread may have panicked while it held it.
+/// The value that a mutex guards, though a thread may have panicked while it held it.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

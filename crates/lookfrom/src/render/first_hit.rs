@@ -38,7 +38,7 @@ struct RayHit {
 /// Number of surfaces of fractional alpha that are looked through.
 const MOST_LAYERS: usize = 16;
 
-/// What is left of a pixel behind surfaces that cover nearly all of it is not looked at.
+/// The part of a pixel, left behind surfaces that cover nearly all of it, below which nothing is looked at.
 const LEAST_PART: f32 = 1.0 / 256.0;
 
 impl FirstHits {

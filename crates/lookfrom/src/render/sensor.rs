@@ -83,7 +83,7 @@ impl Renderer {
         self.limited(self.measured(light, mode))
     }
 
-    /// The same without the maximum component value.
+    /// The sensor without the maximum component value.
     pub(crate) fn measured(&self, light: Spectrum, mode: &SpectralMode) -> [f32; 3] {
         match mode {
             SpectralMode::Rgb if self.keeps_rgb => light.rgb(),

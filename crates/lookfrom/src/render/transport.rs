@@ -20,7 +20,7 @@ pub(super) trait Transport: std::fmt::Debug + Send + Sync {
     /// Computes samples.
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays;
 
-    /// The same for the inspector.
+    /// [`Transport::trace`] for the inspector.
     fn trace_events(
         &self,
         renderer: &Renderer,

@@ -204,7 +204,7 @@ impl Bsdf {
         Self::conductor(eta, k, roughness)
     }
 
-    /// The same conductor or dielectric with the light between its microfacets or without it; other BSDFs as they are.
+    /// This conductor or dielectric with the light between its microfacets or without it; other BSDFs as they are.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
         match self {

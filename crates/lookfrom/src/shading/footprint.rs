@@ -22,10 +22,10 @@ pub struct PixelFootprint {
     pub world_from_camera: DMat3,
     /// Its inverse.
     pub camera_from_world: DMat3,
-    /// What the origins of rays change by, from one pixel to the next in x and in y, in a space whose z axis is along the
+    /// Changes of the origins of rays, from one pixel to the next in x and in y, in a space whose z axis is along the
     /// ray.
     pub origins: [DVec3; 2],
-    /// The same of their directions of unit length.
+    /// Changes of their directions of unit length.
     pub directions: [DVec3; 2],
 }
 

@@ -87,7 +87,7 @@ impl ShadingGeometry {
 }
 
 impl SurfaceInteraction {
-    /// What the shading frame depends on.
+    /// The directions that the shading frame depends on.
     pub(crate) fn shading_geometry(&self) -> ShadingGeometry {
         let Self { ns, wo, front, shading_dpdu: dpdu, shading_dpdv: dpdv, .. } = *self;
         ShadingGeometry { ng: self.ng.as_vec3(), ns, dpdu, dpdv, wo, front }

@@ -176,7 +176,7 @@ impl Textures {
         }
     }
 
-    /// The same for a reflectance: within 0 … 1 in every lane.
+    /// The spectrum of a reflectance: within 0 … 1 in every lane.
     #[inline(always)]
     pub fn albedo(&self, texture: &SpectrumTexture, at: &TexturePoint, mode: &SpectralMode) -> Spectrum {
         self.spectrum(texture, at, mode).map(|lane| lane.clamp(0.0, 1.0))

@@ -35,7 +35,7 @@ pub(crate) struct Plain {
 pub(crate) enum PlainMaterials {
     /// That of a mesh.
     Mesh(u32),
-    /// Those of spheres.
+    /// The materials of spheres.
     Spheres(Vec<u32>),
     /// There are none.
     None,

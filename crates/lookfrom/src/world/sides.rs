@@ -67,7 +67,7 @@ impl World {
         backs > MOSTLY * seen
     }
 
-    /// The same world, in which all surfaces are seen from both sides.
+    /// This world, in which all surfaces are seen from both sides.
     pub(crate) fn with_both_sides(&self) -> Self {
         let mut world = self.clone();
         let objects = Arc::make_mut(&mut world.objects).iter_mut().flatten();

@@ -40,7 +40,7 @@ impl DenselySampledSpectrum {
         Spectrum(wavelengths.of_curve(&self.0).map(|value| value.copied().unwrap_or(0.0)))
     }
 
-    /// The same curve times a factor.
+    /// This curve times a factor.
     pub fn scaled(&self, factor: f32) -> Self {
         Self(Box::new(self.0.map(|value| value * factor)))
     }

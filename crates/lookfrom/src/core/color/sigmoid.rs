@@ -25,7 +25,7 @@ pub(super) const REACH: f32 = 235.0;
 const FLAT: f32 = 1e18;
 
 impl Sigmoid {
-    /// The same value v at all wavelengths, v within [0, 1].
+    /// One value v at all wavelengths, v within [0, 1].
     pub fn constant(v: f32) -> Self {
         Self([0.0, 0.0, ((v - 0.5) / (v * (1.0 - v)).sqrt()).clamp(-FLAT, FLAT)])
     }
@@ -93,7 +93,7 @@ pub struct Unbounded<R = f32> {
 }
 
 impl Unbounded {
-    /// The same value of 0 and above at all wavelengths, exactly.
+    /// One value of 0 and above at all wavelengths, exactly.
     pub fn gray(value: f32) -> Self {
         Self { scale: value, sigmoid: Sigmoid([0.0, 0.0, FLAT]) }
     }

@@ -25,9 +25,9 @@ pub struct Piecewise2D {
 /// The probabilities of a cell, of which its density follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Of its row.
+    /// The probability of its row.
     pub row: f64,
-    /// Of the cell, within its row.
+    /// The probability of the cell, within its row.
     pub column: f64,
 }
 

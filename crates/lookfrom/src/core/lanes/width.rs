@@ -7,7 +7,7 @@ use super::{LANES, by_lane, gather_spectrum, scatter_rays, scatter_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
-/// What makes numbers of a width from columns: a token of SIMD for eight, [`One`] for one.
+/// A width: it makes numbers from columns. A token of SIMD is that of eight, [`One`] that of one.
 pub(crate) trait Width: Copy {
     /// The numbers.
     type Real: Lanes;
@@ -26,7 +26,7 @@ pub(crate) trait Width: Copy {
     fn mask(self, bits: u32) -> Mask<Self>;
     /// The bits of a mask: bit i is lane i.
     fn bits(self, mask: Mask<Self>) -> u32;
-    /// The same number in each lane.
+    /// One number in each lane.
     fn splat(self, value: f32) -> Self::Real;
     /// Spectra by lane.
     fn spectra_of(self, of: impl Fn(usize) -> Spectrum) -> Spectrum<Self::Real>;

@@ -26,7 +26,7 @@ impl<R: Real> PixelSamplers<R> {
         Self { kind: sampler(0).kind, keys }
     }
 
-    /// Of pixels, their columns in the lower halves and their rows in the upper ones.
+    /// From pixels, their columns in the lower halves and their rows in the upper ones.
     #[inline(always)]
     pub(crate) fn of_pixels(sampler: &Sampler, pixels: R::Bits64) -> Self {
         Self { kind: sampler.kind, keys: mix(pixels ^ pixels.like(sampler.key)) }

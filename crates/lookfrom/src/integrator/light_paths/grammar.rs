@@ -117,7 +117,7 @@ impl Symbols {
 /// The names of lights in expressions.
 pub(super) type Labels = Vec<String>;
 
-/// What is wrong with an expression, and where: a number of characters from its start.
+/// A mistake in an expression, and its place: a number of characters from its start.
 #[derive(Debug)]
 pub(super) struct Fault {
     column: usize,

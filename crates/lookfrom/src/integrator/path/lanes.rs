@@ -17,8 +17,7 @@ use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
 use lookfrom_simd::LaneMask;
 
-pub(super) use kernel::Scattered;
-use kernel::{ScatterKernel, Task};
+use kernel::{ScatterKernel, Scattered, Task};
 pub(super) use mesh_hits::HitBatch;
 use mesh_hits::MeshPoints;
 use surfaces::SurfaceColumns;
@@ -41,8 +40,9 @@ use crate::world::World;
 
 /// Paths that wait for others of their class: those that hit nothing and those that hit meshes, by index in the batch, and
 /// all others as vertices.
-#[derive(Default)]
 pub(super) struct Waiting {
+    /// Whether they wait at all: otherwise each is scattered alone, at once.
+    in_lanes: bool,
     escaped: Vec<u32>,
     mesh_hits: [Vec<u32>; BsdfClass::COUNT],
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
@@ -87,6 +87,12 @@ macro_rules! call {
 }
 
 impl Waiting {
+    /// None yet; to be scattered in lanes or alone.
+    pub(super) fn new(in_lanes: bool) -> Self {
+        let (escaped, memory) = (Vec::new(), Memory::default());
+        Self { in_lanes, escaped, mesh_hits: Default::default(), vertices: Default::default(), memory }
+    }
+
     /// Adds a path that hit nothing, and ends the paths of its kind where they fill the lanes.
     #[inline]
     pub(super) fn push_escaped<P: Probe>(
@@ -120,17 +126,16 @@ impl Waiting {
 
     /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. A vertex whose BSDF has no class is
     /// scattered alone, as all are without lanes.
-    #[inline]
+    #[inline(always)]
     pub(super) fn push_vertex<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         world: &World,
         vertex: Vertex,
-        in_lanes: bool,
         output: &mut StepOutput<'_, P>,
     ) {
         let scattered = &mut self.memory.scattered;
-        let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| in_lanes) else {
+        let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| self.in_lanes) else {
             return tracer.scatter_vertex(world, &vertex, scattered, output);
         };
         let vertices = &mut self.vertices[class as usize];
@@ -167,7 +172,7 @@ fn fills_lanes<T>(waiting: &mut Vec<T>, path: T) -> bool {
     waiting.len() == LANES
 }
 
-/// What is known of a path before its surface scatters it, in one lane.
+/// Scalar data of one lane's vertex, before it is scattered.
 #[derive(Clone, Copy)]
 struct Item<'a> {
     path: &'a Path,
@@ -223,7 +228,7 @@ impl PathTracer {
     }
 
     /// Scatters one path by any BSDF.
-    pub(super) fn scatter_vertex<P: Probe>(
+    fn scatter_vertex<P: Probe>(
         &self,
         world: &World,
         vertex: &Vertex,

@@ -110,7 +110,10 @@ impl<S: Simd> Arriving<f32x8<S>> {
             }),
             Light::Area(light) if light.is_in_lanes() => Self::from_area(simd, at, light, numbers(), modes),
             _ if !source.illuminates() => None,
-            _ => Self::from_each(simd, at, source, numbers, modes),
+            _ => {
+                let u = if is_random(source) { numbers() } else { [f32x8::splat(simd, 0.0); 2] };
+                Self::from_each(simd, at, source, u, modes)
+            }
         }
     }
 
@@ -140,47 +143,49 @@ impl<S: Simd> Arriving<f32x8<S>> {
         simd: S,
         at: &Destination<'_, f32x8<S>>,
         source: &Light,
-        numbers: impl FnOnce() -> [f32x8<S>; 2],
+        u: [f32x8<S>; 2],
         modes: &Modes<'_>,
     ) -> Option<Self> {
-        let u: [[f32; LANES]; 2] = match is_random(source) {
-            true => numbers().map(Into::into),
-            false => [[0.0; LANES]; 2],
-        };
-        let (points, normals) = (scatter_f64(at.points), scatter(at.n));
-        let samples = by_lane!(lane => {
-            let at_one = Destination {
-                world: at.world,
-                points: points[lane].into(),
-                n: normals[lane].into(),
-            };
-            Arriving::at_one(&at_one, source, [u[0][lane], u[1][lane]], modes.lane(lane))
-        });
-        let exists = bitmask(&by_lane!(lane => samples[lane].is_some()));
-        let first = samples.iter().flatten().next()?;
-        let of = by_lane!(lane => samples[lane].as_ref().unwrap_or(first));
-        let target = match first.target {
-            Targets::Infinity => Targets::Infinity,
-            Targets::Points(position) => Targets::Points(Vector::splat(at.points.x, position.into())),
-            Targets::Surfaces(..) => {
-                let ends = by_lane!(lane => match of[lane].target {
-                    Targets::Surfaces(points, normal) => {
-                        [points.position, points.error, normal].map(<[f64; 3]>::from)
-                    }
-                    _ => [[0.0; 3]; 3],
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let u: [[f32; LANES]; 2] = u.map(Into::into);
+                let (points, normals) = (scatter_f64(at.points), scatter(at.n));
+                let samples = by_lane!(lane => {
+                    let at_one = Destination {
+                        world: at.world,
+                        points: points[lane].into(),
+                        n: normals[lane].into(),
+                    };
+                    Arriving::at_one(&at_one, source, [u[0][lane], u[1][lane]], modes.lane(lane))
                 });
-                let [position, error, normal] =
-                    [0, 1, 2].map(|k| gather_f64(simd, &by_lane!(lane => ends[lane][k])));
-                Targets::Surfaces(Points { position, error }, normal)
-            }
-        };
-        Some(Self {
-            wi: gather(simd, &by_lane!(lane => of[lane].wi.into())),
-            li: gather_spectrum(simd, &by_lane!(lane => of[lane].li)),
-            pdf: f32x8::load_array(simd, by_lane!(lane => of[lane].pdf)),
-            exists: mask32x8::from_bitmask(simd, exists.into()),
-            target,
-        })
+                let exists = bitmask(&by_lane!(lane => samples[lane].is_some()));
+                let first = samples.iter().flatten().next()?;
+                let of = by_lane!(lane => samples[lane].as_ref().unwrap_or(first));
+                let target = match first.target {
+                    Targets::Infinity => Targets::Infinity,
+                    Targets::Points(position) => Targets::Points(Vector::splat(at.points.x, position.into())),
+                    Targets::Surfaces(..) => {
+                        let ends = by_lane!(lane => match of[lane].target {
+                            Targets::Surfaces(points, normal) => {
+                                [points.position, points.error, normal].map(<[f64; 3]>::from)
+                            }
+                            _ => [[0.0; 3]; 3],
+                        });
+                        let [position, error, normal] =
+                            [0, 1, 2].map(|k| gather_f64(simd, &by_lane!(lane => ends[lane][k])));
+                        Targets::Surfaces(Points { position, error }, normal)
+                    }
+                };
+                Some(Self {
+                    wi: gather(simd, &by_lane!(lane => of[lane].wi.into())),
+                    li: gather_spectrum(simd, &by_lane!(lane => of[lane].li)),
+                    pdf: f32x8::load_array(simd, by_lane!(lane => of[lane].pdf)),
+                    exists: mask32x8::from_bitmask(simd, exists.into()),
+                    target,
+                })
+            },
+        )
     }
 }
 

@@ -107,7 +107,7 @@ impl<S: Simd> Coefficients<f32x8<S>> {
         }
     }
 
-    /// Those of one material.
+    /// The coefficients of one material.
     #[inline(always)]
     fn of_one(
         simd: S,
@@ -148,7 +148,7 @@ impl<S: Simd> Coefficients<f32x8<S>> {
         }
     }
 
-    /// Those of several materials, one by one.
+    /// The coefficients of several materials, one by one.
     #[inline(always)]
     fn of_each(
         simd: S,

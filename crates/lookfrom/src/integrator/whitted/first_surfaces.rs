@@ -19,7 +19,7 @@ pub(super) struct Left<'a> {
 }
 
 impl Eight<'_> {
-    /// Those of the first `count` surfaces that are left, if any are: where camera rays meet a material that leaves normals as
+    /// Room for those of the first `count` surfaces that are left, if any are: where camera rays meet a material that leaves normals as
     /// they are, and that nothing is seen through.
     #[inline]
     pub(super) fn left<'a>(

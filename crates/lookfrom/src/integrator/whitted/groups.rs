@@ -15,7 +15,7 @@ pub(super) struct Groups {
     lights: Vec<FromLight>,
     /// Number of those that count.
     light_count: usize,
-    /// What a probe is told beside them, if there is one: of each group.
+    /// The events of each group, for a probe.
     told: Vec<Told>,
 }
 

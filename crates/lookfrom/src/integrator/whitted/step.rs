@@ -22,7 +22,7 @@ use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
-/// What is asked of a step beside the light.
+/// Results of a step that are wanted beside the light.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'a> {
     /// The tree of rays, if one grows.
@@ -232,11 +232,17 @@ impl Kernel for PlainKernel<'_> {
             i_a,
             #[inline(always)]
             |at, source, index| {
-                let numbers = || {
-                    let alone = by_lane!(lane => streams.of(eight.paths[lane]));
-                    SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(index)
-                };
-                Arriving::at_eight(simd, at, source, numbers, &modes)
+                Arriving::at_eight(
+                    simd,
+                    at,
+                    source,
+                    #[inline(always)]
+                    || {
+                        let alone = by_lane!(lane => streams.of(eight.paths[lane]));
+                        SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(index)
+                    },
+                    &modes,
+                )
             },
             groups,
         );

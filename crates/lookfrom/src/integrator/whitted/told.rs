@@ -12,7 +12,7 @@ use crate::integrator::{Branch, Event, Path};
 use crate::light::{LightSample, Target};
 use crate::shading::material::{Branches, Coefficients};
 
-/// What is told of the lanes of a group.
+/// Coefficients and events of the lanes of a group.
 #[derive(Clone, Debug)]
 pub(super) struct Told {
     pub(super) coefficients: Vec<Coefficients>,
@@ -21,7 +21,7 @@ pub(super) struct Told {
 }
 
 impl Told {
-    /// Of a group with these coefficients.
+    /// The events of a group with these coefficients: none yet.
     pub(super) fn new<W: Width>(width: W, k: &Coefficients<W::Real>) -> Self {
         let [ambient, diffuse, specular, mirror, transmission] =
             [k.ambient, k.diffuse, k.specular, k.mirror, k.transmission].map(|k| width.spectra(k));

@@ -13,7 +13,7 @@ use crate::core::hash;
 use crate::core::lanes::{LANES, by_lane, gather_f64, scatter, scatter_f64};
 use crate::primitive::{Disk, MaterialBinding, Mesh, Quadric, QuadricKind};
 
-/// What a sample consists of: direction, density, position, error, normal.
+/// The numbers of a sample: direction, density, position, error, normal.
 type Numbers = Option<([f32; 3], f32, [[f64; 3]; 3])>;
 
 /// A number of any exponent from 2⁻⁸ to 2⁸.

@@ -98,7 +98,7 @@ struct Mirrors {
 static MIRRORS: [OnceLock<Mirrors>; ROUGHNESSES] = [const { OnceLock::new() }; ROUGHNESSES];
 
 impl Mirrors {
-    /// Those of a column of the table.
+    /// The albedos of a column of the table.
     #[inline(always)]
     fn of(column: usize) -> &'static Self {
         MIRRORS[column].get_or_init(|| Self::integrated(column))

@@ -46,12 +46,12 @@ pub trait ScatteringFunction {
     fn description(&self) -> Description;
 }
 
-/// What the inspector says of a BSDF.
+/// A description of a BSDF for the inspector.
 #[derive(Clone, Debug)]
 pub struct Description {
     /// The kind of BSDF.
     pub kind: &'static str,
-    /// What it does to light.
+    /// Its effect on light.
     pub does: &'static str,
     /// Parameters by name.
     pub numbers: Vec<(&'static str, Parameter)>,

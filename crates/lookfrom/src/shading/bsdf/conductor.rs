@@ -41,7 +41,7 @@ pub struct Conductor<R = f32> {
 /// its mean, 1/21.
 const MEAN_COSINE: f32 = 0.456;
 
-/// What multiple scattering between facets adds for an outgoing direction.
+/// Multiple scattering between facets, for an outgoing direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MultipleScattering<R = f32> {
     /// E(ω_o): the albedo of single scattering by facets that reflect all light.
@@ -71,7 +71,7 @@ impl Conductor {
         Self { eta, k, roughness, conserves: 0.0 }
     }
 
-    /// The same conductor with the light between its facets or without it.
+    /// This conductor with the light between its facets or without it.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }
@@ -128,7 +128,7 @@ impl<R: Real> Conductor<R> {
         Spectrum::select(conserves, once * self.multiple_scattering(wo).gain(), once)
     }
 
-    /// What light between the facets of a rough surface adds along `wo`.
+    /// The light that facets of a rough surface send to one another, along `wo`.
     #[inline(always)]
     pub(super) fn multiple_scattering(&self, wo: Vector<R>) -> MultipleScattering<R> {
         let alpha = albedo::even_alpha(self.roughness);
@@ -187,7 +187,7 @@ pub(super) fn half_vector<R: Real>(wo: Vector<R>, wi: Vector<R>) -> (Vector<R>, 
     (wm.negate_where(wm.z.lt(wm.z.like(0.0))), exists)
 }
 
-/// The same for one pair of directions.
+/// The [`half_vector`] of one pair of directions.
 pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
     let (wm, exists) = half_vector(wo.into(), wi.into());
     exists.then(|| wm.into())

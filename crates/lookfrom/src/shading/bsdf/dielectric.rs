@@ -52,7 +52,7 @@ impl Dielectric {
         Self { eta: fresnel::valid_eta(eta), roughness, conserves: 0.0 }
     }
 
-    /// The same boundary with the light between its facets or without it.
+    /// This boundary with the light between its facets or without it.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }

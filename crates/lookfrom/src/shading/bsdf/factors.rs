@@ -1,6 +1,6 @@
 //! The factors D, G and F of microfacet BSDFs for two directions, as the inspector shows them.
 //!
-//! They are what [`Bsdf::f`] multiplies, one set for each boundary with microfacets. Diffuse lobes, sheen, and what
+//! They are what [`Bsdf::f`](super::Bsdf::f) multiplies, one set for each boundary with microfacets. Diffuse lobes, sheen, and what
 //! is scattered between the layers of a coat have no such factors.
 //!
 //! Cook & Torrance 1982 (reflection); Walter et al. 2007 (refraction).
@@ -41,12 +41,12 @@ pub struct MicrofacetFactors {
     pub eta: f32,
     /// The weight of the boundary, below the layers above it.
     pub weight: f32,
-    /// What light between the facets of a conductor adds.
+    /// The light that facets of a conductor send to one another.
     pub multiple_scattering: Option<MultipleScattering>,
 }
 
 impl MicrofacetFactors {
-    /// Those of a boundary of its own, by facets with the normal `wm`, or of a smooth one: with D, G and cosines, and with a
+    /// Factors of a boundary of its own, by facets with the normal `wm`, or of a smooth one: with D, G and cosines, and with a
     /// reflectance of 0.
     fn of_boundary(
         boundary: &'static str,

@@ -41,7 +41,7 @@ pub fn conductor<R: Real>(cos_theta: R, eta: Spectrum<R>, k: Spectrum<R>) -> Spe
     Spectrum([a, b, conductor_at(cos, eta2, k2), conductor_at(cos, eta3, k3)])
 }
 
-/// The same for one wavelength, for a cosine within 0 … 1.
+/// Reflectance of a conductor at one wavelength, for a cosine within 0 … 1.
 #[inline(always)]
 fn conductor_at<R: Real>(cos: R, eta: R, k: R) -> R {
     /// Far below any real value; prevents 0 / 0 in unused lanes.

@@ -9,7 +9,7 @@ use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
-use super::principled::{Look, Principled};
+use super::principled::Principled;
 use super::{DirectionSample, Mode, ScatteringFunction, Variant};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -28,29 +28,29 @@ pub struct Kind {
 }
 
 impl Kind {
-    /// Of most classes.
+    /// The properties of most classes.
     pub const PLAIN: Self = Self { pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
 }
 
-/// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`].
+/// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`](super::Bsdf).
 pub trait LaneBsdf<R: Real> {
-    /// What is computed once for an outgoing direction: that direction itself, where there is nothing to compute.
+    /// A BSDF seen from an outgoing direction, computed once: that direction itself, where there is nothing to compute.
     type View;
 
     /// The properties of the class.
     fn kind(&self) -> Kind;
     /// The view from the outgoing direction `wo`, which the other methods take.
     fn view(&self, wo: Vector<R>) -> Self::View;
-    /// As [`Bsdf::f`].
+    /// As [`Bsdf::f`](super::Bsdf::f).
     fn f(&self, view: &Self::View, wi: Vector<R>) -> Spectrum<R>;
-    /// As [`Bsdf::pdf`].
+    /// As [`Bsdf::pdf`](super::Bsdf::pdf).
     fn pdf(&self, view: &Self::View, wi: Vector<R>) -> R;
     /// [`Self::f`] and [`Self::pdf`]; the density means nothing where the value is black.
     #[inline(always)]
     fn f_and_pdf(&self, view: &Self::View, wi: Vector<R>) -> (Spectrum<R>, R) {
         (self.f(view, wi), self.pdf(view, wi))
     }
-    /// As [`Bsdf::sample`].
+    /// As [`Bsdf::sample`](super::Bsdf::sample).
     fn sample(&self, view: &Self::View, uc: R, u: [R; 2]) -> DirectionSample<R>;
     /// True if there is a lobe that is not specular.
     fn has_density(&self) -> R::Mask;
@@ -195,11 +195,11 @@ impl RowBsdf for Dielectric {
 }
 
 impl RowBsdf for Principled {
-    type Lanes<S: Simd> = Look<f32x8<S>>;
+    type Lanes<S: Simd> = Principled<f32x8<S>>;
 
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
-        Look::gather(simd, rows)
+        Principled::gather_rows(simd, rows)
     }
 }
 

@@ -52,7 +52,7 @@ use walk::{Walk, surviving};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
 pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
-    /// What is known beforehand of the light between coat and base; by default nothing.
+    /// Knowledge of the light between coat and base; by default there is none.
     type Interior: Copy + fmt::Debug;
     /// The name of such a base under a coat, and what it does.
     const COATED: [&str; 2];
@@ -82,7 +82,7 @@ pub struct Layered<B: Base<R>, R: Real = f32> {
     pub(crate) unbiased: R,
     /// The seed of its walks, in [0, 1).
     pub(crate) seed: R,
-    /// What is known beforehand of the light between coat and base.
+    /// Knowledge of the light between coat and base.
     pub(crate) interior: B::Interior,
 }
 

@@ -13,7 +13,7 @@ use crate::core::warp;
 /// A BSDF seen from the outgoing direction ω_o.
 pub struct View {
     wo: Vec3,
-    /// What is computed once for glTF's layers.
+    /// The view of glTF's layers.
     principled: Option<LocalScattering>,
 }
 

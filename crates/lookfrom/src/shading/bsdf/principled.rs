@@ -38,8 +38,8 @@ mod choice;
 mod facing;
 mod factors;
 pub mod film;
+mod gather;
 mod layers;
-mod look;
 mod scattering;
 pub(super) mod sheen;
 mod surface;
@@ -56,55 +56,54 @@ use super::{
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use film::Film;
-pub(crate) use look::Look;
-pub(crate) use scattering::LocalScattering;
+pub use scattering::LocalScattering;
 
-/// The parameters of a principled surface. All weights and colours are within 0 … 1.
+/// glTF's surface. All weights and colours are within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub struct Principled<R: Real = f32> {
     /// The metal's reflectance at normal incidence; the albedo or tint of the rest.
-    pub base_color: Spectrum,
+    pub base_color: Spectrum<R>,
     /// Weight of the metal.
-    pub metallic: f32,
+    pub metallic: R,
     /// Roughness of metal, dielectric and transmission. Its x axis is the local frame's.
-    pub roughness: TrowbridgeReitz,
+    pub roughness: TrowbridgeReitz<R>,
     /// Index of refraction, inside over outside; 0 is infinite.
-    pub eta: f32,
+    pub eta: R,
     /// The dielectric's reflectance at normal incidence, times `f90`.
-    pub f0: Spectrum,
+    pub f0: Spectrum<R>,
     /// The largest of its red, green and blue.
-    pub f0_greatest: f32,
+    pub f0_greatest: R,
     /// The dielectric's reflectance at grazing incidence: `specular`.
-    pub f90: f32,
+    pub f90: R,
     /// Fraction of the light that is not reflected specularly which is transmitted.
-    pub transmission: f32,
+    pub transmission: R,
     /// True if the surface bounds a body.
-    pub is_solid: bool,
+    pub is_solid: R::Mask,
     /// Fraction of the diffuse light that is transmitted.
-    pub diffuse_transmission: f32,
+    pub diffuse_transmission: R,
     /// Colour of the diffuse transmission.
-    pub diffuse_transmission_color: Spectrum,
+    pub diffuse_transmission_color: Spectrum<R>,
     /// Weight of the clear coat.
-    pub clearcoat: f32,
-    /// Roughness of the clear coat.
-    pub clearcoat_roughness: TrowbridgeReitz,
+    pub clearcoat: R,
+    /// Roughness of the clear coat, the same along both axes.
+    pub clearcoat_roughness: TrowbridgeReitz<R>,
     /// The coat's normal in the local frame: of unit length, z > 0.
-    pub clearcoat_normal: Vec3,
+    pub clearcoat_normal: Vector<R>,
     /// Colour of the sheen.
-    pub sheen_color: Spectrum,
+    pub sheen_color: Spectrum<R>,
     /// The largest of its red, green and blue.
-    pub sheen_greatest: f32,
+    pub sheen_greatest: R,
     /// The square root of the sheen's α.
-    pub sheen_roughness: f32,
+    pub sheen_roughness: R,
     /// Weight of the thin film on the specular reflection.
-    pub iridescence: f32,
+    pub iridescence: R,
     /// The thin film.
-    pub film: Film,
+    pub film: Film<R>,
     /// Weights of the spectrum's lanes, of sum 1, by which lobes are chosen: positive wherever light matters.
-    pub lane_weights: Spectrum,
+    pub lane_weights: Spectrum<R>,
 }
 
-impl Default for Parameters {
+impl Default for Principled {
     /// Smooth white plastic without further layers.
     fn default() -> Self {
         Self {
@@ -121,7 +120,7 @@ impl Default for Parameters {
             diffuse_transmission_color: Spectrum([1.0; 4]),
             clearcoat: 0.0,
             clearcoat_roughness: TrowbridgeReitz::SMOOTH,
-            clearcoat_normal: Vec3::Z,
+            clearcoat_normal: Vec3::Z.into(),
             sheen_color: Spectrum::BLACK,
             sheen_greatest: 0.0,
             sheen_roughness: 0.0,
@@ -132,173 +131,46 @@ impl Default for Parameters {
     }
 }
 
-/// A number of 0 … 1 in two bytes; 0 and 1 are exact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Share(u16);
-
-impl Share {
-    fn new(value: f32) -> Self {
-        // NaN is 0.
-        Self((value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16)
-    }
-
-    #[inline]
-    fn value(self) -> f32 {
-        f32::from(self.0) * (1.0 / 65_535.0)
-    }
-}
-
-/// Four numbers of 0 … 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Shares([Share; 4]);
-
-impl Shares {
-    fn new(lanes: Spectrum) -> Self {
-        Self(lanes.0.map(Share::new))
-    }
-
-    #[inline]
-    fn lanes(self) -> Spectrum {
-        Spectrum(self.0.map(Share::value))
-    }
-
-    fn is_black(self) -> bool {
-        self.0 == [Share(0); 4]
-    }
-}
-
-/// Precision of stored wavelengths: steps per nm.
-const WAVELENGTH_STEPS: f32 = 64.0;
-
-/// Weights in 255ths; a positive one stays positive.
-#[inline]
-fn packed_weights(weights: Spectrum) -> [u8; 4] {
-    weights.0.map(|w| (w.clamp(0.0, 1.0) * 255.0).ceil() as u8)
-}
-
-/// Wavelengths in steps; 0 for none.
-#[inline]
-fn packed_wavelengths(wavelengths: Option<[f32; 4]>) -> [u16; 4] {
-    wavelengths.map_or([0; 4], |lambda| lambda.map(|nm| (nm * WAVELENGTH_STEPS + 0.5) as u16))
-}
-
-/// glTF's surface. Numbers are packed into two bytes each, to keep the size of all BSDFs small.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Principled {
-    base_color: Shares,
-    f0: Shares,
-    sheen_color: Shares,
-    diffuse_transmission_color: Shares,
-    /// In 255ths.
-    lane_weights: [u8; 4],
-    /// In 64ths of a nm; 0 in RGB mode.
-    wavelengths: [u16; 4],
-    pub(crate) roughness: TrowbridgeReitz,
-    pub(crate) eta: f32,
-    f0_greatest: Share,
-    coat_alpha: f32,
-    coat_normal: [f32; 2],
-    film_eta: f32,
-    film_thickness: f32,
-    metallic: Share,
-    f90: Share,
-    transmission: Share,
-    diffuse_transmission: Share,
-    coat: Share,
-    sheen_greatest: Share,
-    sheen_roughness: Share,
-    iridescence: Share,
-    is_solid: bool,
-}
-
 impl Principled {
-    /// Every parameter is clamped to its valid range; NaN counts as 0.
-    pub fn new(parameters: &Parameters) -> Self {
-        let p = parameters;
+    /// The surface with every parameter clamped to its valid range; NaN counts as 0.
+    #[must_use]
+    pub fn clamped(&self) -> Self {
+        let share = |value: f32| if value > 0.0 { value.min(1.0) } else { 0.0 };
         let finite = |value: f32, greatest: f32| if value > 0.0 { value.min(greatest) } else { 0.0 };
-        let normal = p.clearcoat_normal;
+        let normal = Vec3::from(self.clearcoat_normal);
         let is_usable = normal.is_normalized() && normal.z > 0.0;
+        let coat_alpha = self.clearcoat_roughness.alpha_x;
         Self {
-            base_color: Shares::new(p.base_color),
-            f0: Shares::new(p.f0),
-            sheen_color: Shares::new(p.sheen_color),
-            diffuse_transmission_color: Shares::new(p.diffuse_transmission_color),
-            lane_weights: packed_weights(p.lane_weights),
-            wavelengths: packed_wavelengths(p.film.wavelengths),
-            roughness: p.roughness,
-            eta: if p.eta > 0.0 { fresnel::valid_eta(p.eta) } else { 0.0 },
-            f0_greatest: Share::new(p.f0_greatest),
-            coat_alpha: p.clearcoat_roughness.alpha_x,
-            coat_normal: if is_usable { [normal.x, normal.y] } else { [0.0; 2] },
-            film_eta: finite(p.film.eta, 1e3).max(1.0),
-            film_thickness: finite(p.film.thickness, 1e6),
-            metallic: Share::new(p.metallic),
-            f90: Share::new(p.f90),
-            transmission: Share::new(p.transmission),
-            diffuse_transmission: Share::new(p.diffuse_transmission),
-            coat: Share::new(p.clearcoat),
-            sheen_greatest: Share::new(p.sheen_greatest),
-            sheen_roughness: Share::new(p.sheen_roughness),
-            iridescence: Share::new(p.iridescence),
-            is_solid: p.is_solid,
-        }
-    }
-
-    /// The surface with other values of what mostly varies, and for another path: as [`Principled::new`] has it.
-    #[inline]
-    pub(crate) fn varied(
-        &self,
-        base_color: Spectrum,
-        metallic: f32,
-        roughness: TrowbridgeReitz,
-        lane_weights: Spectrum,
-        wavelengths: Option<[f32; 4]>,
-    ) -> Self {
-        Self {
-            base_color: Shares::new(base_color),
-            metallic: Share::new(metallic),
-            roughness,
-            lane_weights: packed_weights(lane_weights),
-            wavelengths: packed_wavelengths(wavelengths),
-            ..*self
-        }
-    }
-
-    /// The parameters, to the precision with which they are stored.
-    pub fn parameters(&self) -> Parameters {
-        let [x, y] = self.coat_normal;
-        let is_spectral = self.wavelengths != [0; 4];
-        Parameters {
-            base_color: self.base_color.lanes(),
-            metallic: self.metallic.value(),
+            base_color: self.base_color.map(share),
+            metallic: share(self.metallic),
             roughness: self.roughness,
-            eta: self.eta,
-            f0: self.f0.lanes(),
-            f0_greatest: self.f0_greatest.value(),
-            f90: self.f90.value(),
-            transmission: self.transmission.value(),
+            eta: if self.eta > 0.0 { fresnel::valid_eta(self.eta) } else { 0.0 },
+            f0: self.f0.map(share),
+            f0_greatest: share(self.f0_greatest),
+            f90: share(self.f90),
+            transmission: share(self.transmission),
             is_solid: self.is_solid,
-            diffuse_transmission: self.diffuse_transmission.value(),
-            diffuse_transmission_color: self.diffuse_transmission_color.lanes(),
-            clearcoat: self.coat.value(),
-            clearcoat_roughness: TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha },
-            clearcoat_normal: Vec3::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt()),
-            sheen_color: self.sheen_color.lanes(),
-            sheen_greatest: self.sheen_greatest.value(),
-            sheen_roughness: self.sheen_roughness.value(),
-            iridescence: self.iridescence.value(),
+            diffuse_transmission: share(self.diffuse_transmission),
+            diffuse_transmission_color: self.diffuse_transmission_color.map(share),
+            clearcoat: share(self.clearcoat),
+            clearcoat_roughness: TrowbridgeReitz { alpha_x: coat_alpha, alpha_y: coat_alpha },
+            clearcoat_normal: if is_usable { self.clearcoat_normal } else { Vec3::Z.into() },
+            sheen_color: self.sheen_color.map(share),
+            sheen_greatest: share(self.sheen_greatest),
+            sheen_roughness: share(self.sheen_roughness),
+            iridescence: share(self.iridescence),
             film: Film {
-                eta: self.film_eta,
-                thickness: self.film_thickness,
-                wavelengths: is_spectral.then(|| self.wavelengths.map(|w| f32::from(w) / WAVELENGTH_STEPS)),
+                eta: finite(self.film.eta, 1e3).max(1.0),
+                thickness: finite(self.film.thickness, 1e6),
+                wavelengths: self.film.wavelengths,
             },
-            lane_weights: Spectrum(self.lane_weights.map(|w| f32::from(w) * (1.0 / 255.0))),
+            lane_weights: self.lane_weights.map(share),
         }
     }
 
     /// The surface for a fixed outgoing direction.
     pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering {
-        LocalScattering::new(&Look::new(self), wo.into(), lobes)
+        LocalScattering::new(self, wo.into(), lobes)
     }
 }
 
@@ -320,7 +192,7 @@ impl ScatteringFunction for Principled {
             true => Lobes::SPECULAR,
             false => Lobes::GLOSSY,
         };
-        let p = self.parameters();
+        let p = self;
         let mut lobes = Lobes::REFLECTION | of(p.roughness);
         let is_body = p.metallic < 1.0;
         if is_body && p.transmission > 0.0 {
@@ -338,7 +210,7 @@ impl ScatteringFunction for Principled {
         if p.clearcoat > 0.0 {
             lobes |= of(p.clearcoat_roughness);
         }
-        if !self.sheen_color.is_black() {
+        if !p.sheen_color.is_black() {
             lobes |= Lobes::GLOSSY;
         }
         lobes
@@ -346,9 +218,7 @@ impl ScatteringFunction for Principled {
 
     fn regularize(&mut self) {
         self.roughness.regularize();
-        let mut coat = TrowbridgeReitz { alpha_x: self.coat_alpha, alpha_y: self.coat_alpha };
-        coat.regularize();
-        self.coat_alpha = coat.alpha_x;
+        self.clearcoat_roughness.regularize();
     }
 
     fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
@@ -363,7 +233,7 @@ impl ScatteringFunction for Principled {
     }
 
     fn description(&self) -> Description {
-        let p = self.parameters();
+        let p = self;
         Description {
             kind: "principled",
             does: "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
@@ -386,7 +256,7 @@ impl ScatteringFunction for Principled {
     }
 }
 
-impl<R: Real> LaneBsdf<R> for Look<R> {
+impl<R: Real> LaneBsdf<R> for Principled<R> {
     type View = LocalScattering<R>;
 
     #[inline(always)]
@@ -415,7 +285,10 @@ impl<R: Real> LaneBsdf<R> for Look<R> {
     }
     #[inline(always)]
     fn has_density(&self) -> R::Mask {
-        self.has_density()
+        let (zero, one) = (self.metallic.like(0.0), self.metallic.like(1.0));
+        let is_diffuse = self.metallic.lt(one) & self.transmission.lt(one);
+        let has_coat = self.clearcoat.gt(zero) & !self.clearcoat_roughness.is_smooth();
+        !self.roughness.is_smooth() | is_diffuse | has_coat | !self.sheen_color.is_black()
     }
     #[inline(always)]
     fn diffuse_share(&self, view: &LocalScattering<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {

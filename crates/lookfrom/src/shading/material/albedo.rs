@@ -42,7 +42,7 @@ pub(crate) fn of_coefficients<R: Real>([diffuse, mirror, transmission]: [Spectru
     [Float::clamp(r, 0.0, 1.0), Float::clamp(g, 0.0, 1.0), Float::clamp(b, 0.0, 1.0)]
 }
 
-/// The same of all materials of a kind that has the same colours everywhere; `None` where they may vary.
+/// The albedo of a kind of material that has the same colours everywhere; `None` where they may vary.
 pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32; 3]> {
     let varies = match kind {
         MaterialKind::Whitted(k) => k.diffuse.varies() || k.mirror.varies() || k.transmission.varies(),

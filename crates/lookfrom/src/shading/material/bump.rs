@@ -22,7 +22,7 @@ const STEP: f32 = 0.0005;
 /// The smallest offset, in parts of u and v: differences of numbers of single precision need one.
 const LEAST_STEP: f32 = 4e-6;
 
-/// What shading frames are bent by.
+/// Data that shading frames are bent by.
 #[derive(Clone, Copy, Debug)]
 pub struct Relief<'a> {
     /// Pictures and formulas of heights and normals.

@@ -81,7 +81,7 @@ pub enum MaterialKind {
     Unlit {
         /// Its radiance.
         color: SpectrumTexture,
-        /// The same as a reflectance.
+        /// That colour as a reflectance.
         albedo: SpectrumTexture,
     },
     /// A floor of which only the shadows on it are visible.
@@ -132,7 +132,7 @@ pub enum Metal {
 /// An index of refraction.
 #[derive(Clone, Copy, Debug)]
 pub enum Ior {
-    /// The same for all wavelengths.
+    /// One value for all wavelengths.
     Value(f32),
     /// By wavelength: light is dispersed.
     Curve(CurveId),
@@ -141,7 +141,7 @@ pub enum Ior {
 /// Roughness of a microfacet surface.
 #[derive(Clone, Copy, Debug)]
 pub enum Roughness {
-    /// The same everywhere.
+    /// One value everywhere.
     Constant(TrowbridgeReitz),
     /// It varies over the surface.
     Varying {
@@ -184,7 +184,7 @@ pub struct Coat {
     pub samples: u16,
     /// How they are weighted.
     pub estimate: CoatEstimate,
-    /// What is known beforehand, where the coat is the same everywhere and has no particles, and is not pbrt's.
+    /// Knowledge of its inside, where the coat is the same everywhere and has no particles, and is not pbrt's.
     pub interior: Option<CoatInterior>,
 }
 

@@ -13,8 +13,8 @@ use super::kind::Principled as PrincipledMaterial;
 use super::{Evaluator, Frame, MaterialKind, ShadingContext, bump};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::principled::film::Film;
-use crate::shading::bsdf::principled::{Parameters, Principled};
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
@@ -136,7 +136,7 @@ impl Evaluator<'_> {
             color => self.with_greatest(color),
         };
         let diffuse_transmission = self.share(look.diffuse_transmission);
-        let parameters = Parameters {
+        let bsdf = Principled {
             base_color: self.albedo(&look.base_color),
             metallic,
             roughness: TrowbridgeReitz::new(along, across),
@@ -154,7 +154,7 @@ impl Evaluator<'_> {
             },
             clearcoat,
             clearcoat_roughness: TrowbridgeReitz::new(coat_alpha, coat_alpha),
-            clearcoat_normal,
+            clearcoat_normal: clearcoat_normal.into(),
             sheen_color,
             sheen_greatest,
             sheen_roughness: self.share(look.sheen_roughness),
@@ -170,19 +170,20 @@ impl Evaluator<'_> {
             },
             lane_weights: self.lane_weights(),
         };
-        (Principled::new(&parameters), frame)
+        (bsdf.clamped(), frame)
     }
 
     /// The BSDF by that of a [`template`].
     pub(super) fn of_template(&self, look: &PrincipledMaterial, template: &Principled) -> Principled {
         let alpha = alpha(self.share(look.roughness));
-        template.varied(
-            self.albedo(&look.base_color),
-            self.share(look.metallic),
-            TrowbridgeReitz::new(alpha, alpha),
-            self.lane_weights(),
-            self.wavelengths(),
-        )
+        Principled {
+            base_color: self.albedo(&look.base_color),
+            metallic: self.share(look.metallic),
+            roughness: TrowbridgeReitz::new(alpha, alpha),
+            film: Film { wavelengths: self.wavelengths(), ..template.film },
+            lane_weights: self.lane_weights(),
+            ..*template
+        }
     }
 
     /// A number of 0 … 1.

@@ -78,7 +78,7 @@ impl Material {
         B::at(&mut Evaluator::new(&[], textures, point, context), &self.kind)
     }
 
-    /// The same where frames are bent, and the axes of the frame; the third is the shading normal.
+    /// The BSDF at a point where frames are bent, and the axes of the frame; the third is the shading normal.
     #[inline(never)]
     pub(crate) fn bent_row<B: MaterialRow>(
         &self,
@@ -102,7 +102,7 @@ pub(crate) trait MaterialRow: RowBsdf {
     /// The BSDF of a material of this class.
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self>;
 
-    /// The same in a frame, which it may turn.
+    /// The BSDF in a frame, which it may turn.
     #[inline]
     fn in_frame(
         evaluator: &mut Evaluator<'_>,

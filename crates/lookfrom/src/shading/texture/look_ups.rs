@@ -73,7 +73,7 @@ impl PictureSet {
 #[derive(Clone, Copy, Debug)]
 pub struct LookUps([[[f32; 4]; LANES]; MOST]);
 
-/// What was looked up at one of eight points.
+/// Texels that were looked up for one of eight points.
 #[derive(Clone, Copy, Debug)]
 pub struct LookedUp<'a> {
     pictures: &'a PictureSet,
@@ -82,7 +82,7 @@ pub struct LookedUp<'a> {
 }
 
 impl LookUps {
-    /// Those of a set at a point.
+    /// The texels of a set at a point.
     #[inline]
     pub(crate) fn of<'a>(&'a self, pictures: &'a PictureSet, lane: usize) -> LookedUp<'a> {
         LookedUp { pictures, look_ups: self, lane }

@@ -14,9 +14,9 @@ const DEFAULT: &str = "default";
 
 /// The labels of a scene's shapes.
 pub(in crate::world) struct Labels {
-    /// Of the shapes that are in no object.
+    /// The labels of shapes that are in no object.
     pub(in crate::world) shapes: Vec<String>,
-    /// Of the shapes of each object.
+    /// The labels of the shapes of each object.
     pub(in crate::world) objects: Vec<Vec<String>>,
 }
 

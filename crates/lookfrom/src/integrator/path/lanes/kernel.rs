@@ -19,7 +19,7 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The samples of eight paths. Masks have bit i for lane i.
-pub(in crate::integrator::path) struct Scattered {
+pub(super) struct Scattered {
     pub(super) kind: Kind,
     /// Lanes whose BSDF has a density, for which a light was sampled.
     pub(super) has_density: u32,
@@ -56,8 +56,8 @@ pub(in crate::integrator::path) struct Scattered {
 }
 
 impl Scattered {
-    /// Of no path.
-    pub(in crate::integrator::path) const NONE: Self = Self {
+    /// The samples of no path.
+    pub(super) const NONE: Self = Self {
         kind: Kind::PLAIN,
         has_density: 0,
         lights: LightSamples::NONE,
@@ -84,7 +84,7 @@ impl Scattered {
     };
 }
 
-/// What light sampling finds in eight lanes, if nothing is in between.
+/// Light samples of eight lanes, weighted, as if nothing were in between.
 pub(super) struct Connections {
     /// The BSDF for the direction to the light, times the cosine.
     pub(super) f: Columns<4>,
@@ -105,7 +105,7 @@ pub(super) struct Connections {
 }
 
 impl Connections {
-    /// Of no lane.
+    /// The light samples of no lane.
     const NONE: Self = Self {
         f: [[0.0; LANES]; 4],
         diffuse: [[0.0; LANES]; 4],

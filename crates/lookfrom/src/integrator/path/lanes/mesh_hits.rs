@@ -244,7 +244,7 @@ pub(super) struct MeshPoints {
     front: u32,
     /// Whether the shading normal is another than the geometric one.
     smooth: u32,
-    /// Of materials that bend frames.
+    /// The frames of materials that bend them.
     bent: BentFrames,
 }
 

@@ -118,7 +118,7 @@ impl SurfaceColumns {
         row(&self.wo, lane)
     }
 
-    /// The same for AOVs.
+    /// Leaves them to AOVs.
     #[inline]
     pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
         (first.position, first.wo) = (self.position, self.wo);

@@ -33,7 +33,7 @@ static REFLECTORS: [OnceLock<Reflectors>; ROUGHNESSES * ROUGHNESSES] =
     [const { OnceLock::new() }; ROUGHNESSES * ROUGHNESSES];
 
 impl Reflectors {
-    /// Those of a pair of roughnesses: x times [`ROUGHNESSES`] and y.
+    /// The albedos of a pair of roughnesses: x times [`ROUGHNESSES`] and y.
     #[inline(always)]
     fn of(pair: usize) -> &'static Self {
         REFLECTORS[pair].get_or_init(|| Self::integrated([pair / ROUGHNESSES, pair % ROUGHNESSES]))

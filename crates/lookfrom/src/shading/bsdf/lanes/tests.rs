@@ -7,7 +7,7 @@ use super::*;
 use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
-use crate::shading::bsdf::principled::Parameters;
+use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::principled::film::Film;
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
@@ -193,32 +193,35 @@ fn principled(index: u64) -> Bsdf {
     // Eight are in one mode.
     let is_spectral = (index / 8).is_multiple_of(2);
     let lambda = std::array::from_fn(|k| 380.0 + 400.0 * unit(114 + k as u64, index));
-    Bsdf::Principled(Principled::new(&Parameters {
-        base_color: spectrum(118, index),
-        metallic: share(122, index),
-        roughness: if has(123) { TrowbridgeReitz::SMOOTH } else { roughness(124, index) },
-        eta: [1.0, 0.0, any(126, index, 3), any(127, index, 1)][(index % 4) as usize],
-        f0,
-        f0_greatest: greatest(f0),
-        f90: share(128, index),
-        transmission: share(129, index),
-        is_solid: hash::pair(130, index).is_multiple_of(2),
-        diffuse_transmission: share(131, index),
-        diffuse_transmission_color: spectrum(132, index),
-        clearcoat: if has(136) { share(137, index) } else { 0.0 },
-        clearcoat_roughness: TrowbridgeReitz::new(alpha, alpha),
-        clearcoat_normal: if has(138) { Vec3::Z } else { Vec3 { z: normal.z.abs(), ..normal } },
-        sheen_color,
-        sheen_greatest: greatest(sheen_color),
-        sheen_roughness: share(139, index),
-        iridescence: if has(140) { share(141, index) } else { 0.0 },
-        film: Film {
-            eta: 1.0 + any(142, index, 3),
-            thickness: any(143, index, 11),
-            wavelengths: is_spectral.then_some(lambda),
-        },
-        lane_weights: spectrum(144, index),
-    }))
+    Bsdf::Principled(
+        Principled {
+            base_color: spectrum(118, index),
+            metallic: share(122, index),
+            roughness: if has(123) { TrowbridgeReitz::SMOOTH } else { roughness(124, index) },
+            eta: [1.0, 0.0, any(126, index, 3), any(127, index, 1)][(index % 4) as usize],
+            f0,
+            f0_greatest: greatest(f0),
+            f90: share(128, index),
+            transmission: share(129, index),
+            is_solid: hash::pair(130, index).is_multiple_of(2),
+            diffuse_transmission: share(131, index),
+            diffuse_transmission_color: spectrum(132, index),
+            clearcoat: if has(136) { share(137, index) } else { 0.0 },
+            clearcoat_roughness: TrowbridgeReitz::new(alpha, alpha),
+            clearcoat_normal: if has(138) { Vec3::Z } else { normal.with_z(normal.z.abs()) }.into(),
+            sheen_color,
+            sheen_greatest: greatest(sheen_color),
+            sheen_roughness: share(139, index),
+            iridescence: if has(140) { share(141, index) } else { 0.0 },
+            film: Film {
+                eta: 1.0 + any(142, index, 3),
+                thickness: any(143, index, 11),
+                wavelengths: is_spectral.then_some(lambda),
+            },
+            lane_weights: spectrum(144, index),
+        }
+        .clamped(),
+    )
 }
 
 #[test]

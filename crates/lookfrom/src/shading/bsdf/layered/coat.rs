@@ -31,14 +31,14 @@ pub struct CoatLayer {
     pub samples: u16,
     /// How they are weighted.
     pub estimate: CoatEstimate,
-    /// What is known of it beforehand, which replaces walks over a diffuse base.
+    /// Knowledge of its inside, which replaces walks over a diffuse base.
     pub interior: Option<CoatInterior>,
 }
 
 /// Number of coefficients of [`CoatInterior::transmission`].
 pub(crate) const COEFFICIENTS: usize = 8;
 
-/// What goes on between a coat without particles and a diffuse base below it.
+/// Light between a coat without particles and a diffuse base below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatInterior {
     /// The fraction of the light from the base that comes back to it, through the slab both ways: R in the series 1 + ρR + (ρR)² + …

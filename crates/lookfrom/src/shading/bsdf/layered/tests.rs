@@ -58,7 +58,7 @@ fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
     with_walks(bsdf, CoatEstimate::Unbiased, 0.0).f(wo, wi, Mode::Radiance)
 }
 
-/// The same by `sample`, of the specular or the other lobes.
+/// The mean weight by `sample`, of the specular or the other lobes.
 fn mean_weight(bsdf: &Bsdf, wo: Vec3, n: u64, seed: u64, specular: bool) -> Estimate {
     estimate(n, |index| {
         let (uc, u) = numbers(seed, index);

@@ -2,7 +2,7 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::look::Look;
+use super::Principled;
 use super::sheen::Sheen;
 use crate::core::math::schlick;
 use crate::core::optics;
@@ -32,7 +32,7 @@ pub(super) struct Fibres<R: Real> {
 impl<R: Real> Fibres<R> {
     /// `None` where no surface has a sheen.
     #[inline(always)]
-    pub(super) fn new(look: &Look<R>, cos: R) -> Option<Self> {
+    pub(super) fn new(look: &Principled<R>, cos: R) -> Option<Self> {
         let exists = !look.sheen_color.is_black();
         if !exists.any() {
             return None;
@@ -84,7 +84,7 @@ pub(super) struct Coat<R: Real> {
 impl<R: Real> Coat<R> {
     /// `None` where no surface has a coat.
     #[inline(always)]
-    pub(super) fn new(look: &Look<R>, wo: Vector<R>) -> Option<Self> {
+    pub(super) fn new(look: &Principled<R>, wo: Vector<R>) -> Option<Self> {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
         let amount = look.clearcoat;
         if !amount.gt(zero).any() {

@@ -2,9 +2,9 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::Principled;
 use super::choice::Choice;
 use super::facing::{Facing, Facings};
-use super::look::Look;
 use super::sheen;
 use super::surface::Facet;
 use super::view::{View, is_below};
@@ -20,7 +20,7 @@ use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///
 /// Methods that are needed twice, or are long, are not inlined: compilers would take minutes.
-pub(crate) struct LocalScattering<R: Real = f32> {
+pub struct LocalScattering<R: Real = f32> {
     view: View<R>,
     choice: Choice<R>,
     lobes: Lobes,
@@ -30,7 +30,7 @@ pub(crate) struct LocalScattering<R: Real = f32> {
 
 impl<R: Real> LocalScattering<R> {
     #[inline(never)]
-    pub(in crate::shading::bsdf) fn new(look: &Look<R>, wo: Vector<R>, lobes: Lobes) -> Self {
+    pub(in crate::shading::bsdf) fn new(look: &Principled<R>, wo: Vector<R>, lobes: Lobes) -> Self {
         wo.z.at_level(
             #[inline(always)]
             || {
@@ -82,7 +82,7 @@ impl<R: Real> LocalScattering<R> {
         (Spectrum::select(is_usable, f, Spectrum::splat(zero)), R::select(is_usable, pdf, zero))
     }
 
-    /// The same in the mirrored frame, for directions that are not grazing.
+    /// Value and density in the mirrored frame, for directions that are not grazing.
     #[inline(never)]
     fn both(&self, wi: Vector<R>, mode: Mode) -> (Spectrum<R>, R) {
         wi.z.at_level(

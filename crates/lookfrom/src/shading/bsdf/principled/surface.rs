@@ -2,8 +2,8 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::Principled;
 use super::film::Film;
-use super::look::Look;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -56,7 +56,7 @@ fn toward<R: Real>(f0: Spectrum<R>, f90: R, s: R) -> Spectrum<R> {
 
 impl<R: Real> Surface<R> {
     #[inline(always)]
-    pub(super) fn new(look: &Look<R>) -> Self {
+    pub(super) fn new(look: &Principled<R>) -> Self {
         let roughness = look.roughness;
         let (zero, one) = (look.eta.like(0.0), look.eta.like(1.0));
         let black = Spectrum::splat(zero);
@@ -229,7 +229,7 @@ impl<R: Real> Surface<R> {
         self.facet_with(self.glass, cos, is_inside)
     }
 
-    /// The same for another weight of the transmissive part. Not inlined, since it is needed in many places.
+    /// A facet for another weight of the transmissive part. Not inlined, since it is needed in many places.
     #[inline(never)]
     pub(super) fn facet_with(&self, glass: R, cos: R, is_inside: R::Mask) -> Facet<R> {
         cos.at_level(

@@ -13,51 +13,51 @@ fn rough(alpha: f32) -> TrowbridgeReitz {
     TrowbridgeReitz::new(alpha, alpha)
 }
 
-fn of(parameters: Parameters) -> Bsdf {
-    Bsdf::Principled(Principled::new(&parameters))
+fn of(parameters: Principled) -> Bsdf {
+    Bsdf::Principled(parameters.clamped())
 }
 
 /// BSDFs for the tests of densities: every lobe alone as far as possible, and mixtures.
 pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
-    let base = Parameters { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Parameters::default() };
-    let glass = Parameters { transmission: 1.0, roughness: rough(0.3), ..base };
+    let base = Principled { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Principled::default() };
+    let glass = Principled { transmission: 1.0, roughness: rough(0.3), ..base };
     let film = Film { eta: 1.8, thickness: 500.0, wavelengths: None };
-    let sheen = Parameters {
+    let sheen = Principled {
         sheen_color: Spectrum([0.9, 0.4, 0.2, 0.1]),
         sheen_greatest: 0.9,
         sheen_roughness: 0.5,
         roughness: rough(0.6),
         ..base
     };
-    let coat = Parameters { clearcoat: 0.9, clearcoat_roughness: rough(0.1), ..base };
+    let coat = Principled { clearcoat: 0.9, clearcoat_roughness: rough(0.1), ..base };
     let tilted = direction(15.0, 40.0);
     let all = |name, parameters| (name, of(parameters));
     vec![
-        all("principled plastic", Parameters { roughness: rough(0.25), ..base }),
+        all("principled plastic", Principled { roughness: rough(0.25), ..base }),
         all("principled smooth plastic", base),
-        all("principled metal", Parameters { metallic: 1.0, roughness: rough(0.4), ..base }),
+        all("principled metal", Principled { metallic: 1.0, roughness: rough(0.4), ..base }),
         all(
             "principled brushed metal",
-            Parameters { metallic: 1.0, roughness: TrowbridgeReitz::new(0.6, 0.15), ..base },
+            Principled { metallic: 1.0, roughness: TrowbridgeReitz::new(0.6, 0.15), ..base },
         ),
         all("principled thin sheet", glass),
-        all("principled body", Parameters { is_solid: true, ..glass }),
-        all("principled body of air", Parameters { is_solid: true, eta: 1.0, ..glass }),
+        all("principled body", Principled { is_solid: true, ..glass }),
+        all("principled body of air", Principled { is_solid: true, eta: 1.0, ..glass }),
         all(
             "principled leaf",
-            Parameters { diffuse_transmission: 0.6, roughness: rough(0.5), f90: 0.5, f0: grey(0.02), ..base },
+            Principled { diffuse_transmission: 0.6, roughness: rough(0.5), f90: 0.5, f0: grey(0.02), ..base },
         ),
         all("principled velvet", sheen),
-        all("principled lacquer", Parameters { metallic: 1.0, roughness: rough(0.5), ..coat }),
-        all("principled smooth lacquer", Parameters { clearcoat_roughness: rough(0.0), ..coat }),
+        all("principled lacquer", Principled { metallic: 1.0, roughness: rough(0.5), ..coat }),
+        all("principled smooth lacquer", Principled { clearcoat_roughness: rough(0.0), ..coat }),
         all(
             "principled tilted lacquer",
-            Parameters { clearcoat_normal: tilted, roughness: rough(0.4), ..coat },
+            Principled { clearcoat_normal: tilted.into(), roughness: rough(0.4), ..coat },
         ),
-        all("principled film", Parameters { iridescence: 0.9, film, roughness: rough(0.3), ..base }),
+        all("principled film", Principled { iridescence: 0.9, film, roughness: rough(0.3), ..base }),
         all(
             "principled everything",
-            Parameters {
+            Principled {
                 metallic: 0.3,
                 transmission: 0.4,
                 is_solid: true,
@@ -96,15 +96,15 @@ const ANGLES: [f32; 6] = [0.0, 30.0, 55.0, 70.0, 80.0, 86.0];
 fn white_stays_white_in_a_furnace() {
     let mut faults = Vec::new();
     for roughness in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0_f32] {
-        let white = Parameters { roughness: rough(roughness * roughness), ..Parameters::default() };
-        let white_mirror = Parameters { f0: grey(0.3), f0_greatest: 0.3, ..white };
+        let white = Principled { roughness: rough(roughness * roughness), ..Principled::default() };
+        let white_mirror = Principled { f0: grey(0.3), f0_greatest: 0.3, ..white };
         for (name, parameters) in [
             ("plastic", white),
             ("strong plastic", white_mirror),
-            ("metal", Parameters { metallic: 1.0, ..white }),
-            ("half metal", Parameters { metallic: 0.5, ..white }),
-            ("sheet", Parameters { transmission: 1.0, ..white }),
-            ("leaf", Parameters { diffuse_transmission: 0.4, ..white }),
+            ("metal", Principled { metallic: 1.0, ..white }),
+            ("half metal", Principled { metallic: 0.5, ..white }),
+            ("sheet", Principled { transmission: 1.0, ..white }),
+            ("leaf", Principled { diffuse_transmission: 0.4, ..white }),
         ] {
             let bsdf = of(parameters);
             for angle in ANGLES {
@@ -124,19 +124,19 @@ fn bodies_of_white_glass_keep_all_light() {
     for roughness in [0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0_f32] {
         for eta in [0.5, 0.9, 1.01, 1.1, 1.33, 1.5, 2.0_f32] {
             let straight = ((eta - 1.0) / (eta + 1.0)).powi(2);
-            let glass = Parameters {
+            let glass = Principled {
                 eta,
                 f0: grey(straight),
                 f0_greatest: straight,
                 transmission: 1.0,
                 is_solid: true,
                 roughness: rough(roughness * roughness),
-                ..Parameters::default()
+                ..Principled::default()
             };
             for (name, parameters) in [
                 ("glass", glass),
-                ("brushed", Parameters { roughness: TrowbridgeReitz::new(0.1, 0.8), ..glass }),
-                ("without a mirror", Parameters { f0: grey(0.0), f0_greatest: 0.0, f90: 0.0, ..glass }),
+                ("brushed", Principled { roughness: TrowbridgeReitz::new(0.1, 0.8), ..glass }),
+                ("without a mirror", Principled { f0: grey(0.0), f0_greatest: 0.0, f90: 0.0, ..glass }),
             ] {
                 let bsdf = of(parameters);
                 for angle in ANGLES.into_iter().flat_map(|angle| [angle, 180.0 - angle]) {
@@ -169,7 +169,7 @@ fn nothing_gives_more_than_it_gets() {
         let eta = 1.0 + 1.5 * any(1);
         let straight = ((eta - 1.0) / (eta + 1.0)).powi(2);
         let is_drawn_out = any(2) < 0.3;
-        let parameters = Parameters {
+        let parameters = Principled {
             base_color: lanes(3),
             metallic: often(6),
             roughness: TrowbridgeReitz::new(alpha(7), alpha(if is_drawn_out { 8 } else { 7 })),
@@ -187,9 +187,9 @@ fn nothing_gives_more_than_it_gets() {
             sheen_roughness: any(18),
             iridescence: often(19),
             film: Film { eta: 1.0 + any(60), thickness: 1000.0 * any(61), wavelengths: None },
-            ..Parameters::default()
+            ..Principled::default()
         };
-        let bare = Parameters { sheen_color: Spectrum::BLACK, sheen_greatest: 0.0, ..parameters };
+        let bare = Principled { sheen_color: Spectrum::BLACK, sheen_greatest: 0.0, ..parameters };
         for parameters in [parameters, bare] {
             let bsdf = of(parameters);
             for angle in [0.0, 60.0, 83.0, 120.0] {
@@ -211,11 +211,11 @@ fn limits_are_what_is_there_already() {
     let close = |a: f32, b: f32, bound: f32| (a - b).abs() <= bound * b.abs().max(1e-2);
     let mut near = (0, 0);
     for alpha in [0.0, 0.2] {
-        let glass = of(Parameters {
+        let glass = of(Principled {
             transmission: 1.0,
             is_solid: true,
             roughness: rough(alpha),
-            ..Parameters::default()
+            ..Principled::default()
         });
         let pbrt = Bsdf::dielectric(1.5, rough(alpha));
         for (k, angle) in [0.0, 40.0, 75.0, 110.0, 140.0, 175.0].into_iter().enumerate() {
@@ -260,11 +260,11 @@ fn limits_are_what_is_there_already() {
     // A metal with Schlick's approximation is close to one of the same reflectance, within the
     // approximation's error.
     let reflectance = Spectrum([0.9, 0.6, 0.3, 0.5]);
-    let metal = of(Parameters {
+    let metal = of(Principled {
         metallic: 1.0,
         base_color: reflectance,
         roughness: rough(0.1),
-        ..Parameters::default()
+        ..Principled::default()
     });
     let pbrt = Bsdf::conductor_of_reflectance(reflectance, rough(0.1));
     for (wo, wi) in
@@ -278,13 +278,13 @@ fn limits_are_what_is_there_already() {
         assert!(close(ours, theirs, 0.02), "{ours} {theirs}");
     }
     // A diffuse body without specular reflection is Lambertian.
-    let matte = of(Parameters {
+    let matte = of(Principled {
         base_color: reflectance,
         f0: Spectrum::BLACK,
         f0_greatest: 0.0,
         f90: 0.0,
         roughness: rough(0.5),
-        ..Parameters::default()
+        ..Principled::default()
     });
     let lambert = Bsdf::diffuse(reflectance);
     for (wo, wi) in
@@ -352,16 +352,15 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
 }
 
 #[test]
-fn it_is_small_and_keeps_what_it_is_made_of() {
-    assert!(size_of::<Principled>() <= 96, "{}", size_of::<Principled>());
-    let kept = Principled::new(&Parameters::default()).parameters();
+fn invalid_parameters_do_no_harm() {
+    assert!(size_of::<Principled>() <= 208, "{}", size_of::<Principled>());
+    let kept = Principled::default().clamped();
     assert_eq!(kept.base_color, grey(1.0));
     assert!((kept.f0.0[0] - fresnel::dielectric(1.0, 1.5)).abs() < 1e-5);
     let film = Film { eta: 1.3, thickness: 400.0, wavelengths: Some([400.0, 500.5, 600.0, 780.25]) };
-    assert_eq!(Principled::new(&Parameters { film, ..Parameters::default() }).parameters().film, film);
-    // Invalid parameters do no harm.
+    assert_eq!(Principled { film, ..Principled::default() }.clamped().film, film);
     let nonsense =
-        Parameters { metallic: f32::NAN, eta: f32::NAN, base_color: grey(f32::NAN), ..Parameters::default() };
-    let kept = Principled::new(&nonsense).parameters();
+        Principled { metallic: f32::NAN, eta: f32::NAN, base_color: grey(f32::NAN), ..Principled::default() };
+    let kept = nonsense.clamped();
     assert_eq!((kept.metallic, kept.eta, kept.base_color), (0.0, 0.0, grey(0.0)));
 }

@@ -6,9 +6,9 @@ use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::Principled;
 use super::facing::{Facing, Facings};
 use super::layers::{Coat, Fibres};
-use super::look::Look;
 use super::surface::{MEAN_COSINE, Surface};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -46,7 +46,7 @@ pub(super) fn is_below<R: Real>(wi: Vector<R>) -> R::Mask {
 
 impl<R: Real> View<R> {
     #[inline(always)]
-    pub(super) fn new(look: &Look<R>, from: Vector<R>) -> Self {
+    pub(super) fn new(look: &Principled<R>, from: Vector<R>) -> Self {
         let is_inside = is_below(from);
         let wo = Vector::select(is_inside, across(from), from);
         let surface = Surface::new(look);
@@ -99,7 +99,7 @@ impl<R: Real> View<R> {
         Spectrum::select(surface.is_smooth(), Spectrum::splat(zero), sum)
     }
 
-    /// The same of a reflector of which all is made.
+    /// Light scattered again between the facets of a reflector of which all is made.
     #[inline(always)]
     fn again_by(&self, f0: Spectrum<R>, f90: R) -> Spectrum<R> {
         let mean = self.surface.mean.all();

@@ -20,7 +20,7 @@ pub(crate) fn look_up_lanes<S: Simd>(
     look_up_each(simd, &[image; LANES], signed_size, &[wraps; LANES], st)
 }
 
-/// The same at a place of each of eight images, by their [`signed_size`].
+/// Texels at a place of each of eight images, by their [`signed_size`].
 #[inline(always)]
 pub(in crate::shading::texture) fn look_up_each<S: Simd>(
     simd: S,
