@@ -195,9 +195,9 @@ pub(super) fn step<P: Probe>(
         is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });
     let wanted = wanted(tree, output);
-    if let Some(shaded) = steps.shade_one(world, (path, stream, &mode), surface, &coefficients, wanted) {
+    steps.shade_one(world, (path, stream, &mode), surface, &coefficients, wanted, |shaded| {
         shaded.finish(world, &Vertex { path, hit, surface: Some(surface) }, tree, output);
-    }
+    });
 }
 
 fn wanted<'a, P: Probe>(tree: Option<&'a Whitted>, output: &StepOutput<'_, P>) -> Wanted<'a> {

@@ -19,6 +19,13 @@ pub(super) struct Groups {
     told: Vec<Told>,
 }
 
+/// An end of the list of groups, and of that of lights.
+#[derive(Clone, Copy)]
+pub(super) struct End {
+    pub(super) groups: usize,
+    lights: usize,
+}
+
 /// The rays of a branch of the tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BranchRays {
@@ -80,8 +87,20 @@ impl Groups {
     /// Removes all.
     #[inline(always)]
     pub(super) fn clear(&mut self) {
-        (self.count, self.light_count) = (0, 0);
-        self.told.clear();
+        self.rewind(End { groups: 0, lights: 0 });
+    }
+
+    /// The end of the list of groups.
+    #[inline(always)]
+    pub(super) fn end(&self) -> End {
+        End { groups: self.count, lights: self.light_count }
+    }
+
+    /// Removes the groups from an end on.
+    #[inline(always)]
+    pub(super) fn rewind(&mut self, end: End) {
+        (self.count, self.light_count) = (end.groups, end.lights);
+        self.told.truncate(end.groups);
     }
 
     /// Number of groups.

@@ -67,11 +67,11 @@ impl<W: Width> Step<'_, W> {
         let zero = width.splat(0.0);
         let exits = surfaces.exits();
         let at = Destination { world, points: surfaces.points.position, n: surfaces.ns_facing };
-        let is_lit = coefficients.is_lit().any();
-        for (index, source) in (0..).zip(&world.lights).filter(|_| is_lit) {
+        let is_lit = coefficients.is_lit();
+        for (index, source) in (0..).zip(&world.lights).filter(|_| is_lit.any()) {
             let Some(light) = arriving(&at, source, index) else {
                 if let Some(told) = &mut told {
-                    told.add_light(width, (&paths, index), None, [Spectrum::splat(zero); 2]);
+                    told.add_light(width, (&paths, is_lit), index, None, [Spectrum::splat(zero); 2]);
                 }
                 continue;
             };
@@ -87,7 +87,7 @@ impl<W: Width> Step<'_, W> {
             if let Some(told) = &mut told {
                 let reflected =
                     [diffuse, specular].map(|part| Spectrum::select(lit, part, Spectrum::splat(zero)));
-                told.add_light(width, (&paths, index), Some((&light, width.bits(exists))), reflected);
+                told.add_light(width, (&paths, is_lit), index, Some((&light, width.bits(exists))), reflected);
             }
             let contribution = beta * (diffuse + specular) * light.intensity();
             lit = lit & !contribution.is_black();

@@ -17,6 +17,7 @@ use crate::integrator::{
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::Coefficients;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The steps of the paths of a batch: memory that is reused.
@@ -118,18 +119,22 @@ impl Steps {
         }
     }
 
-    /// Computes the step of one path, whatever it has hit.
+    /// Computes the step of one path, whatever it has hit, and calls `finish` with it.
     pub(super) fn shade_one(
         &mut self,
         world: &World,
-        path: (&Path, &SampleStream, &crate::shading::texture::SpectralMode),
+        path: (&Path, &SampleStream, &SpectralMode),
         surface: &SurfaceInteraction,
         coefficients: &Coefficients,
         wanted: Wanted<'_>,
-    ) -> Option<Shaded<'_>> {
-        let number = self.groups.count();
+        finish: impl FnOnce(&Shaded<'_>),
+    ) {
+        let end = self.groups.end();
         shade_one(world, path, surface, coefficients, wanted, &mut self.groups);
-        self.shaded(number * LANES)
+        if let Some(shaded) = self.shaded(end.groups * LANES) {
+            finish(&shaded);
+        }
+        self.groups.rewind(end);
     }
 
     /// The step of a path, if its hit is plain.

@@ -39,18 +39,19 @@ impl Told {
         Self { coefficients: (0..LANES).map(of).collect(), events: Default::default() }
     }
 
-    /// Adds a light: what arrives, in the lanes of a mask, and what is reflected of it.
+    /// Adds a light, in the lanes of a mask: what arrives, in those of another, and what is reflected of it.
     pub(super) fn add_light<W: Width>(
         &mut self,
         width: W,
-        (paths, light): (&[&Path; LANES], u32),
+        (paths, is_lit): (&[&Path; LANES], Mask<W>),
+        light: u32,
         arriving: Option<(&Arriving<W::Real>, u32)>,
         reflected: [Spectrum<W::Real>; 2],
     ) {
         let [diffuse, specular] = reflected.map(|part| width.spectra(part));
         let samples = arriving.map(|(arriving, exists)| (arriving.samples(width), exists));
-        for (lane, events) in self.events.iter_mut().enumerate() {
-            events.push(Event::LocalLight {
+        for lane in LaneMask(width.bits(is_lit)) {
+            self.events[lane].push(Event::LocalLight {
                 address: paths[lane].address,
                 light,
                 sample: samples.filter(|(_, exists)| exists & 1 << lane != 0).map(|(of, _)| of[lane]),
