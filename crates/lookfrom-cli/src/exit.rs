@@ -7,7 +7,7 @@ use std::path::Path;
 use lookfrom::session::OPTIONS;
 use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningKind};
 
-use crate::diagnostic;
+use crate::{diagnostic, remedy};
 
 /// Success.
 pub(crate) const DONE: u8 = 0;
@@ -72,6 +72,7 @@ impl fmt::Display for Failure {
 
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
+        let error = error.worded(remedy::in_flags);
         match error.kind {
             ErrorKind::Request => Self::Usage(match error.hint {
                 Some(hint) => format!("{}\n  help: {hint}", error.message),
@@ -114,7 +115,8 @@ pub(crate) fn is_bad(warnings: &[Warning]) -> bool {
 
 /// Warnings of a kind; those with the same message at several locations are one line.
 pub(crate) fn lines(warnings: &[Warning], kind: WarningKind) -> Vec<String> {
-    let groups = WarningGroup::of(warnings);
+    let worded = |warning: &Warning| warning.clone().worded(remedy::in_flags);
+    let groups = WarningGroup::of(&warnings.iter().map(worded).collect::<Vec<_>>());
     groups.iter().filter(|group| group.kind() == kind).map(ToString::to_string).collect()
 }
 

@@ -105,7 +105,7 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         Samples::Worst => pixel()?.all[0].sample,
         Samples::All | Samples::Range(_) => {
             let report = pixel()?;
-            return answer.print(&report, || report.to_string());
+            return answer.print(&report, || format!("{report}\n--sample N shows each step of one"));
         }
     };
     let inspection = inspect::inspect(renderer, SampleId { pixel: [x, y], sample });

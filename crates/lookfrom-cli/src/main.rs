@@ -27,6 +27,7 @@ mod pipe;
 mod prepare;
 mod preview;
 mod progress;
+mod remedy;
 mod render;
 mod report;
 mod resume;

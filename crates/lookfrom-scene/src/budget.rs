@@ -12,6 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{Error, ErrorKind, Location, Result};
+use crate::remedy::Remedy;
 
 /// A limit in bytes, and how much of it is reserved. Clones share both.
 #[derive(Clone, Debug)]
@@ -82,9 +83,7 @@ fn refusal(bytes: u64, what: &str, at: &Location, limit: u64, left: u64) -> Erro
     let [wanted, left, limit] = [bytes, left, limit].map(in_units);
     let message =
         format!("{what} takes {wanted} of memory, but of the limit of {limit} only {left} are left");
-    Error::new(ErrorKind::Limit, at, message).hint(
-        "`--memory SIZE` sets another limit, such as 16GiB; if the size is not true, the file is damaged",
-    )
+    Error::new(ErrorKind::Limit, at, message).hint(Remedy::MoreMemory)
 }
 
 /// Bytes in the largest unit of which there is at least one.

@@ -7,6 +7,8 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::remedy::Remedy;
+
 /// A location in a file. Lines and columns count from 1; 0 means that only the file (or only the line) is known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Location {
@@ -68,7 +70,7 @@ pub enum ErrorKind {
 }
 
 /// An error: what was found and expected, its location, and a hint.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Error {
     /// The category.
     pub kind: ErrorKind,
@@ -77,7 +79,7 @@ pub struct Error {
     /// The message: what was found and what was expected.
     pub message: String,
     /// A remedy, if one is known.
-    pub hint: Option<String>,
+    pub hint: Option<Remedy>,
     /// Further errors found in the same run.
     pub more: Vec<Error>,
 }
@@ -102,8 +104,16 @@ impl Error {
     }
 
     /// The same error with a remedy.
-    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+    pub fn hint(mut self, hint: impl Into<Remedy>) -> Self {
         self.hint = Some(hint.into());
+        self
+    }
+
+    /// The same error, and further ones, with remedies in the words of a front end.
+    #[must_use]
+    pub fn worded(mut self, words: impl Fn(&Remedy) -> String) -> Self {
+        let hints = std::iter::once(&mut self.hint).chain(self.more.iter_mut().map(|error| &mut error.hint));
+        hints.flatten().for_each(|hint| *hint = Remedy::Words(words(hint)));
         self
     }
 
@@ -152,6 +162,15 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn remedies_are_told_in_the_words_of_a_front_end() {
+        let error = |line| Error::invalid(&Location::default().at(line, 1), "no film").hint(Remedy::KeptFilm);
+        let both = Error::all(vec![error(1), error(2)]).expect("two errors");
+        let help = "help: render it with the option `film`";
+        assert_eq!(both.to_string().matches(help).count(), 2, "{both}");
+        assert_eq!(both.worded(|_| "film = true".into()).to_string().matches("help: film = true").count(), 2);
+    }
 
     #[test]
     fn many_errors_are_one_that_writes_the_first_twenty() {

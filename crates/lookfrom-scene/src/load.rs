@@ -8,9 +8,11 @@ use crate::files::{CameraChoice, LoadContext};
 use crate::format::Format;
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
+use crate::remedy::Remedy;
 use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Mesh, Part, Shape};
 use crate::source::Source;
+use crate::warning::Warning;
 use crate::{duplicates, gltf, model, pbrt, studio, subdivision, toml};
 
 /// The reflectance of models whose file has no materials.
@@ -34,7 +36,7 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     if let Some(name) = context.variables.values.keys().next().filter(|_| scene.contents.variables.is_empty())
     {
         // Our own format knows better what is missing.
-        let message = format!("--define {name}: this file has no variables");
+        let message = format!("this file has no variables, and so no `{name}`");
         return Err(Error::new(ErrorKind::Request, &Location::default(), message)
             .hint("variables are for scenes in our own format (.toml)"));
     }
@@ -74,9 +76,8 @@ fn scene_of_model(source: &Source<'_>, context: &mut LoadContext<'_>) -> Result<
     let is_odd = is_custom && model::stand::stands_on_y(points);
     scene.z_is_up = is_custom && !is_odd;
     if is_odd {
-        let message =
-            "y is up: with z up, as is the custom of this format, it would fall over; --up z shows it so";
-        context.notice(&file, message);
+        let message = "y is up: with z up, as is the custom of this format, it would fall over";
+        context.warnings.push(Warning::notice(&file, message).remedy(Remedy::Up("z")));
     }
     let default = MaterialId(scene.materials.len() as u32);
     let clay = MaterialKind::Diffuse { reflectance: Color::gray(CLAY) };

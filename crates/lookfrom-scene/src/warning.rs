@@ -5,6 +5,7 @@ use std::fmt;
 
 use crate::error::Location;
 use crate::plural;
+use crate::remedy::Remedy;
 
 /// The severity of a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -17,7 +18,7 @@ pub enum WarningKind {
 }
 
 /// A recoverable problem: the image is rendered nevertheless.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     /// The severity.
     pub kind: WarningKind,
@@ -28,6 +29,8 @@ pub struct Warning {
     pub message: String,
     /// The items that the message is about, if they were counted.
     pub counted: Option<Counted>,
+    /// A way to have it otherwise, if one is known.
+    pub remedy: Option<Remedy>,
 }
 
 /// A number of items of one kind.
@@ -42,12 +45,41 @@ pub struct Counted {
 impl Warning {
     /// A warning that the image may differ from the intended one.
     pub fn new(at: &Location, message: impl Into<String>) -> Self {
-        Self { kind: WarningKind::Warning, at: at.clone(), message: message.into(), counted: None }
+        Self {
+            kind: WarningKind::Warning,
+            at: at.clone(),
+            message: message.into(),
+            counted: None,
+            remedy: None,
+        }
     }
 
     /// A harmless warning.
     pub fn notice(at: &Location, message: impl Into<String>) -> Self {
         Self { kind: WarningKind::Notice, ..Self::new(at, message) }
+    }
+
+    /// The same warning with a way to have it otherwise.
+    #[must_use]
+    pub fn remedy(mut self, remedy: Remedy) -> Self {
+        self.remedy = Some(remedy);
+        self
+    }
+
+    /// The same warning with its remedy in the words of a front end.
+    #[must_use]
+    pub fn worded(mut self, words: impl Fn(&Remedy) -> String) -> Self {
+        self.remedy = self.remedy.map(|remedy| Remedy::Words(words(&remedy)));
+        self
+    }
+
+    /// The message with the items that were counted, and the remedy.
+    fn write_message(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(counted) = &self.counted {
+            write!(f, "{counted}")?;
+        }
+        f.write_str(&self.message)?;
+        self.remedy.as_ref().map_or(Ok(()), |remedy| write!(f, "; {remedy}"))
     }
 
     /// The same warning about a number of items.
@@ -68,10 +100,7 @@ impl fmt::Display for Counted {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.at)?;
-        if let Some(counted) = &self.counted {
-            counted.fmt(f)?;
-        }
-        f.write_str(&self.message)?;
+        self.write_message(f)?;
         let has_further = self.counted.as_ref().is_some_and(|counted| counted.count > 1);
         if has_further && self.at.line > 0 { f.write_str(" (the first is here)") } else { Ok(()) }
     }
@@ -81,7 +110,7 @@ impl fmt::Display for Warning {
 const PLACES: usize = 2;
 
 /// Warnings with the same message at several locations.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct WarningGroup {
     /// The first of them, with the total number of items.
     pub first: Warning,
@@ -121,15 +150,13 @@ impl WarningGroup {
 
 impl fmt::Display for WarningGroup {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { first: Warning { at, message, counted, .. }, further } = self;
+        let Self { first, further } = self;
         if further.is_empty() {
-            return self.first.fmt(f);
+            return first.fmt(f);
         }
-        write!(f, "{at}: ")?;
-        if let Some(counted) = counted {
-            counted.fmt(f)?;
-        }
-        write!(f, "{message} (also at ")?;
+        write!(f, "{}: ", first.at)?;
+        first.write_message(f)?;
+        f.write_str(" (also at ")?;
         let left = further.len().saturating_sub(PLACES);
         for (index, place) in further.iter().take(PLACES).enumerate() {
             let is_last = left == 0 && index + 1 == further.len();
@@ -183,6 +210,14 @@ mod tests {
         assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and one more place)"));
         warnings.extend((0..115).map(|k| flat(&format!("{k}.ply"), 0, 1)));
         assert!(lines(&warnings)[1].ends_with("(also at b.ply:7, c.ply and 116 more places)"));
+        // A remedy stands behind the message, in the words of whoever tells it.
+        let up = |line| {
+            Warning::notice(&Location::file(Path::new("a.stl")).at(line, 0), "z is up")
+                .remedy(Remedy::Up("y"))
+        };
+        assert_eq!(lines(&[up(1)]), ["a.stl:1: z is up; the option `up` = y shows it otherwise"]);
+        let typed = [up(1), up(2)].map(|warning| warning.worded(|remedy| format!("{remedy:?}")));
+        assert_eq!(lines(&typed), ["a.stl:1: z is up; Up(\"y\") (also at a.stl:2)"]);
         // The same message of another kind is another line, and equal locations are listed once.
         let twice = [other.clone(), Warning { kind: WarningKind::Notice, ..other.clone() }, other];
         assert_eq!(lines(&twice), ["z.obj: something real"; 2]);

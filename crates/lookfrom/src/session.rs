@@ -45,7 +45,7 @@ use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{Allocation, ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{
-    Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Result, Scene, Warning, load,
+    Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Remedy, Result, Scene, Warning, load,
 };
 
 use crate::core::clock::Stopwatch;
@@ -274,9 +274,9 @@ impl Session {
         };
         if options.exposure.map_or(has_own_lights, |exposure| exposure == Exposure::Auto) {
             let stops = session.expose()?;
-            let message =
-                format!("the exposure is {stops}, chosen by what is seen; --exposure {stops} repeats it");
-            session.warnings.push(Warning::notice(&Location::file(path), message));
+            let message = format!("the exposure is {stops}, chosen by what is seen");
+            let notice = Warning::notice(&Location::file(path), message);
+            session.warnings.push(notice.remedy(Remedy::Exposure(stops)));
         }
         if let Some(degrees) = options.turn {
             session.set_turn(degrees)?;
@@ -423,8 +423,7 @@ impl Session {
         let FilmFile { mut film, provenance: before } = file;
         if !film.is_for(self.image()) {
             let message = "this film has other pixels than the picture, or other sums";
-            return Err(Error::invalid(&Location::default(), message)
-                .hint("give --size, --crop, --layers, --light-path, --background and --denoise as when it was begun"));
+            return Err(Error::invalid(&Location::default(), message).hint(Remedy::SamePicture));
         }
         let settings = self.settings();
         let times = if settings.allocation == Allocation::Adaptive { MOST_TIMES_MEAN } else { 1 };

@@ -164,11 +164,11 @@ fn films_that_differ_in_layers_say_so() {
     let stage = Stage::new("film-layers");
     stage.done("render scene.toml -o a.exr --film --samples 0..1");
     stage.done("render scene.toml -o b.exr --film --samples 1..2 --layers geometry");
-    stage.run("merge a.exr b.exr -o x.exr").fails(1, &["b.exr", "--layers is geometry there, none here"]);
-    stage.run("merge b.exr a.exr -o x.exr").fails(1, &["a.exr", "--layers is none there, geometry here"]);
+    stage.run("merge a.exr b.exr -o x.exr").fails(1, &["b.exr", "layers is geometry there, none here"]);
+    stage.run("merge b.exr a.exr -o x.exr").fails(1, &["a.exr", "layers is none there, geometry here"]);
     let mut command = stage.command("render scene.toml -o c.exr --film --samples 1..2 --light-path");
     assert!(command.arg("direct=C<RD>L").output().unwrap().status.success());
-    stage.run("merge a.exr c.exr -o x.exr").fails(1, &["--light-path direct is C<RD>L there, not set here"]);
+    stage.run("merge a.exr c.exr -o x.exr").fails(1, &["light-path direct is C<RD>L there, not set here"]);
 }
 
 #[test]

@@ -278,7 +278,7 @@ fn sizes_and_choices() {
     assert_eq!((found.width, found.height), (17, 9));
     stage.run("render scene.toml --size 17 --width 9").fails(2, &["--size", "--width"]);
     let run = stage.done("render model.obj -o p.png --size 8 --samples 1 --animation Walk --at 1.5s");
-    assert!(run.stderr.contains("--animation") && run.stderr.contains("glTF"), "{}", run.stderr);
+    assert!(run.stderr.contains("`animation`") && run.stderr.contains("glTF"), "{}", run.stderr);
 }
 
 #[test]

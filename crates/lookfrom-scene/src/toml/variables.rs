@@ -24,7 +24,7 @@ const MOST_LISTED: usize = 12;
 
 /// Values from outside: texts of their own, by name.
 pub(super) fn given(context: &LoadContext<'_>) -> BTreeMap<String, Document> {
-    let whole = |name: &str| Location::file(Path::new(&format!("--define {name}")));
+    let whole = |name: &str| Location::file(Path::new(&format!("define {name}")));
     let values = context.variables.values.iter();
     values.map(|(name, text)| (name.clone(), Document::new(whole(name), text.clone()))).collect()
 }
@@ -112,7 +112,7 @@ impl<'g> Variables<'g> {
             self.given.values().flat_map(|given| given.document.errors(Vec::new())).collect();
         let strangers = self.given.keys().filter(|name| knows_all && !self.all.contains_key(**name));
         errors.extend(strangers.map(|name| {
-            let message = format!("--define {name}: the scene has no variable `{name}`");
+            let message = format!("the scene has no variable `{name}`");
             let known = || self.all.keys().map(String::as_str);
             Error::new(ErrorKind::Request, &Location::default(), message).hint(match nearest(name, known()) {
                 Some(meant) => format!("did you mean `{meant}`?"),

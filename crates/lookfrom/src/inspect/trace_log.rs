@@ -251,7 +251,7 @@ impl<'a> TraceLogBuilder<'a> {
             ray.ends = Some(match (&ray.met, &ray.scattering, &ray.bounce) {
                 (None, ..) => "it leaves the scene",
                 (Some(_), None, _) => "ambient occlusion needs no further rays",
-                (_, Some(_), None) if ray.depth >= settings.depth => "the maximum depth is reached (--depth)",
+                (_, Some(_), None) if ray.depth >= settings.depth => "the maximum depth is reached",
                 (_, Some(_), None) => "the surface absorbs its light: no direction could be sampled",
                 (.., Some(bounce)) if !bounce.survives => "Russian roulette ends it",
                 (.., Some(_)) => "its throughput is 0",

@@ -10,7 +10,7 @@ use lookfrom_scene::image::{
     write_jpeg, write_png, write_webp,
 };
 use lookfrom_scene::settings::Background;
-use lookfrom_scene::{Error, ErrorKind, Location, Result};
+use lookfrom_scene::{Error, ErrorKind, Location, Remedy, Result};
 
 use super::layers::Layers;
 use super::options::unsuitable;
@@ -107,9 +107,7 @@ impl Format {
             return Ok(());
         }
         let message = format!("the background is transparent, and {} pictures have no alpha", self.name());
-        Err(unsuitable(message).hint(
-            "a .png, .webp or .exr holds transparency; --background white, or any other colour, is for all formats",
-        ))
+        Err(unsuitable(message).hint(Remedy::OpaqueBackground))
     }
 
     /// The name of the format, as people write it.

@@ -13,7 +13,7 @@ use std::path::Path;
 use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::image::{ExrChannel, ExrHeader, ExrRows, write_exr};
 use lookfrom_scene::settings::PixelBounds;
-use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Result};
+use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Remedy, Result};
 
 use super::layers;
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
@@ -133,7 +133,7 @@ impl<B: AsRef<[u8]>> Opened<B> {
             }
             None => {
                 let message = "this picture has no film: only its light, not the sums of its samples";
-                return Err(Error::invalid(&at, message).hint("render it with --film"));
+                return Err(Error::invalid(&at, message).hint(Remedy::KeptFilm));
             }
         }
         let provenance = Provenance::of_texts(&texts)?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::{Budget, Location, Result, Scene, Warning};
+use lookfrom_scene::{Budget, Location, Remedy, Result, Scene, Warning};
 
 use super::{Session, in_file};
 use crate::film::Film;
@@ -43,11 +43,8 @@ impl Session {
         let image = self.image();
         let what = format!("the film of {} × {} pixels", image.width, image.height);
         let at = Location { file: self.name.as_str().into(), ..Location::default() };
-        self.budget.reserve(Film::memory(image), &what, &at).map_err(|error| {
-            error.hint(
-                "a smaller --size takes less; --crop X0,Y0,X1,Y1 --film -o PART.exr renders some rows of it, and `lookfrom merge` \
-                 adds such parts up, without having all in memory if they have --denoise off; `--memory SIZE` sets another limit, such as 16GiB",
-            )
-        })
+        self.budget
+            .reserve(Film::memory(image), &what, &at)
+            .map_err(|error| error.hint(Remedy::SmallerPicture))
     }
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use lookfrom_scene::scene::SourceFormat;
 use lookfrom_scene::settings::Allocation;
 use lookfrom_scene::studio::{Turntable, Viewpoint};
-use lookfrom_scene::{CameraChoice, ImportOptions, Location, Result, Scene, Warning, load, studio};
+use lookfrom_scene::{CameraChoice, ImportOptions, Location, Remedy, Result, Scene, Warning, load, studio};
 
 use super::options::{MOST_SAMPLES, Options};
 use crate::film::allocation::LEAST_MEAN;
@@ -64,7 +64,7 @@ pub(super) fn prepare(
         of_gltf.at = None;
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
-        warn("--animation, --at, --variant, --scene and --camera are for glTF files; this file is not one");
+        warn("`animation`, `at`, `variant`, `scene` and `camera` are for glTF files; this file is not one");
     }
     if options.floor && !scene.render.integrator.is_path_traced() {
         warn("a shadow-catching floor needs the path tracer; with this integrator it is grey");
@@ -73,8 +73,8 @@ pub(super) fn prepare(
     let viewpoint = options.viewpoint();
     let mut up = options.up.or(scene.z_is_up.then_some(DVec3::Z));
     if scene.z_is_up && options.up.is_none() {
-        let message = "z is up, as is the custom of this format; --up y shows it otherwise";
-        warnings.push(Warning::notice(&Location::file(file), message));
+        let notice = Warning::notice(&Location::file(file), "z is up, as is the custom of this format");
+        warnings.push(notice.remedy(Remedy::Up("y")));
     }
     if options.chooses_view() {
         // The camera of a view from above has another one.

@@ -142,10 +142,10 @@ impl Provenance {
         {
             if name == CHANNELS_ATTRIBUTE && [&mine, &theirs].iter().any(|of| !is_set(of, name)) {
                 let layers = |of: &[(String, String)]| if is_set(of, name) { "geometry" } else { "none" };
-                return differ(format!("--layers is {} there, {} here", layers(&theirs), layers(&mine)));
+                return differ(format!("layers is {} there, {} here", layers(&theirs), layers(&mine)));
             }
             let called = match header::light_path_of(name) {
-                Some(layer) => format!("--light-path {layer}"),
+                Some(layer) => format!("light-path {layer}"),
                 None => name.clone(),
             };
             return differ(format!(

@@ -110,7 +110,9 @@ impl Sheet {
         }
         let bytes = u64::from(width) * u64::from(height) * 4;
         if bytes > MOST_BYTES {
-            return Err(invalid("a sheet of too many pixels").hint("a smaller --size, or fewer cells"));
+            return Err(
+                invalid("a sheet of too many pixels").hint("make it of smaller pictures, or of fewer")
+            );
         }
         let has_alpha = pictures().any(|picture| picture.has_alpha);
         let between = if has_alpha { [255, 255, 255, 0] } else { [255; 4] };

@@ -333,7 +333,7 @@ fn what_does_not_belong_together_is_told() {
     );
     refused(
         &Options { layers: Some(Layers::Geometry), ..later.clone() },
-        &["--layers is geometry there, none here"],
+        &["layers is geometry there, none here"],
     );
     refused(
         &Options { background: Some(Background::Transparent), ..later.clone() },

@@ -314,7 +314,7 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         "simple_path found sky",
         "random_walk found sky",
         "it leaves the scene",
-        "the maximum depth is reached (--depth)",
+        "the maximum depth is reached",
         "Russian roulette ends it",
         "ambient occlusion needs no further rays",
     ] {

@@ -16,6 +16,9 @@ const GROUPS: &[&str] = &["core", "post", "shading", "view"];
 /// What a library must not do: only doors speak and decide when the program ends.
 const FOR_DOORS: &[&str] = &["print!(", "println!(", "dbg!(", "process::exit", "process::abort"];
 
+/// Calls of other programs, which have flags of their own.
+const OTHER_PROGRAMS: &[&str] = &["pbrt --upgrade", "--outfile"];
+
 /// The folder of a crate of the workspace.
 fn crate_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(name)
@@ -235,6 +238,23 @@ fn libraries_return_and_doors_speak() {
             for forbidden in FOR_DOORS {
                 assert!(!code(&path).contains(forbidden), "{} says {forbidden}", path.display());
             }
+        }
+    }
+}
+
+#[test]
+fn libraries_name_no_flags() {
+    for library in ["lookfrom", "lookfrom-scene"] {
+        for path in sources(&crate_folder(library).join("src")) {
+            let code = OTHER_PROGRAMS.iter().fold(code(&path), |code, call| code.replace(call, ""));
+            let is_flag = |(at, dashes): (usize, &str)| {
+                code[at + dashes.len()..].starts_with(|c: char| c.is_ascii_lowercase())
+            };
+            assert!(
+                !code.match_indices("--").any(is_flag),
+                "{} names a flag: a `Remedy` has the option",
+                path.display()
+            );
         }
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn write_candidates(f: &mut String, ray: &RayReport, others: usize, p
     }
     if hidden > 0 {
         let hidden = counted(hidden, "more candidate");
-        writeln!(f, "{pad}  … and {hidden}, all rejected or farther (--json shows them)")?;
+        writeln!(f, "{pad}  … and {hidden}, all rejected or farther")?;
     }
     Ok(())
 }

@@ -42,7 +42,7 @@ impl PixelInspection {
         let sum = self.mean.iter().map(|c| f64::from(*c)).sum::<f64>() * of_all;
         write_contributions(f, &self.contributions, sum, true)?;
         writeln!(f)?;
-        writeln!(f, "All samples, the brightest first (--sample N shows each step of one)")?;
+        writeln!(f, "All samples, the brightest first")?;
         writeln!(f, "  {:>6} {:>12} {:>5}   the largest contribution", "sample", "luminance", "depth")?;
         for sample in &self.all {
             writeln!(

@@ -109,6 +109,7 @@ pub(super) const LADDERS: &[Ladder] = &[
     Ladder {
         name: "lookfrom-scene",
         rungs: &[
+            "remedy",
             "error json parallel plural stamps suggest variables",
             "budget camera material warning",
             "contents files medium",
@@ -118,10 +119,12 @@ pub(super) const LADDERS: &[Ladder] = &[
             "shape texture",
             "scene text",
             "chain count duplicates model",
-            "boolean ies stl subdivision",
+            "boolean ies stl subdivision validate",
             "obj ply",
             "pbrt studio",
             "gltf",
+            "format",
+            "source",
             "toml",
             "load",
         ],
@@ -132,7 +135,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             ),
             (
                 "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
-                "spectrum > model, model > obj, model > ply, model > stl, model > subdivision",
+                "spectrum > model, model > format, model > obj, model > ply, model > source, model > stl, model > subdivision",
             ),
             (
                 "models in a scene, and their animations, are read as those of the command line",
@@ -158,7 +161,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-cli",
         rungs: &[
             "pipe preview values",
-            "diagnostic",
+            "diagnostic remedy",
             "exit",
             "interrupt output report scenes terminal",
             "args naming",
