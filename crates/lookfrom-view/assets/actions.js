@@ -43,7 +43,7 @@ function attachMenu(app) {
     for (const [id, action] of Object.entries(actions)) {
         byId(id).addEventListener("click", () => {
             /** @type {HTMLDetailsElement | null} */ (byId(id).closest("details"))?.removeAttribute("open");
-            action().catch((error) => app.toast(error.message));
+            action().catch(app.complain);
         });
     }
     const menu = /** @type {HTMLDetailsElement} */ (byId("menu"));

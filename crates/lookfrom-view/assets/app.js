@@ -2,7 +2,7 @@
 
 import { byId } from "./html.js";
 import { signal } from "./signal.js";
-import { connect } from "./socket.js";
+import { Unanswered, connect } from "./socket.js";
 import { viewState } from "./state.js";
 
 /** @typedef {ReturnType<typeof createApp>} App */
@@ -39,6 +39,10 @@ export function createApp() {
             element.classList.add("shown");
             clearTimeout(toastTimer);
             toastTimer = window.setTimeout(() => element.classList.remove("shown"), 4000);
+        },
+        /** Shows an error, unless a later question concerns the user more, or the loss of the connection, which the status tells. @param {unknown} error */
+        complain(error) {
+            if (error instanceof Error && !(error instanceof Unanswered)) app.toast(error.message);
         },
         /** The camera in use: the view's, or the scene's. @returns {import("./protocol.js").Camera | null} */
         camera() {

@@ -1,11 +1,13 @@
 // The way from a pixel to its samples, and from a sample to its rays: questions to the server, answers to the page.
 
+import { Unanswered } from "./socket.js";
 import { sameFilm } from "./state.js";
 
 /** @param {import("./app.js").App} app */
 export function attachInspector(app) {
     let lastView = app.view.get();
     let timer = 0;
+    let tracing = 0;
     /** The sample that a link asks for, until its pixel is there. */
     let wanted = app.sample.get();
     let wantedRay = app.ray.get();
@@ -32,18 +34,24 @@ export function attachInspector(app) {
         if (!pixel || !scene) return;
         const [width, height] = app.size();
         if (pixel[0] >= width || pixel[1] >= height) return app.pixel.set(null);
-        document.body.classList.add("is-tracing");
+        traced(1);
         try {
             const { report } = await app.socket.request("pixel", { x: pixel[0], y: pixel[1] });
             app.report.set(finite(report));
             choose(report.all?.[0]?.sample ?? 0);
             app.announce(`Pixel ${pixel.join(" ")}: ${report.samples} samples`);
         } catch (error) {
-            app.toast(/** @type {Error} */ (error).message);
-            choose(0);
+            app.complain(error);
+            if (!(error instanceof Unanswered)) choose(0);
         } finally {
-            document.body.classList.remove("is-tracing");
+            traced(-1);
         }
+    }
+
+    /** Counts questions for pixels that are under way: one may replace another. @param {1 | -1} more */
+    function traced(more) {
+        tracing += more;
+        document.body.classList.toggle("is-tracing", tracing > 0);
     }
 
     /** Keeps the sample that is chosen, or that the link asks for. @param {number} otherwise */
@@ -66,7 +74,7 @@ export function attachInspector(app) {
             const known = inspection.rays.some((/** @type {any} */ ray) => ray.address === address);
             app.ray.set(known ? address : brightest(inspection));
         } catch (error) {
-            app.toast(/** @type {Error} */ (error).message);
+            app.complain(error);
         }
     }
 }

@@ -48,7 +48,7 @@ export function treeLesson(app) {
                 last = inspection;
                 app.inspection.set(inspection);
             } catch (error) {
-                app.toast(/** @type {Error} */ (error).message);
+                app.complain(error);
             }
         }, 60);
     }

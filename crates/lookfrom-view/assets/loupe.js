@@ -2,6 +2,7 @@
 
 import { byId, h, replace } from "./html.js";
 import { lanes, swatch } from "./format.js";
+import { Unanswered } from "./socket.js";
 
 /** Pixels to each side of the middle. */
 const REACH = 5;
@@ -48,9 +49,9 @@ export function showLoupe(app, { pixelAt, canvas, overlay }) {
         const [x, y] = pixel;
         try {
             show(await app.socket.request("value", { x, y }));
-        } catch {
+        } catch (error) {
             // Between two scenes there is no film.
-            replace(readout);
+            if (!(error instanceof Unanswered)) replace(readout);
         }
     }
 

@@ -2,6 +2,9 @@
 
 /** @typedef {ReturnType<typeof connect>} Socket */
 
+/** The error of a question that gets no answer: a later one has replaced it, or the connection is lost. */
+export class Unanswered extends Error {}
+
 /**
  * The parts of a binary message: a JSON header after its length, then the payload.
  * @param {ArrayBuffer} buffer
@@ -56,6 +59,7 @@ export function connect() {
             if (!settle(message.id ?? -1, message)) tell(message.type, message);
         };
         socket.onclose = () => {
+            for (const question of waiting.values()) question.reject(new Unanswered("the connection to the server is lost"));
             waiting.clear();
             tell("close", null);
             setTimeout(open, pause);
@@ -70,23 +74,29 @@ export function connect() {
      */
     function send(type, body) {
         const id = ++lastId;
-        if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ type, id, ...body }));
+        if (isOpen()) socket?.send(JSON.stringify({ type, id, ...body }));
         return id;
     }
+
+    const isOpen = () => socket?.readyState === WebSocket.OPEN;
 
     return {
         open,
         send,
         /**
-         * Sends a question. A later one of the same type replaces it: then this promise is never settled, and the answer to
-         * it, an error too, concerns nobody.
+         * Sends a question. The promise is rejected by the server's error, and as {@link Unanswered} where a later question of
+         * the same type replaces this one, or the connection is or gets lost.
          * @param {string} type
          * @param {object} [body]
          * @returns {Promise<any>}
          */
         request(type, body = {}) {
-            for (const question of waiting.values()) if (question.type === type) question.resolve = question.reject = () => {};
-            return new Promise((resolve, reject) => waiting.set(send(type, body), { type, resolve, reject }));
+            // They keep their places: what still comes for them, an error too, concerns nobody.
+            for (const question of waiting.values()) if (question.type === type) question.reject(new Unanswered("a later question has replaced this one"));
+            return new Promise((resolve, reject) => {
+                if (isOpen()) waiting.set(send(type, body), { type, resolve, reject });
+                else reject(new Unanswered("there is no connection to the server"));
+            });
         },
         /**
          * @param {string} type a message's type, a binary's kind, "open" or "close"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of `lookfrom view` in a real browser: types checked, then used as a person does. run.sh [path of the binary]
+# The page of `lookfrom view`: types checked, its connection tested, then used as a person does, in a real browser. run.sh [path of the binary]
 #
 # Needs node with npm, its packages (`npm ci` here) and Chromium; says "skipped" where one is missing. Screenshots are
 # kept in LOOKFROM_SCREENSHOTS, where that is set.
@@ -14,6 +14,7 @@ command -v node > /dev/null && command -v npm > /dev/null || skip "node is not i
     || skip "npm's packages for the browser cannot be had"
 
 npx tsc --project tsconfig.json
+node --test unit/
 
 chromium=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
 [[ -n $chromium ]] || skip "Chromium is not installed"
