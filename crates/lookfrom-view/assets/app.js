@@ -11,20 +11,16 @@ export function createApp() {
     const app = {
         socket: connect(),
         view: viewState(),
-        /** @type {import("./signal.js").Signal<import("./protocol.js").Scene | null>} */
-        scene: signal(/** @type {any} */ (null)),
-        /** @type {import("./signal.js").Signal<import("./protocol.js").PictureHeader | null>} */
-        frame: signal(/** @type {any} */ (null)),
-        /** The selected pixel. @type {import("./signal.js").Signal<[number, number] | null>} */
-        pixel: signal(/** @type {any} */ (null)),
-        /** @type {import("./signal.js").Signal<import("./protocol.js").PixelReport | null>} */
-        report: signal(/** @type {any} */ (null)),
-        /** The selected sample of the pixel. @type {import("./signal.js").Signal<number | null>} */
-        sample: signal(/** @type {any} */ (null)),
-        /** @type {import("./signal.js").Signal<import("./protocol.js").Inspection | null>} */
-        inspection: signal(/** @type {any} */ (null)),
-        /** The address of the selected ray. @type {import("./signal.js").Signal<number | null>} */
-        ray: signal(/** @type {any} */ (null)),
+        scene: signal(/** @type {import("./protocol.js").Scene | null} */ (null)),
+        frame: signal(/** @type {import("./protocol.js").PictureHeader | null} */ (null)),
+        /** The selected pixel. */
+        pixel: signal(/** @type {[number, number] | null} */ (null)),
+        report: signal(/** @type {import("./protocol.js").PixelReport | null} */ (null)),
+        /** The selected sample of the pixel. */
+        sample: signal(/** @type {number | null} */ (null)),
+        inspection: signal(/** @type {import("./protocol.js").Inspection | null} */ (null)),
+        /** The address of the selected ray. */
+        ray: signal(/** @type {number | null} */ (null)),
         /** Whether the rays are drawn over the picture. */
         raysOverPicture: signal(true),
 

@@ -12,14 +12,10 @@ import { exact, fileName } from "./format.js";
  * @param {Candidate} candidate
  */
 export function numbersOf({ test }) {
-    const [kind, body] = typeof test === "string" ? [test, {}] : Object.entries(test ?? { Other: {} })[0];
-    /** @type {[string, Twice][]} */
-    const rows = body?.numbers ?? [];
+    const [kind, { numbers: rows, inputs }] = /** @type {[string, import("../types/inspection.js").TestNumbers][]} */ (Object.entries(test))[0];
     /** @type {Record<string, Twice>} */
     const byName = {};
     for (const [name, value] of rows) byName[name.split(" ")[0]] = value;
-    /** @type {[string, number[]][]} */
-    const inputs = body?.inputs ?? [];
     return { kind, rows, byName, inputs };
 }
 

@@ -7,6 +7,7 @@ import { candidateTable } from "./candidates.js";
 import { ends } from "./tree.js";
 
 /** @typedef {import("./protocol.js").Ray} Ray */
+/** @typedef {import("./html.js").Child} Child */
 /** @typedef {[symbol: string, meaning: string, value: string | Node | (string | Node)[]]} Row */
 
 /** @param {import("./app.js").App} app */
@@ -19,8 +20,8 @@ export function showEquations(app) {
         if (!ray) return replace(element);
         const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), theSum(ray)];
         replace(element, sections.filter((section) => section !== null).map((section) => {
-            const { title, content } = /** @type {{title: string, content: any[]}} */ (section);
-            const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), content);
+            const { title, content } = /** @type {Section} */ (section);
+            const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), ...content);
             details.addEventListener("toggle", () => (details.open ? closed.delete(title) : closed.add(title)));
             return details;
         }));
@@ -34,7 +35,9 @@ export const terms = (rows) =>
     h("table", { class: "terms" }, h("tbody", {}, rows.map(([symbol, meaning, value]) =>
         h("tr", {}, h("th", { scope: "row" }, symbol && formula(symbol)), h("td", { class: "number" }, value), h("td", { class: "meaning" }, meaning)))));
 
-/** @param {string} title @param {...any} content */
+/** @typedef {{title: string, content: (Child | Child[])[]}} Section */
+
+/** @param {string} title @param {...(Child | Child[])} content @returns {Section} */
 const section = (title, ...content) => ({ title, content });
 
 /** @param {Ray} ray */
@@ -105,7 +108,7 @@ function theLights(ray) {
     if (lit.length === 0) return [];
     return [section("Lights",
         display("I = k_a I_a + Σ_j ( k_d (N·L_j) + k_s (N·H_j)ⁿ ) I_j + k_r S + k_t T"),
-        lit.map(({ light, wi, n_dot_l, h: half, n_dot_h, intensity, diffuse, specular, shadow, added }) => [
+        lit.flatMap(({ light, wi, n_dot_l, h: half, n_dot_h, intensity, diffuse, specular, shadow, added }) => [
             h("h4", {}, fileName(light)),
             terms([
                 ["L_j", "direction to the light", point(wi)],

@@ -71,7 +71,7 @@ export function attachInspector(app) {
             const address = wantedRay ?? app.ray.get();
             wantedRay = null;
             app.inspection.set(inspection);
-            const known = inspection.rays.some((/** @type {any} */ ray) => ray.address === address);
+            const known = inspection.rays.some((ray) => ray.address === address);
             app.ray.set(known ? address : brightest(inspection));
         } catch (error) {
             app.complain(error);
@@ -87,7 +87,6 @@ export function attachInspector(app) {
 function finite(report) {
     return {
         ...report,
-        standardError: report.standardError ?? report.standard_error ?? null,
         all: report.all.map((row) => ({ ...row, luminance: Number.isFinite(Number(row.luminance)) ? Number(row.luminance) : Infinity })),
     };
 }

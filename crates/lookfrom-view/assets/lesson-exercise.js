@@ -29,8 +29,7 @@ export function exerciseLesson(app) {
         const isIdentity = M.every((row, i) => row.every((x, k) => x === (i === k ? 1 : 0)));
         const text = (/** @type {number[][]} */ m) => matrix(m.map((row) => row.map((x) => short(x, 4))));
         const { a, b, direction } = inspection.camera;
-        const ray = inspection.rays[0];
-        const t = ray?.met?.t;
+        const met = inspection.rays[0]?.met;
         replace(element, task,
             h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "T4 times R3" }, display("M_vw = ", text(T4), text(R3), "=", text(M))),
             h("p", { class: isIdentity ? "verdict good" : "verdict", role: "status", id: "exercise-verdict" }, isIdentity ? "M_vw = I: every one of its sixteen numbers is exactly 0 or 1." : "With this camera M_vw is not the identity: its columns are u, v, w and lookfrom."),
@@ -39,6 +38,6 @@ export function exerciseLesson(app) {
             h("p", {}, "Because every ray starts at the eye and fans out through its pixel. The division by depth that a matrix of projection does is in the ray:"),
             display("p(t) = a + t (b − a)"),
             h("p", {}, `Here a = ${point(a)} and b = ${point(b)}, so b − a = ${point(direction)}. At t = 1 the ray is on the image plane`,
-                t === undefined ? ", and it meets nothing." : `; it meets ${ray.met.shape} at t = ${exact(t)}: there, everything is ${short(t, 4)} times as far from the axis as on the image plane. To put that point into its pixel is to divide by ${short(t, 4)}.`));
+                met ? `; it meets ${met.shape} at t = ${exact(met.t)}: there, everything is ${short(met.t, 4)} times as far from the axis as on the image plane. To put that point into its pixel is to divide by ${short(met.t, 4)}.` : ", and it meets nothing."));
     }
 }

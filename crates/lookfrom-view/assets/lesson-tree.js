@@ -29,7 +29,7 @@ export function treeLesson(app) {
         if (inspection === last) return draw(inspection);
         last = inspection;
         depth = app.view.get().depth ?? scene.depth;
-        const least = app.view.get().minContribution ?? scene.minContribution;
+        const least = app.view.get().min_contribution ?? scene.min_contribution;
         power = least > 0 ? Math.max(-5.9, Math.log10(least)) : -6;
         const grow = slider("Depth", { min: 0, max: Math.max(12, Math.min(depth, 64)), step: 1 }, depth, (value) => ((depth = value), ask()));
         const prune = slider("Smallest share", { min: -6, max: 0, step: 0.1 }, power, (value) => ((power = value), ask()), () => short(leastShare(), 2));
@@ -44,7 +44,7 @@ export function treeLesson(app) {
             const [pixel, sample] = [app.pixel.get(), app.sample.get()];
             if (!pixel || sample === null) return;
             try {
-                const { inspection } = await app.socket.request("inspect", { x: pixel[0], y: pixel[1], sample, depth, minContribution: leastShare() });
+                const { inspection } = await app.socket.request("inspect", { x: pixel[0], y: pixel[1], sample, depth, min_contribution: leastShare() });
                 last = inspection;
                 app.inspection.set(inspection);
             } catch (error) {

@@ -4,7 +4,7 @@ import { SCENES_OWN } from "./state.js";
 
 /** @typedef {import("./protocol.js").View} View */
 
-const NUMBERS = ["depth", "samples", "minContribution", "turn", "rotateEnvironment", "animation", "at", "exposure"];
+const NUMBERS = ["depth", "samples", "min_contribution", "turn", "rotate_environment", "animation", "at", "exposure"];
 const WORDS = ["integrator", "variant", "tonemap", "layer", "compare"];
 
 /**
@@ -17,8 +17,8 @@ export function fragment(view, pixel, sample, ray) {
     const parameters = new URLSearchParams();
     for (const [key, value] of Object.entries(view)) {
         if (value === SCENES_OWN[/** @type {keyof View} */ (key)] || value === null) continue;
-        if (key === "camera") {
-            const { lookfrom, lookat, up, fov } = view.camera ?? /** @type {any} */ ({});
+        if (key === "camera" && view.camera) {
+            const { lookfrom, lookat, up, fov } = view.camera;
             parameters.set("camera", [lookfrom, lookat, up].map((v) => v.map(rounded).join(",")).join("/") + (fov === null ? "" : `/${fov}`));
         } else if (key === "size") parameters.set("size", view.size?.join("x") ?? "");
         else parameters.set(key, String(value));
@@ -44,7 +44,7 @@ function numbers(text, separator, length) {
  */
 export function parse(text) {
     const parameters = new URLSearchParams(text.replace(/^#/, ""));
-    /** @type {any} */
+    /** @type {Record<string, unknown>} */
     const view = { ...SCENES_OWN };
     for (const key of NUMBERS) {
         const value = parameters.get(key);
@@ -61,7 +61,7 @@ export function parse(text) {
     /** @type {(key: string) => number | null} */
     const index = (key) => (/^\d+$/.test(parameters.get(key) ?? "") ? Number(parameters.get(key)) : null);
     const pixel = /** @type {[number, number] | null} */ (numbers(parameters.get("pixel") ?? "", ",", 2));
-    return { view: /** @type {View} */ (view), pixel, sample: index("sample"), ray: index("ray") };
+    return { view: /** @type {View} */ (/** @type {unknown} */ (view)), pixel, sample: index("sample"), ray: index("ray") };
 }
 
 /**

@@ -17,7 +17,7 @@ export function showPicture(app) {
     let bitmaps = [];
     let wipe = 0.5;
     let isDecoding = false;
-    /** @type {import("./protocol.js").Binary | null} */
+    /** @type {import("./protocol.js").Picture | null} */
     let next = null;
 
     app.socket.on("picture", (frame) => {
@@ -33,9 +33,9 @@ export function showPicture(app) {
             next = null;
             const sizes = header.sizes ?? [payload.byteLength];
             let start = 0;
-            const pictures = sizes.map((/** @type {number} */ size) => new Blob([payload.slice(start, (start += size))], { type: "image/png" }));
+            const pictures = sizes.map((size) => new Blob([payload.slice(start, (start += size))], { type: "image/png" }));
             try {
-                const decoded = await Promise.all(pictures.map((/** @type {Blob} */ picture) => createImageBitmap(picture)));
+                const decoded = await Promise.all(pictures.map((picture) => createImageBitmap(picture)));
                 for (const old of bitmaps) old.close();
                 bitmaps = decoded;
             } catch {

@@ -112,7 +112,7 @@ export function showPixel(app) {
 function numbers(report) {
     const [r, g, b] = report.color8;
     return h("dl", { class: "facts numbers" },
-        h("dt", {}, "mean"), h("dd", {}, swatch(report.mean), " ", lanes(report.mean), report.standardError && h("span", { class: "faint" }, ` ± ${lanes(report.standardError, 2)}`)),
+        h("dt", {}, "mean"), h("dd", {}, swatch(report.mean), " ", lanes(report.mean), report.standard_error && h("span", { class: "faint" }, ` ± ${lanes(report.standard_error, 2)}`)),
         h("dt", {}, "variance"), h("dd", {}, lanes(report.variance)),
         h("dt", {}, "8 bit"), h("dd", {}, `${r} ${g} ${b}`),
         h("dt", {}, "samples"), h("dd", {}, exact(report.samples)));

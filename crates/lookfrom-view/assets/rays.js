@@ -46,8 +46,8 @@ export const rayWidth = (ray) => 1.1 + 2.4 * Math.sqrt(Math.min(1, mean(ray.thro
 
 /** The shadow rays of a hit, with the light's contribution. @param {Ray} ray @returns {{shadow: import("./protocol.js").Shadow, added: number, light: string}[]} */
 export function shadows(ray) {
-    const sources = [...(ray.lights ?? []), ray.light_sample].filter((light) => light?.shadow);
-    return sources.map(({ shadow, added, light }) => ({ shadow, added: luminance(added?.rgb ?? [0, 0, 0]), light }));
+    const sources = ray.light_sample ? [...ray.lights, ray.light_sample] : ray.lights;
+    return sources.flatMap(({ shadow, added, light }) => (shadow ? [{ shadow, added: luminance(added.rgb), light }] : []));
 }
 
 /**

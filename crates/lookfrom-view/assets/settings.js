@@ -90,8 +90,8 @@ function showRendering(app, scene) {
             field("Integrator", select(scene.integrators.map((name) => [name, name]), view.integrator ?? scene.integrator, (integrator) => set({ integrator }))),
             field("Depth", number(view.depth, { min: 0, max: 1000, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
             field("Samples", number(view.samples, { min: 1, max: 1e6, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
-            field("Min. contribution", number(view.minContribution, { min: 0, max: 1, placeholder: String(scene.minContribution) }, (minContribution) => set({ minContribution })), "Branches of Whitted's tree with a smaller share are not followed"),
-            field("Size", select(sizes, (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {any} */ (text.split("x").map(Number)) }))),
+            field("Min. contribution", number(view.min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree with a smaller share are not followed"),
+            field("Size", select(sizes, (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {[number, number]} */ (text.split("x").map(Number)) }))),
         ),
         group(
             "Scene",
@@ -100,7 +100,7 @@ function showRendering(app, scene) {
                 field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], view.animation === null ? "" : String(view.animation), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
             seconds !== null && slider("Time", { min: 0, max: seconds, step: seconds / 200 }, view.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
             scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
-            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotateEnvironment ?? 0, (rotateEnvironment) => set({ rotateEnvironment }), (turn) => `${turn}°`).element,
+            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotate_environment ?? 0, (rotate_environment) => set({ rotate_environment }), (turn) => `${turn}°`).element,
         ),
         cameraGroup(app, scene),
         group(
@@ -134,7 +134,7 @@ function sizesOf(scene, chosen) {
     return [...sizes].reverse();
 }
 
-/** A count, or counts by kind. @param {any} n @returns {string} */
+/** A count, or counts by kind. @param {import("./protocol.js").Count} n @returns {string} */
 function contents(n) {
     if (typeof n === "number") return count(n);
     if (Array.isArray(n)) return String(n.length);
@@ -160,5 +160,5 @@ function cameraGroup(app, scene) {
     return group("Camera", vector("lookfrom"), vector("lookat"), vector("up"), fov, h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
 }
 
-/** @param {string} title @param {...any} children */
-const group = (title, ...children) => h("section", { class: "group" }, h("h3", {}, title), children);
+/** @param {string} title @param {...(import("./html.js").Child | import("./html.js").Child[])} children */
+const group = (title, ...children) => h("section", { class: "group" }, h("h3", {}, title), ...children);

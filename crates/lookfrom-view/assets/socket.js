@@ -86,9 +86,10 @@ export function connect() {
         /**
          * Sends a question. The promise is rejected by the server's error, and as {@link Unanswered} where a later question of
          * the same type replaces this one, or the connection is or gets lost.
-         * @param {string} type
+         * @template {keyof import("./protocol.js").Answers} T
+         * @param {T} type
          * @param {object} [body]
-         * @returns {Promise<any>}
+         * @returns {Promise<import("./protocol.js").Answers[T]>}
          */
         request(type, body = {}) {
             // They keep their places: what still comes for them, an error too, concerns nobody.

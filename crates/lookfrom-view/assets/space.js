@@ -58,9 +58,9 @@ export function showSpace(app) {
         if (again) ask();
     }
 
-    /** @param {import("./protocol.js").Binary} answer */
+    /** @param {import("./protocol.js").Answers["space"]} answer */
     async function show({ header, payload }) {
-        const { width, height, sizes, screenFromWorld: matrix } = /** @type {import("./protocol.js").SpaceHeader} */ (header);
+        const { width, height, sizes, screen_from_world: matrix } = header;
         const bitmap = await createImageBitmap(new Blob([payload.slice(0, sizes[0])], { type: "image/png" }));
         const depths = new Float32Array(payload.slice(sizes[0], sizes[0] + sizes[1]));
         frame = { matrix, depths, width, height };
@@ -121,9 +121,9 @@ export function showSpace(app) {
 
     /** Whether walls stand between the observer and most of the hits. */
     function isBlind() {
-        const hits = app.inspection.get()?.rays.filter(({ met }) => met?.point) ?? [];
-        const hidden = hits.filter(({ met }) => {
-            const [x, y, depth] = projected(met.point);
+        const hits = (app.inspection.get()?.rays ?? []).flatMap(({ met }) => (met ? [met.point] : []));
+        const hidden = hits.filter((point) => {
+            const [x, y, depth] = projected(point);
             return isHidden(x, y, depth);
         });
         return hits.length > 0 && hidden.length > 0.5 * hits.length;

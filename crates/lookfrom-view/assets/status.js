@@ -11,11 +11,11 @@ export function showStatus(app) {
     let announced = -1;
     let isPaused = false;
 
-    app.socket.on("progress", (/** @type {import("./protocol.js").Progress} */ { samples, of, seconds, raysPerSecond, done }) => {
+    app.socket.on("progress", (/** @type {import("./protocol.js").Progress} */ { samples, of, seconds, rays_per_second, done }) => {
         progress.max = of;
         progress.value = samples;
         document.body.classList.toggle("is-done", done);
-        const rate = raysPerSecond > 0 ? ` · ${count(raysPerSecond)} rays/s` : "";
+        const rate = rays_per_second > 0 ? ` · ${count(rays_per_second)} rays/s` : "";
         text.textContent = `${samples} / ${of} samples · ${duration(seconds)}${rate}`;
         // Screen readers hear of each quarter only.
         const quarter = done ? 4 : Math.floor((4 * samples) / Math.max(of, 1));

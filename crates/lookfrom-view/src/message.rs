@@ -1,4 +1,5 @@
-//! Messages between page and server: JSON texts, and binary frames with a JSON header.
+//! Messages between page and server: JSON texts, and binary frames with a JSON header. Keys are in `snake_case`, as in
+//! `lookfrom inspect --json`.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,7 @@ pub(crate) const LONGEST: usize = 1 << 16;
 
 /// A message from the page.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(tag = "type", rename_all = "camelCase", rename_all_fields = "camelCase")]
+#[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Request {
     /// What to show; replaces the whole view before.
     View(Box<Wish>),
@@ -35,7 +36,6 @@ pub(crate) enum Request {
 
 /// What a page wants to see; `None` is the scene's own.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-#[serde(rename_all = "camelCase")]
 pub(crate) struct Wish {
     pub(crate) id: u64,
     pub(crate) camera: Option<CameraWish>,
@@ -102,7 +102,7 @@ pub(crate) enum FileFormat {
 
 /// A text message to the page.
 #[derive(Clone, Debug, Serialize)]
-#[serde(tag = "type", rename_all = "camelCase", rename_all_fields = "camelCase")]
+#[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Answer {
     Scene(Box<SceneAnswer>),
     Error {
@@ -148,7 +148,6 @@ pub(crate) enum Answer {
 
 /// What there is to see, and the settings it has by itself.
 #[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
 pub(crate) struct SceneAnswer {
     pub(crate) generation: u64,
     pub(crate) name: String,
@@ -231,7 +230,7 @@ pub(crate) struct LobeAnswer {
 
 /// The header of a binary frame.
 #[derive(Clone, Debug, Serialize)]
-#[serde(tag = "kind", rename_all = "camelCase", rename_all_fields = "camelCase")]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub(crate) enum Header {
     Picture {
         view: u64,

@@ -100,7 +100,7 @@ impl Wish {
             settings.samples = in_range(samples, 1, MOST_SAMPLES, "samples")?;
         }
         if let Some(least) = self.min_contribution {
-            settings.min_contribution = in_range(least, 0.0, 1.0, "minContribution")?;
+            settings.min_contribution = in_range(least, 0.0, 1.0, "min_contribution")?;
         }
         session.set_settings(settings)?;
         Ok(session)
@@ -123,7 +123,7 @@ impl Variation {
     pub(crate) fn open(&self, loaded: &Loaded) -> Result<Session> {
         let mut options: Options = loaded.options.clone();
         if let Some(degrees) = self.rotate_environment {
-            options.rotate_environment = Some(finite(degrees, "rotateEnvironment")?);
+            options.rotate_environment = Some(finite(degrees, "rotate_environment")?);
         }
         if let Some(at) = self.at {
             options.import.at = Some(finite(at, "at")?);

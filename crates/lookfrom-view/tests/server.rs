@@ -296,7 +296,8 @@ fn the_scene_from_an_observer_has_depths_and_a_matrix() {
     let camera = json!({ "lookfrom": [0, 0, 4], "lookat": [0, 0, 0], "up": [0, 1, 0], "fov": 60 });
     page.say(&json!({ "type": "space", "id": 9, "camera": camera, "size": [33, 33] }));
     let frame = page.frame("space");
-    let numbers: Vec<f64> = serde_json::from_value(frame.header["screenFromWorld"].clone()).expect("numbers");
+    let numbers: Vec<f64> =
+        serde_json::from_value(frame.header["screen_from_world"].clone()).expect("numbers");
     let [png, depths] = [0, 1].map(|n| frame.header["sizes"][n].as_u64().expect("a size") as usize);
     assert_eq!((depths, frame.payload.len()), (33 * 33 * 4, png + depths));
     let depth = |x: usize, y: usize| {

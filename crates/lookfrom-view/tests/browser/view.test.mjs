@@ -72,6 +72,7 @@ test("a click shows the numbers of `lookfrom inspect --json`", async () => {
     const nearest = said.rays[0].candidates.find((candidate) => candidate.is_nearest);
     const numbers = Object.values(nearest.test)[0].numbers;
     assert.deepEqual(rows, numbers.map(([name, value]) => [name, String(value.f32), String(value.f64), String(value.bits)]));
+    assert.doesNotMatch((await page.locator("#equations").textContent()) ?? "", /\[object/);
 
     await page.getByRole("tab", { name: "Notes, alive" }).click();
     await page.getByLabel("Lesson").selectOption({ label: "6. The tree, and its sum" });
