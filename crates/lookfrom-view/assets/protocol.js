@@ -1,4 +1,4 @@
-// The types of the messages between page and server. `view` is the whole wish of a window, never a part of it.
+// The types of the messages between page and server. `view` is the whole request of a window, never a part of it.
 // Keys are in snake_case. Types of inspections are made from the schema of `lookfrom inspect --json`.
 
 /** @typedef {import("../types/inspection.js").Vector} Vector */

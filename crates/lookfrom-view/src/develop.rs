@@ -11,7 +11,7 @@ use crate::compare;
 use crate::cost::Counted;
 use crate::document::Loaded;
 use crate::heat::{byte, heat};
-use crate::message::Wish;
+use crate::message::ViewRequest;
 use crate::view::{named, refused};
 
 /// A film and how it shall look.
@@ -21,7 +21,7 @@ pub(crate) struct Shown<'a> {
     /// Whether it is a smaller picture, which is not denoised.
     pub(crate) is_coarse: bool,
     pub(crate) loaded: &'a Loaded,
-    pub(crate) wish: &'a Wish,
+    pub(crate) request: &'a ViewRequest,
 }
 
 /// A layer of a film.
@@ -79,24 +79,24 @@ pub(crate) fn layers() -> impl Iterator<Item = (&'static str, &'static str)> {
     Layer::WORDS.iter().map(|&(word, layer)| (word, layer.title()))
 }
 
-/// Whether a wish can be developed.
+/// Whether a request can be developed.
 ///
 /// # Errors
 /// `Request` for unknown words, numbers out of range, and a comparison without a reference.
-pub(crate) fn check(wish: &Wish, loaded: &Loaded) -> Result<()> {
-    layer_of(wish)?;
-    wish.tonemap(loaded.session.image().tonemap)?;
-    if !(-64.0..=64.0).contains(&wish.exposure) {
-        return Err(refused(format!("exposure is {}; expected -64 to 64 stops", wish.exposure)));
+pub(crate) fn check(request: &ViewRequest, loaded: &Loaded) -> Result<()> {
+    layer_of(request)?;
+    request.tonemap(loaded.session.image().tonemap)?;
+    if !(-64.0..=64.0).contains(&request.exposure) {
+        return Err(refused(format!("exposure is {}; expected -64 to 64 stops", request.exposure)));
     }
-    if wish.compare.is_none() {
+    if request.compare.is_none() {
         return Ok(());
     }
     let Some(reference) = &loaded.reference else {
         return Err(refused("there is no reference to compare with: start with --reference FILE"));
     };
     let image = loaded.session.image();
-    let [width, height] = wish.size.unwrap_or([image.width, image.height]);
+    let [width, height] = request.size.unwrap_or([image.width, image.height]);
     if (width, height) != (reference.width, reference.height) {
         return Err(refused(format!(
             "the reference has {} × {} pixels, the view {width} × {height}: compare at the size of the reference",
@@ -106,16 +106,16 @@ pub(crate) fn check(wish: &Wish, loaded: &Loaded) -> Result<()> {
     Ok(())
 }
 
-fn layer_of(wish: &Wish) -> Result<Layer> {
-    wish.layer.as_deref().map_or(Ok(Layer::Color), |word| named(Layer::WORDS, word, "layer"))
+fn layer_of(request: &ViewRequest) -> Result<Layer> {
+    request.layer.as_deref().map_or(Ok(Layer::Color), |word| named(Layer::WORDS, word, "layer"))
 }
 
-/// What a heat map of the cost shows, if the wish is for one.
+/// What a heat map of the cost shows, if the request is for one.
 ///
 /// # Errors
 /// `Request` for an unknown layer.
-pub(crate) fn counted(wish: &Wish) -> Result<Option<Counted>> {
-    Ok(match layer_of(wish)? {
+pub(crate) fn counted(request: &ViewRequest) -> Result<Option<Counted>> {
+    Ok(match layer_of(request)? {
         Layer::Cost(counted) => Some(counted),
         _ => None,
     })
@@ -125,9 +125,9 @@ impl Shown<'_> {
     fn development(&self) -> Result<Development> {
         let own = self.session.development();
         Ok(Development {
-            exposure: self.wish.exposure,
-            tonemap: self.wish.tonemap(own.tonemap)?,
-            denoise: self.wish.denoise && !self.is_coarse,
+            exposure: self.request.exposure,
+            tonemap: self.request.tonemap(own.tonemap)?,
+            denoise: self.request.denoise && !self.is_coarse,
             ..own
         })
     }
@@ -137,14 +137,14 @@ impl Shown<'_> {
     /// # Errors
     /// As those of encoding.
     pub(crate) fn pictures(&self) -> Result<Vec<Vec<u8>>> {
-        let layer = layer_of(self.wish)?;
+        let layer = layer_of(self.request)?;
         if layer != Layer::Color {
             let (width, height) = (self.film.width(), self.film.height());
             return Ok(vec![encode_png(width, height, &self.layer(layer))?]);
         }
-        if let (Some(wish), Some(reference)) = (self.wish.compare, &self.loaded.reference) {
+        if let (Some(request), Some(reference)) = (self.request.compare, &self.loaded.reference) {
             let developed = self.session.develop(self.film, &self.development()?);
-            return compare::pictures(&developed, self.film, reference, wish.mode);
+            return compare::pictures(&developed, self.film, reference, request.mode);
         }
         Ok(vec![self.file(Format::Png)?])
     }

@@ -19,10 +19,10 @@ mod message;
 mod patience;
 mod render;
 mod server;
-mod shot;
 mod space;
 mod told;
 mod view;
+mod view_render;
 mod window;
 mod words;
 

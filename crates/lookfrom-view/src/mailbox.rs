@@ -24,7 +24,7 @@ pub(crate) enum Task {
 
 /// Something for the socket to send.
 #[derive(Debug)]
-pub(crate) enum Letter {
+pub(crate) enum Outgoing {
     Text(String),
     /// A frame.
     Binary(Vec<u8>),
@@ -44,8 +44,8 @@ pub(crate) struct Mailbox {
 
 #[derive(Debug, Default)]
 struct Outbox {
-    letters: VecDeque<Letter>,
-    /// Sent after the letters.
+    queue: VecDeque<Outgoing>,
+    /// Sent after the queue is empty.
     picture: Option<Vec<u8>>,
 }
 
@@ -92,14 +92,14 @@ impl Mailbox {
 
     /// Sends a text.
     pub(crate) fn say(&self, answer: &Answer) {
-        self.send(Letter::Text(answer.text()));
+        self.send(Outgoing::Text(answer.text()));
     }
 
-    /// Sends a letter after those before it.
-    pub(crate) fn send(&self, letter: Letter) {
+    /// Sends a message after those before it.
+    pub(crate) fn send(&self, message: Outgoing) {
         let mut outbox = locked(&self.outbox);
-        if outbox.letters.len() < MOST_TEXTS {
-            outbox.letters.push_back(letter);
+        if outbox.queue.len() < MOST_TEXTS {
+            outbox.queue.push_back(message);
         }
         self.ready.notify_one();
     }
@@ -110,18 +110,18 @@ impl Mailbox {
         self.ready.notify_one();
     }
 
-    /// The next letter to send; `None` once the window is closed.
-    pub(crate) async fn next(&self) -> Option<Letter> {
+    /// The next message to send; `None` once the window is closed.
+    pub(crate) async fn next(&self) -> Option<Outgoing> {
         loop {
             if self.is_closed() {
                 return None;
             }
-            let letter = {
+            let message = {
                 let mut outbox = locked(&self.outbox);
-                outbox.letters.pop_front().or_else(|| outbox.picture.take().map(Letter::Binary))
+                outbox.queue.pop_front().or_else(|| outbox.picture.take().map(Outgoing::Binary))
             };
-            if letter.is_some() {
-                return letter;
+            if message.is_some() {
+                return message;
             }
             self.ready.notified().await;
         }

@@ -15,13 +15,13 @@ pub(crate) const LONGEST: usize = 1 << 16;
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Request {
     /// What to show; replaces the whole view before.
-    View(Box<Wish>),
+    View(Box<ViewRequest>),
     /// All samples of a pixel.
     Pixel { id: u64, x: u32, y: u32 },
     /// One sample of a pixel, with all events.
     Inspect { id: u64, x: u32, y: u32, sample: u32, depth: Option<u32>, min_contribution: Option<f32> },
     /// The scene from an observer's camera.
-    Space { id: u64, camera: CameraWish, size: [u32; 2] },
+    Space { id: u64, camera: CameraRequest, size: [u32; 2] },
     /// The numbers of a pixel of the film as it is.
     Value { id: u64, x: u32, y: u32 },
     /// The scattering at a vertex of a sample.
@@ -36,9 +36,9 @@ pub(crate) enum Request {
 
 /// What a page wants to see; `None` is the scene's own.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
-pub(crate) struct Wish {
+pub(crate) struct ViewRequest {
     pub(crate) id: u64,
-    pub(crate) camera: Option<CameraWish>,
+    pub(crate) camera: Option<CameraRequest>,
     pub(crate) size: Option<[u32; 2]>,
     /// Whether a hand is moving it: only coarse pictures, as fast as possible.
     #[serde(default)]
@@ -58,12 +58,12 @@ pub(crate) struct Wish {
     #[serde(default)]
     pub(crate) denoise: bool,
     pub(crate) layer: Option<String>,
-    pub(crate) compare: Option<CompareWish>,
+    pub(crate) compare: Option<CompareRequest>,
 }
 
 /// Position and orientation, and the vertical field of view in degrees.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-pub(crate) struct CameraWish {
+pub(crate) struct CameraRequest {
     pub(crate) lookfrom: [f64; 3],
     pub(crate) lookat: [f64; 3],
     pub(crate) up: [f64; 3],
@@ -72,7 +72,7 @@ pub(crate) struct CameraWish {
 
 /// How the picture is compared with the reference.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
-pub(crate) struct CompareWish {
+pub(crate) struct CompareRequest {
     pub(crate) mode: Comparing,
 }
 
@@ -280,7 +280,7 @@ impl Request {
     /// The number that an answer refers to.
     pub(crate) fn id(&self) -> Option<u64> {
         match *self {
-            Self::View(ref wish) => Some(wish.id),
+            Self::View(ref request) => Some(request.id),
             Self::Pixel { id, .. }
             | Self::Inspect { id, .. }
             | Self::Space { id, .. }

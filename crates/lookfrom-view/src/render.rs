@@ -16,10 +16,10 @@ use lookfrom_scene::{Error, Result};
 use crate::cost::{CostMap, Counted};
 use crate::develop::{self, Shown};
 use crate::document::{Document, Loaded, panicked};
-use crate::mailbox::{Letter, Mailbox, Task};
-use crate::message::{Answer, FileFormat, Header, Request, Wish};
-use crate::shot::{Shot, Stage};
+use crate::mailbox::{Mailbox, Outgoing, Task};
+use crate::message::{Answer, FileFormat, Header, Request, ViewRequest};
 use crate::view::{Variation, refused};
+use crate::view_render::{Stage, ViewRender};
 use crate::{lobe, space, words};
 
 /// The most samples of a pixel that are inspected at once: it takes a second or so.
@@ -27,8 +27,15 @@ const MOST_INSPECTED: u32 = 4096;
 
 /// Runs until the window is closed.
 pub(crate) fn run(mailbox: &Mailbox, document: &Document) {
-    let mut window =
-        Window { mailbox, document, loaded: None, variation: None, wish: None, shot: None, is_paused: false };
+    let mut window = Window {
+        mailbox,
+        document,
+        loaded: None,
+        variation: None,
+        request: None,
+        render: None,
+        is_paused: false,
+    };
     while let Some(tasks) = mailbox.take(!window.has_work()) {
         for task in tasks {
             let id = match &task {
@@ -48,8 +55,8 @@ struct Window<'a> {
     loaded: Option<Arc<Loaded>>,
     /// The scene as this window alone wants it.
     variation: Option<(Variation, Session)>,
-    wish: Option<Wish>,
-    shot: Option<Shot>,
+    request: Option<ViewRequest>,
+    render: Option<ViewRender>,
     is_paused: bool,
 }
 
@@ -59,9 +66,9 @@ impl Window<'_> {
         let done = catch_unwind(AssertUnwindSafe(|| act(self))).unwrap_or_else(|_| Err(panicked()));
         if let Err(error) = done {
             if id.is_none()
-                && let Some(shot) = &mut self.shot
+                && let Some(render) = &mut self.render
             {
-                shot.stage = Stage::Done;
+                render.stage = Stage::Done;
             }
             self.mailbox.say(&Answer::of_error(id, &error));
         }
@@ -69,14 +76,14 @@ impl Window<'_> {
 
     /// Whether there is something to render. A pause holds up passes, not the first sight of another view.
     fn has_work(&self) -> bool {
-        let stage = self.shot.as_ref().map_or(Stage::Done, |shot| shot.stage);
+        let stage = self.render.as_ref().map_or(Stage::Done, |render| render.stage);
         stage != Stage::Done && !(self.is_paused && stage == Stage::Full)
     }
 
     fn answer(&mut self, task: Task) -> Result<()> {
         match task {
             Task::SceneChanged => self.scene_changed(),
-            Task::Request(Request::View(wish)) => self.look(*wish),
+            Task::Request(Request::View(request)) => self.look(*request),
             Task::Request(Request::Pause { paused }) => {
                 self.is_paused = paused;
                 Ok(())
@@ -86,24 +93,26 @@ impl Window<'_> {
                 self.inspect(id, [x, y], sample, depth, min_contribution)
             }
             Task::Request(Request::Lobe { id, x, y, sample, address }) => {
-                let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
-                let sample = shot.checked([x, y], sample)?;
-                let lobe = lobe::answer(shot.session.renderer(), id, sample, address)?;
+                let render = self.render.as_ref().ok_or_else(nothing_yet)?;
+                let sample = render.checked([x, y], sample)?;
+                let lobe = lobe::answer(render.session.renderer(), id, sample, address)?;
                 self.mailbox.say(&Answer::Lobe(Box::new(lobe)));
                 Ok(())
             }
             Task::Request(Request::Value { id, x, y }) => self.value(id, x, y),
             Task::Request(Request::Space { id, camera, size }) => {
                 let loaded = self.loaded.as_ref().ok_or_else(nothing_yet)?;
-                let session = self.shot.as_ref().map_or(&loaded.session, |shot| &shot.session);
-                self.mailbox.send(Letter::Binary(space::frame(session, id, &camera, size)?));
+                let session = self.render.as_ref().map_or(&loaded.session, |render| &render.session);
+                self.mailbox.send(Outgoing::Binary(space::frame(session, id, &camera, size)?));
                 Ok(())
             }
             Task::Request(Request::Save { id, format }) => self.save(id, format),
             Task::Request(Request::Words { id }) => {
-                let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
-                let toml = words::toml(&shot.session, wish);
-                let command = words::command(&shot.session, wish, &self.document.settings().typed);
+                let (Some(render), Some(request)) = (&self.render, &self.request) else {
+                    return Err(nothing_yet());
+                };
+                let toml = words::toml(&render.session, request);
+                let command = words::command(&render.session, request, &self.document.settings().typed);
                 self.mailbox.say(&Answer::Words { id, toml, command });
                 Ok(())
             }
@@ -117,9 +126,9 @@ impl Window<'_> {
             && self.loaded.as_ref().is_none_or(|before| before.generation != loaded.generation)
         {
             self.mailbox.say(&Answer::Scene(Box::new(loaded.told())));
-            (self.loaded, self.variation, self.shot) = (Some(loaded), None, None);
-            if let Some(wish) = self.wish.clone() {
-                self.look(wish)?;
+            (self.loaded, self.variation, self.render) = (Some(loaded), None, None);
+            if let Some(request) = self.request.clone() {
+                self.look(request)?;
             }
         }
         if let Some(error) = error {
@@ -129,39 +138,39 @@ impl Window<'_> {
     }
 
     /// Shows another view, or the same one developed anew.
-    fn look(&mut self, wish: Wish) -> Result<()> {
+    fn look(&mut self, request: ViewRequest) -> Result<()> {
         let Some(loaded) = self.loaded.clone() else {
-            self.wish = Some(wish);
+            self.request = Some(request);
             return Ok(());
         };
-        develop::check(&wish, &loaded)?;
-        if let (Some(shot), Some(before)) = (&mut self.shot, &self.wish)
-            && before.light() == wish.light()
+        develop::check(&request, &loaded)?;
+        if let (Some(render), Some(before)) = (&mut self.render, &self.request)
+            && before.light() == request.light()
         {
-            shot.take_samples(&wish, &loaded)?;
-            if !wish.moving && shot.stage == Stage::Done && shot.film.is_none() {
-                shot.stage = shot.after_coarse();
+            render.take_samples(&request, &loaded)?;
+            if !request.moving && render.stage == Stage::Done && render.film.is_none() {
+                render.stage = render.after_coarse();
             }
-            shot.denoised_until = None;
-            self.wish = Some(wish);
+            render.denoised_until = None;
+            self.request = Some(request);
             return self.show();
         }
         // What cannot be shown leaves the view as it is.
-        let session = wish.applied(self.base(&wish, &loaded)?)?;
-        let pace = self.shot.as_ref().and_then(|shot| shot.pace);
-        let shot = match Shot::new(session.clone(), pace) {
-            Ok(shot) => shot,
+        let session = request.applied(self.base(&request, &loaded)?)?;
+        let pace = self.render.as_ref().and_then(|render| render.pace);
+        let render = match ViewRender::new(session.clone(), pace) {
+            Ok(render) => render,
             // Perhaps there is memory for it in place of the last one.
-            Err(_) if self.shot.take().is_some() => Shot::new(session, pace)?,
+            Err(_) if self.render.take().is_some() => ViewRender::new(session, pace)?,
             Err(error) => return Err(error),
         };
-        (self.shot, self.wish) = (Some(shot), Some(wish));
+        (self.render, self.request) = (Some(render), Some(request));
         Ok(())
     }
 
     /// The session of the scene in the variation that is asked for.
-    fn base(&mut self, wish: &Wish, loaded: &Loaded) -> Result<Session> {
-        let Some(variation) = wish.variation(loaded) else { return Ok(loaded.session.clone()) };
+    fn base(&mut self, request: &ViewRequest, loaded: &Loaded) -> Result<Session> {
+        let Some(variation) = request.variation(loaded) else { return Ok(loaded.session.clone()) };
         if let Some((known, session)) = &self.variation
             && *known == variation
         {
@@ -177,10 +186,10 @@ impl Window<'_> {
         if !self.has_work() {
             return Ok(());
         }
-        let (Some(shot), Some(wish)) = (&mut self.shot, &self.wish) else { return Ok(()) };
-        let has_more = match shot.stage {
-            Stage::Coarse(scale) => shot.render_coarse(scale, wish.moving, self.mailbox)?,
-            Stage::Full => shot.render_pass(self.mailbox)?,
+        let (Some(render), Some(request)) = (&mut self.render, &self.request) else { return Ok(()) };
+        let has_more = match render.stage {
+            Stage::Coarse(scale) => render.render_coarse(scale, request.moving, self.mailbox)?,
+            Stage::Full => render.render_pass(self.mailbox)?,
             Stage::Done => false,
         };
         if has_more { self.show() } else { Ok(()) }
@@ -188,47 +197,48 @@ impl Window<'_> {
 
     /// Sends the picture as it is.
     fn show(&mut self) -> Result<()> {
-        let (Some(shot), Some(wish), Some(loaded)) = (&mut self.shot, &self.wish, &self.loaded) else {
+        let (Some(render), Some(request), Some(loaded)) = (&mut self.render, &self.request, &self.loaded)
+        else {
             return Ok(());
         };
-        let of = shot.session.settings().samples;
-        let is_done = shot.film.is_some() && shot.stage == Stage::Done;
-        let seconds = shot.spent.as_secs_f64();
+        let of = render.session.settings().samples;
+        let is_done = render.film.is_some() && render.stage == Stage::Done;
+        let seconds = render.spent.as_secs_f64();
         self.mailbox.say(&Answer::Progress {
-            view: wish.id,
-            samples: shot.samples,
+            view: request.id,
+            samples: render.samples,
             of,
             seconds,
-            rays_per_second: shot.rays as f64 / seconds.max(1e-9),
+            rays_per_second: render.rays as f64 / seconds.max(1e-9),
             done: is_done,
         });
         let started = Instant::now();
-        let denoises = wish.denoise && shot.samples > 0;
-        if denoises && !is_done && shot.denoised_until.is_some_and(|until| started < until) {
+        let denoises = request.denoise && render.samples > 0;
+        if denoises && !is_done && render.denoised_until.is_some_and(|until| started < until) {
             return Ok(());
         }
-        if let Some(counted) = develop::counted(wish)? {
+        if let Some(counted) = develop::counted(request)? {
             return self.show_cost(counted, is_done);
         }
-        let (session, film, scale) = match (&shot.film, &shot.coarse) {
-            (Some(film), _) if shot.samples > 0 => (&shot.session, film, 1),
+        let (session, film, scale) = match (&render.film, &render.coarse) {
+            (Some(film), _) if render.samples > 0 => (&render.session, film, 1),
             (_, Some(coarse)) => (&coarse.session, &coarse.film, coarse.scale),
             _ => return Ok(()),
         };
-        let shown = Shown { session, film, is_coarse: scale > 1, loaded, wish };
+        let shown = Shown { session, film, is_coarse: scale > 1, loaded, request };
         let pictures = shown.pictures()?;
         if denoises {
-            shot.denoised_until = Some(Instant::now() + 3 * started.elapsed());
+            render.denoised_until = Some(Instant::now() + 3 * started.elapsed());
         }
         let header = Header::Picture {
-            view: wish.id,
+            view: request.id,
             width: film.width(),
             height: film.height(),
             scale,
-            samples: shot.samples.max(1),
+            samples: render.samples.max(1),
             of,
             done: is_done,
-            layer: wish.layer.clone().unwrap_or_else(|| "color".to_owned()),
+            layer: request.layer.clone().unwrap_or_else(|| "color".to_owned()),
             seconds,
             sizes: pictures.iter().map(Vec::len).collect(),
         };
@@ -239,25 +249,25 @@ impl Window<'_> {
 
     /// Sends a heat map of the cost, which is measured once.
     fn show_cost(&mut self, counted: Counted, done: bool) -> Result<()> {
-        let (Some(shot), Some(wish)) = (&mut self.shot, &self.wish) else { return Ok(()) };
-        let map = match shot.cost.take() {
+        let (Some(render), Some(request)) = (&mut self.render, &self.request) else { return Ok(()) };
+        let map = match render.cost.take() {
             Some(map) => map,
-            None => CostMap::new(&shot.session)?,
+            None => CostMap::new(&render.session)?,
         };
         let png = map.png(counted)?;
         let header = Header::Picture {
-            view: wish.id,
+            view: request.id,
             width: map.width,
             height: map.height,
             scale: map.scale,
             samples: 1,
-            of: shot.session.settings().samples,
+            of: render.session.settings().samples,
             done,
-            layer: wish.layer.clone().unwrap_or_default(),
-            seconds: shot.spent.as_secs_f64(),
+            layer: request.layer.clone().unwrap_or_default(),
+            seconds: render.spent.as_secs_f64(),
             sizes: vec![png.len()],
         };
-        shot.cost = Some(map);
+        render.cost = Some(map);
         self.mailbox.show(header.frame(&[&png]));
         Ok(())
     }
@@ -272,14 +282,14 @@ impl Window<'_> {
 
     /// The session, developed as the picture on the screen is.
     fn as_shown(&self) -> Result<Session> {
-        let (Some(shot), Some(wish)) = (&self.shot, &self.wish) else { return Err(nothing_yet()) };
-        let mut session = shot.session.clone();
+        let (Some(render), Some(request)) = (&self.render, &self.request) else { return Err(nothing_yet()) };
+        let mut session = render.session.clone();
         let own = session.image().clone();
-        let tonemap = wish.tonemap(own.tonemap)?;
+        let tonemap = request.tonemap(own.tonemap)?;
         session.set_image(ImageSettings {
-            exposure: wish.exposure,
+            exposure: request.exposure,
             tonemap,
-            denoise: wish.denoise,
+            denoise: request.denoise,
             ..own
         })?;
         Ok(session)
@@ -293,8 +303,8 @@ impl Window<'_> {
         depth: Option<u32>,
         min_contribution: Option<f32>,
     ) -> Result<()> {
-        let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
-        let sample = shot.checked(pixel, sample)?;
+        let render = self.render.as_ref().ok_or_else(nothing_yet)?;
+        let sample = render.checked(pixel, sample)?;
         let mut session = self.as_shown()?;
         let own = session.settings().clone();
         session.set_settings(RenderSettings {
@@ -309,9 +319,9 @@ impl Window<'_> {
     }
 
     fn value(&self, id: u64, x: u32, y: u32) -> Result<()> {
-        let shot = self.shot.as_ref().ok_or_else(nothing_yet)?;
-        shot.check_pixel([x, y])?;
-        let film = shot.film.as_ref().ok_or_else(nothing_yet)?;
+        let render = self.render.as_ref().ok_or_else(nothing_yet)?;
+        render.check_pixel([x, y])?;
+        let film = render.film.as_ref().ok_or_else(nothing_yet)?;
         let reference = self.loaded.as_ref().and_then(|loaded| loaded.reference.as_ref());
         let reference = reference.filter(|image| x < image.width && y < image.height);
         self.mailbox.say(&Answer::Value {
@@ -327,19 +337,19 @@ impl Window<'_> {
     }
 
     fn save(&self, id: u64, format: FileFormat) -> Result<()> {
-        let (Some(shot), Some(wish), Some(loaded)) = (&self.shot, &self.wish, &self.loaded) else {
+        let (Some(render), Some(request), Some(loaded)) = (&self.render, &self.request, &self.loaded) else {
             return Err(nothing_yet());
         };
-        let film = shot.film.as_ref().ok_or_else(nothing_yet)?;
+        let film = render.film.as_ref().ok_or_else(nothing_yet)?;
         let (format, extension, mime) = match format {
             FileFormat::Png => (Format::Png, "png", "image/png"),
             FileFormat::Exr => (Format::Exr, "exr", "image/x-exr"),
         };
-        let shown = Shown { session: &shot.session, film, is_coarse: false, loaded, wish };
+        let shown = Shown { session: &render.session, film, is_coarse: false, loaded, request };
         let bytes = shown.file(format)?;
         let stem = self.document.settings().scene.file_stem().unwrap_or_default().to_string_lossy();
         let header = Header::File { id, name: format!("{stem}.{extension}"), mime };
-        self.mailbox.send(Letter::Binary(header.frame(&[&bytes])));
+        self.mailbox.send(Outgoing::Binary(header.frame(&[&bytes])));
         Ok(())
     }
 }

@@ -43,13 +43,13 @@ const POLICY: &str =
 pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
-    house: Arc<House>,
+    state: Arc<ServerState>,
     patience: Duration,
 }
 
 /// What all requests share.
 #[derive(Debug)]
-struct House {
+struct ServerState {
     token: String,
     host: IpAddr,
     document: Arc<Document>,
@@ -69,8 +69,9 @@ impl Server {
         getrandom::fill(&mut bits).map_err(io::Error::other)?;
         let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
         let (host, windows) = (settings.host, Arc::default());
-        let house = Arc::new(House { token, host, document: Arc::new(Document::new(settings)), windows });
-        Ok(Self { listener, address, house, patience: patience::PATIENCE })
+        let state =
+            Arc::new(ServerState { token, host, document: Arc::new(Document::new(settings)), windows });
+        Ok(Self { listener, address, state, patience: patience::PATIENCE })
     }
 
     /// The same with another longest silence of a client: one that sends nothing, not even answers to pings, or reads nothing
@@ -88,12 +89,12 @@ impl Server {
                 if address.is_ipv4() { [127, 0, 0, 1].into() } else { [0, 0, 0, 0, 0, 0, 0, 1].into() };
             address.set_ip(loopback);
         }
-        format!("http://{address}/?token={}", self.house.token)
+        format!("http://{address}/?token={}", self.state.token)
     }
 
     /// A counter of the windows whose threads have not ended.
     pub fn windows(&self) -> Arc<AtomicUsize> {
-        self.house.windows.clone()
+        self.state.windows.clone()
     }
 
     /// Serves until `stopped`. Then all renders end.
@@ -101,18 +102,18 @@ impl Server {
     /// # Errors
     /// Where the system refuses to listen or to start threads.
     pub fn run(self, stopped: impl Fn() -> bool + Sync) -> io::Result<()> {
-        let Self { listener, house, patience, .. } = self;
+        let Self { listener, state, patience, .. } = self;
         listener.set_nonblocking(true)?;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::scope(|scope| {
             let watching = std::thread::Builder::new().name("watch".to_owned());
-            watching.spawn_scoped(scope, || house.document.watch(&stopped))?;
-            let windows = house.windows.clone();
+            watching.spawn_scoped(scope, || state.document.watch(&stopped))?;
+            let windows = state.windows.clone();
             let served = runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener)?;
                 let listener = PatientListener { listener, patience };
                 tokio::select! {
-                    served = axum::serve(listener, router(house.clone(), patience)) => served,
+                    served = axum::serve(listener, router(state.clone(), patience)) => served,
                     () = ended(&stopped) => Ok(()),
                 }
             });
@@ -133,13 +134,13 @@ async fn ended(stopped: &impl Fn() -> bool) {
     }
 }
 
-fn router(house: Arc<House>, patience: Duration) -> Router {
+fn router(state: Arc<ServerState>, patience: Duration) -> Router {
     Router::new()
         .route("/", get(page))
         .route("/socket", get(move |state, query, upgrade| socket(state, query, upgrade, patience)))
         .route("/{*name}", get(file))
-        .layer(middleware::from_fn_with_state(house.clone(), guarded))
-        .with_state(house)
+        .layer(middleware::from_fn_with_state(state.clone(), require_same_origin))
+        .with_state(state)
 }
 
 /// The query of addresses that need the token.
@@ -149,7 +150,7 @@ struct Token {
     token: String,
 }
 
-impl House {
+impl ServerState {
     /// Whether a token is this server's, in a time that does not depend on where it differs.
     fn knows(&self, token: &str) -> bool {
         let differences = self.token.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
@@ -171,7 +172,7 @@ impl House {
     }
 
     /// Whether a request asks for this server, and not by another site's page.
-    fn welcomes(&self, headers: &HeaderMap) -> bool {
+    fn is_same_origin(&self, headers: &HeaderMap) -> bool {
         let text = |name| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         let host = text(header::HOST).unwrap_or_default();
         let is_ours = |origin: &str| origin.strip_prefix("http://") == Some(host);
@@ -180,8 +181,12 @@ impl House {
 }
 
 /// Refuses requests to other hosts and from other sites' pages, and tells the browser what the page may do.
-async fn guarded(State(house): State<Arc<House>>, request: Request, next: Next) -> Response {
-    if !house.welcomes(request.headers()) {
+async fn require_same_origin(
+    State(state): State<Arc<ServerState>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    if !state.is_same_origin(request.headers()) {
         return (StatusCode::FORBIDDEN, "another host or origin\n").into_response();
     }
     let mut response = next.run(request).await;
@@ -196,8 +201,8 @@ async fn guarded(State(house): State<Arc<House>>, request: Request, next: Next) 
     response
 }
 
-async fn page(State(house): State<Arc<House>>, Query(query): Query<Token>) -> Response {
-    match house.knows(&query.token) {
+async fn page(State(state): State<Arc<ServerState>>, Query(query): Query<Token>) -> Response {
+    match state.knows(&query.token) {
         true => found("index.html"),
         false => no_token(),
     }
@@ -208,21 +213,21 @@ async fn file(Path(name): Path<String>) -> Response {
 }
 
 async fn socket(
-    State(house): State<Arc<House>>,
+    State(state): State<Arc<ServerState>>,
     Query(query): Query<Token>,
     upgrade: WebSocketUpgrade,
     patience: Duration,
 ) -> Response {
-    if !house.knows(&query.token) {
+    if !state.knows(&query.token) {
         return no_token();
     }
-    let Some(counted) = Counted::new(&house.windows, MOST_WINDOWS) else {
+    let Some(counted) = Counted::new(&state.windows, MOST_WINDOWS) else {
         let message = format!("{MOST_WINDOWS} windows are open: close one\n");
         return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
     };
     // Longer messages than the longest are read, so that they can be answered, up to a limit.
     let upgrade = upgrade.max_message_size(16 * LONGEST).max_frame_size(16 * LONGEST);
-    upgrade.on_upgrade(move |socket| window::run(socket, house.document.clone(), counted, patience / 3))
+    upgrade.on_upgrade(move |socket| window::run(socket, state.document.clone(), counted, patience / 3))
 }
 
 fn no_token() -> Response {

@@ -13,7 +13,7 @@ use lookfrom_scene::image::{encode_png_with_alpha, srgb_from_linear};
 use lookfrom_scene::settings::{Filter, ImageSettings, Integrator, Layers, RenderSettings};
 
 use crate::heat::byte;
-use crate::message::{CameraWish, Header};
+use crate::message::{CameraRequest, Header};
 use crate::view::check_size;
 
 /// The field of view of an observer that names none.
@@ -26,12 +26,12 @@ const AMBIENT: f32 = 0.25;
 ///
 /// # Errors
 /// `Request` for a size out of range, `Invalid` for a degenerate camera.
-pub(crate) fn frame(session: &Session, id: u64, wish: &CameraWish, size: [u32; 2]) -> Result<Vec<u8>> {
+pub(crate) fn frame(session: &Session, id: u64, request: &CameraRequest, size: [u32; 2]) -> Result<Vec<u8>> {
     check_size(size)?;
     let [width, height] = size;
-    let fov = wish.fov.unwrap_or(FOV);
+    let fov = request.fov.unwrap_or(FOV);
     let written = Written { projection: Projection::Perspective { fov }, ..Written::default() };
-    let written = wish.applied(&written, DVec3::ZERO)?;
+    let written = request.applied(&written, DVec3::ZERO)?;
     let image = ImageSettings {
         width,
         height,

@@ -1,4 +1,4 @@
-//! From what a page wishes to a session: camera, size, settings, and the variation of the scene.
+//! From a page's request to a session: camera, size, settings, and the variation of the scene.
 
 use glam::DVec3;
 use lookfrom::session::{MOST_SAMPLES, Options, Session};
@@ -7,7 +7,7 @@ use lookfrom_scene::settings::{ImageSettings, Integrator, Layers, Tonemap};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use crate::document::Loaded;
-use crate::message::{CameraWish, Wish};
+use crate::message::{CameraRequest, ViewRequest};
 
 /// The most pixels of a view: those of a screen of 3840 × 2160. Its film takes 3.5 GB.
 pub(crate) const MOST_PIXELS: u64 = 3840 * 2160;
@@ -25,7 +25,7 @@ pub(crate) struct Variation {
     has_turntable: bool,
 }
 
-/// The error for a wish that cannot be fulfilled.
+/// The error for a request that cannot be fulfilled.
 pub(crate) fn refused(message: impl Into<String>) -> Error {
     Error::new(ErrorKind::Request, &Location::default(), message)
 }
@@ -39,7 +39,7 @@ pub(crate) fn named<T: Copy>(words: &[(&str, T)], word: &str, what: &str) -> Res
     })
 }
 
-impl Wish {
+impl ViewRequest {
     /// The part that decides the light of each sample: pictures of equal ones are developed from the same film.
     pub(crate) fn light(&self) -> Self {
         Self {
@@ -85,8 +85,8 @@ impl Wish {
         check_size([image.width, image.height])?;
         // Whatever may be asked for of this film is in it.
         session.set_image(ImageSettings { layers: Layers::Geometry, denoise: true, ..image })?;
-        if let Some(wish) = &self.camera {
-            let camera = wish.applied(session.camera(), session.info().bounds.center())?;
+        if let Some(request) = &self.camera {
+            let camera = request.applied(session.camera(), session.info().bounds.center())?;
             session.set_camera(camera)?;
         }
         let mut settings = session.settings().clone();
@@ -141,7 +141,7 @@ impl Variation {
     }
 }
 
-impl CameraWish {
+impl CameraRequest {
     /// The scene's camera, moved.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use futures_util::{SinkExt, StreamExt};
 use tokio::time::timeout;
 
 use crate::document::Document;
-use crate::mailbox::{Letter, Mailbox, Task};
+use crate::mailbox::{Mailbox, Outgoing, Task};
 use crate::message::{Answer, Request};
 use crate::render;
 
@@ -34,8 +34,8 @@ pub(crate) async fn run(socket: WebSocket, document: Arc<Document>, counted: Cou
     let sending = async {
         loop {
             let message = match timeout(ping, mailbox.next()).await {
-                Ok(Some(Letter::Text(text))) => Message::Text(text.into()),
-                Ok(Some(Letter::Binary(bytes))) => Message::Binary(bytes.into()),
+                Ok(Some(Outgoing::Text(text))) => Message::Text(text.into()),
+                Ok(Some(Outgoing::Binary(bytes))) => Message::Binary(bytes.into()),
                 Ok(None) => return,
                 Err(_) => Message::Ping(Bytes::new()),
             };

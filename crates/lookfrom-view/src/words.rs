@@ -6,10 +6,10 @@ use glam::DVec3;
 use lookfrom::session::Session;
 use lookfrom_scene::camera::{Camera, Look, Projection, View};
 
-use crate::message::Wish;
+use crate::message::ViewRequest;
 
 /// The camera and the settings of a view as TOML.
-pub(crate) fn toml(session: &Session, wish: &Wish) -> String {
+pub(crate) fn toml(session: &Session, request: &ViewRequest) -> String {
     let (image, settings) = (session.image(), session.settings());
     let mut text = String::from("[camera]\n");
     let middle = session.info().bounds.center();
@@ -29,11 +29,11 @@ pub(crate) fn toml(session: &Session, wish: &Wish) -> String {
         let _ = writeln!(text, "{name} = {value}");
     }
     let _ = write!(text, "\n[image]\nwidth = {}\nheight = {}\n", image.width, image.height);
-    let _ = write!(text, "exposure = {}\ntonemap = {:?}\n", wish.exposure, tonemap(session, wish));
+    let _ = write!(text, "exposure = {}\ntonemap = {:?}\n", request.exposure, tonemap(session, request));
     let _ = write!(
         text,
         "denoise = {}\n\n[render]\nintegrator = {:?}\nsamples = {}\ndepth = {}\nmin_contribution = {}\n",
-        wish.denoise,
+        request.denoise,
         settings.integrator.word(),
         settings.samples,
         settings.depth,
@@ -43,7 +43,7 @@ pub(crate) fn toml(session: &Session, wish: &Wish) -> String {
 }
 
 /// The command that renders the view of a scene; `typed` are the options that its session was opened with.
-pub(crate) fn command(session: &Session, wish: &Wish, typed: &[String]) -> String {
+pub(crate) fn command(session: &Session, request: &ViewRequest, typed: &[String]) -> String {
     let (image, settings) = (session.image(), session.settings());
     let mut options = vec![
         ("width", image.width.to_string()),
@@ -52,12 +52,12 @@ pub(crate) fn command(session: &Session, wish: &Wish, typed: &[String]) -> Strin
         ("integrator", settings.integrator.word().to_owned()),
         ("depth", settings.depth.to_string()),
         ("min-contribution", settings.min_contribution.to_string()),
-        ("exposure", wish.exposure.to_string()),
-        ("tonemap", tonemap(session, wish).to_owned()),
-        ("denoise", if wish.denoise { "on" } else { "off" }.to_owned()),
+        ("exposure", request.exposure.to_string()),
+        ("tonemap", tonemap(session, request).to_owned()),
+        ("denoise", if request.denoise { "on" } else { "off" }.to_owned()),
     ];
     // A camera on a turntable is where the turntable says.
-    match (wish.turn, &wish.camera) {
+    match (request.turn, &request.camera) {
         (Some(degrees), None) => options.push(("turn", degrees.to_string())),
         (_, None) => {}
         (_, Some(camera)) => {
@@ -72,10 +72,10 @@ pub(crate) fn command(session: &Session, wish: &Wish, typed: &[String]) -> Strin
         }
     }
     let optional = [
-        ("rotate-environment", wish.rotate_environment.map(|degrees| degrees.to_string())),
-        ("animation", wish.animation.map(|number| number.to_string())),
-        ("at", wish.at.map(|seconds| seconds.to_string())),
-        ("variant", wish.variant.clone()),
+        ("rotate-environment", request.rotate_environment.map(|degrees| degrees.to_string())),
+        ("animation", request.animation.map(|number| number.to_string())),
+        ("at", request.at.map(|seconds| seconds.to_string())),
+        ("variant", request.variant.clone()),
     ];
     options.extend(optional.into_iter().filter_map(|(name, value)| Some((name, value?))));
     let is_replaced = |typed: &str| {
@@ -91,9 +91,9 @@ pub(crate) fn command(session: &Session, wish: &Wish, typed: &[String]) -> Strin
     text
 }
 
-fn tonemap(session: &Session, wish: &Wish) -> &'static str {
+fn tonemap(session: &Session, request: &ViewRequest) -> &'static str {
     let own = session.image().tonemap;
-    wish.tonemap(own).unwrap_or(own).word()
+    request.tonemap(own).unwrap_or(own).word()
 }
 
 /// Position and direction of a camera that is given by a matrix, without what else the matrix does.

@@ -150,7 +150,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "compare cost mailbox words",
             "document",
             "view",
-            "develop lobe shot space",
+            "develop lobe space view_render",
             "render told",
             "window",
             "server",

@@ -12,7 +12,7 @@ use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use crate::cost::CostMap;
 use crate::document::Loaded;
 use crate::mailbox::Mailbox;
-use crate::message::Wish;
+use crate::message::ViewRequest;
 use crate::view::refused;
 
 /// The time that a coarse picture may take while the camera is moved.
@@ -28,7 +28,7 @@ const FIRST_SCALE: u32 = 8;
 const COARSEST: u32 = 32;
 
 /// A view and its films.
-pub(crate) struct Shot {
+pub(crate) struct ViewRender {
     pub(crate) session: Session,
     /// The last coarse picture.
     pub(crate) coarse: Option<Coarse>,
@@ -64,7 +64,7 @@ pub(crate) enum Stage {
     Done,
 }
 
-impl Shot {
+impl ViewRender {
     /// # Errors
     /// `Limit` where there is no memory left for it.
     pub(crate) fn new(session: Session, pace: Option<f64>) -> Result<Self> {
@@ -86,9 +86,9 @@ impl Shot {
         })
     }
 
-    /// Takes over the number of samples of a wish for the same light.
-    pub(crate) fn take_samples(&mut self, wish: &Wish, loaded: &Loaded) -> Result<()> {
-        let samples = wish.samples.unwrap_or(loaded.session.settings().samples);
+    /// Takes over the number of samples of a request for the same light.
+    pub(crate) fn take_samples(&mut self, request: &ViewRequest, loaded: &Loaded) -> Result<()> {
+        let samples = request.samples.unwrap_or(loaded.session.settings().samples);
         if samples == self.session.settings().samples {
             return Ok(());
         }
