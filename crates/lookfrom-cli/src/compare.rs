@@ -57,7 +57,7 @@ pub(crate) enum NoiseChannels {
     /// X, Y and Z of the standard observer.
     #[serde(rename = "XYZ")]
     Xyz,
-    /// Those of the sensor that a picture or the command line names.
+    /// Channels of the sensor that a picture or the command line names.
     #[serde(rename = "sensor")]
     Sensor,
 }

@@ -20,7 +20,7 @@ use crate::args::{FarmArguments, Scheduler};
 use crate::exit::{DONE, Failure, say};
 use crate::{files, film};
 
-/// What the files of all schedulers are made from.
+/// A job, from which the files of all schedulers are made.
 #[derive(Debug)]
 struct Job {
     /// The name of the scene without extension, which pictures have.

@@ -236,7 +236,7 @@ pub(crate) fn read(path: &Path, budget: &Budget) -> Result<FilmFile, Failure> {
     read_from(&Disk, path, budget)
 }
 
-/// The same, read through `files`.
+/// As [`read`], through `files`.
 ///
 /// # Errors
 /// As [`read`].

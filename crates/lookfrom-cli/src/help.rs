@@ -75,7 +75,7 @@ pub(crate) fn command() -> Command {
     names.iter().fold(command, |command, name| command.mut_subcommand(name, with_braces))
 }
 
-/// The same with the help of every option, as manual pages show it.
+/// A command with the help of every option, as manual pages show it.
 pub(crate) fn explained(command: &Command) -> Command {
     command.clone().mut_args(|argument| argument.hide_short_help(false))
 }

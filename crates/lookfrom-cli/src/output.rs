@@ -13,7 +13,7 @@ use lookfrom_scene::{Disk, Inputs};
 
 use crate::exit::Failure;
 
-/// What pictures are written to.
+/// A writer of pictures.
 pub(crate) trait Out: Write + Seek {}
 
 impl<T: Write + Seek> Out for T {}
@@ -88,7 +88,7 @@ impl Target {
         matches!(self, Self::Stdout(_))
     }
 
-    /// The same with a picture of another format.
+    /// The target with a picture of another format.
     pub(crate) fn of_format(self, format: Format) -> Self {
         match self {
             Self::Stdout(_) => Self::Stdout(format),

@@ -16,7 +16,7 @@ use crate::progress::Watcher;
 use crate::report::{self, Summary};
 use crate::terminal;
 
-/// What becomes of a finished picture.
+/// The destination of a finished picture.
 pub(crate) enum Outlet<'a> {
     /// It is written to its target.
     Target,

@@ -11,7 +11,7 @@ use lookfrom_scene::{Disk, Error, ErrorKind, Files, Location, Result};
 /// The most bytes that are read from a pipe.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// What stdin held, or why it could not be read.
+/// The content of stdin, or why it could not be read.
 static STDIN: OnceLock<std::result::Result<Vec<u8>, String>> = OnceLock::new();
 
 /// The files on disk, and stdin by the name [`PIPE`].

@@ -25,7 +25,7 @@ pub(crate) fn prepare(
     prepare_from(&inputs.record(&Piped, path.display().to_string()), path, common, options)
 }
 
-/// The same, read through `files`.
+/// As [`prepare`], through `files`.
 ///
 /// # Errors
 /// As [`prepare`].
@@ -54,7 +54,7 @@ pub(crate) fn environment(
     environment_from(&inputs.record(&Disk, "--environment"), overrides, common)
 }
 
-/// The same, read through `files`.
+/// As [`environment`], through `files`.
 ///
 /// # Errors
 /// As [`environment`].

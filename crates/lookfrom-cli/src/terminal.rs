@@ -27,7 +27,7 @@ pub(crate) enum Way {
     Blocks256,
 }
 
-/// What is asked for.
+/// The pictures that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Show {
     /// Whatever the terminal can do, if stderr is one.
@@ -57,7 +57,7 @@ impl Show {
     }
 }
 
-/// What a terminal with this environment can do, if anything.
+/// The way in which a terminal with this environment shows pictures, if any.
 fn way_of(variable: &dyn Fn(&str) -> Option<String>) -> Option<Way> {
     let of = |name| variable(name).unwrap_or_default();
     let (terminal, program) = (of("TERM"), of("TERM_PROGRAM"));

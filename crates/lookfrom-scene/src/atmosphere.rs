@@ -27,7 +27,7 @@ const SUN_POINTS: u32 = 4096;
 /// The angular radius of the sun, in radians.
 const SUN_RADIUS: f64 = 0.004_65;
 
-/// What decides how a clear sky looks.
+/// The parameters of a clear sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClearSky {
     /// Elevation of the sun above the horizon, in radians, from −π/2 to π/2.

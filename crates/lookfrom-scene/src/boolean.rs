@@ -22,7 +22,7 @@ pub(crate) const BYTES_PER_TRIANGLE: u64 = 600;
 /// The most triangles of a surface that crosses itself: it is taken apart with rational numbers, which are slow.
 const MOST_CROSSING: usize = 50_000;
 
-/// What becomes of two solids.
+/// A set operation on two solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operation {
     Union,
@@ -182,7 +182,7 @@ struct Soup {
     triangles: Vec<[u32; 3]>,
     /// The number of each surface, and its first triangle.
     runs: Vec<(u32, usize)>,
-    /// Of each vertex, the first at its place.
+    /// For each vertex the first one at its place.
     places: Vec<u32>,
     first_at: Vec<u32>,
     weld: Option<Weld<3>>,

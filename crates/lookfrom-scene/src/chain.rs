@@ -77,7 +77,7 @@ pub(crate) fn check<T: Made>(things: &[T], indices: impl IntoIterator<Item = usi
     errors
 }
 
-/// What begins with an item.
+/// The extent of the graph that begins with an item.
 #[derive(Clone, Copy)]
 struct Extent {
     /// The depth of the longest chain.
@@ -87,7 +87,7 @@ struct Extent {
 }
 
 impl Extent {
-    /// Of an item without parts.
+    /// The extent of an item without parts.
     const ONE: Self = Self { height: 1, size: 1 };
 }
 

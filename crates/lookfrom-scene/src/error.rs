@@ -103,13 +103,13 @@ impl Error {
         Self::new(ErrorKind::Invalid, at, message)
     }
 
-    /// The same error with a remedy.
+    /// Adds a remedy.
     pub fn hint(mut self, hint: impl Into<Remedy>) -> Self {
         self.hint = Some(hint.into());
         self
     }
 
-    /// The same error, and further ones, with remedies in the words of a front end.
+    /// Puts remedies, also those of further errors, into the words of a front end.
     #[must_use]
     pub fn worded(mut self, words: impl Fn(&Remedy) -> String) -> Self {
         let hints = std::iter::once(&mut self.hint).chain(self.more.iter_mut().map(|error| &mut error.hint));

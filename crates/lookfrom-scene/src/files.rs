@@ -72,7 +72,7 @@ const MOST_OF_A_STREAM: u64 = 1 << 30;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
 
-/// What came from pipes and devices of this process, by path and [`FileId`]s: readers look at the beginning of a file before they
+/// Bytes that came from pipes and devices of this process, by path and [`FileId`]s: readers look at the beginning of a file before they
 /// read it.
 type Streams = HashMap<(PathBuf, Vec<FileId>), Vec<u8>>;
 
@@ -82,7 +82,7 @@ fn streams() -> MutexGuard<'static, Streams> {
 }
 
 impl Disk {
-    /// What was read before from a path that is no file: opening a pipe again would wait for another writer.
+    /// Bytes that were read before from a path that is no file: opening a pipe again would wait for another writer.
     fn kept(self, path: &Path, limit: u64) -> Option<Result<Vec<u8>>> {
         if std::fs::metadata(path).ok()?.is_file() {
             return None;

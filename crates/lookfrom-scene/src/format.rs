@@ -16,7 +16,7 @@ pub(crate) enum Format {
     Obj,
 }
 
-/// What is known of a format.
+/// A row of the table of formats.
 struct Row {
     format: Format,
     /// Extensions in lower case.

@@ -183,7 +183,7 @@ pub enum Sky {
     },
 }
 
-/// What is wrong with a picture as a map in latitude and longitude, by its shape; `None` if it may be one.
+/// The fault of a picture as a map in latitude and longitude, by its shape; `None` if it may be one.
 pub fn panorama_fault(image: &Image) -> Option<String> {
     let (width, height) = (u64::from(image.width), u64::from(image.height));
     // Some rows or columns may be missing.

@@ -14,7 +14,7 @@ pub fn counted(count: impl TryInto<u64>, noun: &str) -> impl fmt::Display {
     Shown(count.try_into().unwrap_or(u64::MAX), noun)
 }
 
-/// The same with the verb: "1 value is", "2 values are".
+/// A count with its noun and verb: "1 value is", "2 values are".
 pub fn are(count: u64, noun: &str) -> String {
     format!("{} {}", counted(count, noun), be(count))
 }

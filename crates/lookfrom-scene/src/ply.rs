@@ -31,7 +31,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Re
     from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
-/// The same for the content of a file; messages and relative file names use `path`.
+/// As [`read`], for the content of a file; messages and relative file names use `path`.
 ///
 /// # Errors
 /// As [`read`].

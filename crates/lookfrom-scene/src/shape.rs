@@ -167,7 +167,7 @@ pub struct Strand {
 pub enum Profile {
     /// A flat band that always faces the ray.
     Flat,
-    /// The same, shaded as a cylinder.
+    /// A flat band that always faces the ray, shaded as a cylinder.
     Cylinder,
     /// A flat band perpendicular to these two unit normals, at its beginning and at its end.
     Ribbon([Vec3; 2]),

@@ -24,7 +24,7 @@ pub const LONGEST: u32 = 830;
 /// A spectrum: a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
-    /// The same value at all wavelengths.
+    /// One value at all wavelengths.
     Constant(f32),
     /// Linear between entries, 0 outside.
     Tabulated {
@@ -50,7 +50,7 @@ impl Curve {
         }
     }
 
-    /// The same spectrum with its first and last values extended to the ends of the visible range.
+    /// The spectrum with its first and last values extended to the ends of the visible range.
     pub(crate) fn extended(self) -> Self {
         let Self::Tabulated { mut wavelengths, mut values } = self else { return self };
         if wavelengths[0] > SHORTEST as f32 {
@@ -65,7 +65,7 @@ impl Curve {
         Self::Tabulated { wavelengths, values }
     }
 
-    /// The same spectrum times a factor; `None` for a blackbody, whose scale is fixed.
+    /// The spectrum times a factor; `None` for a blackbody, whose scale is fixed.
     fn scaled(self, factor: f32) -> Option<Self> {
         match self {
             Self::Constant(value) => Some(Self::Constant(value * factor)),

@@ -15,7 +15,7 @@ const POLL: Duration = Duration::from_millis(300);
 pub struct Stamps(BTreeMap<PathBuf, Option<(SystemTime, u64)>>);
 
 impl Stamps {
-    /// Those of files as they are now.
+    /// Stamps of files as they are now.
     pub fn of<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
         let stamp = |path: &PathBuf| {
             let found = std::fs::metadata(path).ok()?;

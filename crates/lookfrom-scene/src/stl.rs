@@ -39,7 +39,7 @@ pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Re
     from_bytes(&packed::read(path, context)?, path, context, scene)
 }
 
-/// The same for the content of a file; `path` is for messages.
+/// As [`read`], for the content of a file; `path` is for messages.
 ///
 /// # Errors
 /// As [`read`].

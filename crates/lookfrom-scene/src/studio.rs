@@ -113,7 +113,7 @@ pub fn samples_for_models(image: &ImageSettings) -> u32 {
     if pixels <= THUMBNAIL_PIXELS { THUMBNAIL_SAMPLES } else { MODEL_SAMPLES }
 }
 
-/// The same with denoising: middle pictures are there within about a second; small ones need more, since fewer leave stair
+/// Samples per pixel with denoising: middle pictures are there within about a second; small ones need more, since fewer leave stair
 /// steps at silhouettes.
 fn denoised_samples(pixels: u64) -> u32 {
     let is_middle = pixels > 320 * 320 && pixels <= 512 * 512;
@@ -126,7 +126,7 @@ pub fn framing(bounds: Bounds, aspect: f64, up: DVec3) -> Camera {
     framing_from(bounds, aspect, basis(up), &Viewpoint::THREE_QUARTER)
 }
 
-/// The same from any viewpoint; `basis` is right, up and towards the viewer.
+/// A camera that frames bounds from any viewpoint; `basis` is right, up and towards the viewer.
 fn framing_from(bounds: Bounds, aspect: f64, basis: [DVec3; 3], viewpoint: &Viewpoint) -> Camera {
     let bounds = sane(bounds);
     let mut framing = Framing::new(bounds.center(), basis, aspect, viewpoint);

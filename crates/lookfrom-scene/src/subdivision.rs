@@ -50,7 +50,7 @@ pub(crate) struct Cage {
 /// A part of the limit surface: quadrilaterals, four corners each.
 pub(crate) struct Refined {
     pub(crate) positions: Vec<Vec3>,
-    /// Of unit length, except at vertices without faces.
+    /// Vertex normals, of unit length except at vertices without faces.
     pub(crate) normals: Vec<Vec3>,
     /// As those of the cage.
     pub(crate) corners: Vec<u32>,
@@ -256,7 +256,7 @@ impl Cage {
 #[derive(Clone, Default)]
 struct Around {
     faces: u32,
-    /// Of the faces.
+    /// Sum of the centres of the faces.
     centers: DVec3,
     edges: u32,
     /// The other ends of its edges.

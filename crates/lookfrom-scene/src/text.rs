@@ -31,7 +31,7 @@ const SMOOTH: f64 = 0.82;
 pub(crate) struct Layout {
     /// The em.
     pub(crate) size: f64,
-    /// Of the solid; 0 is a sheet.
+    /// Depth of the solid; 0 is a sheet.
     pub(crate) depth: f64,
     pub(crate) align: Align,
     /// Distance of lines over that of the font.

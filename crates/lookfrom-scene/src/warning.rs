@@ -59,14 +59,14 @@ impl Warning {
         Self { kind: WarningKind::Notice, ..Self::new(at, message) }
     }
 
-    /// The same warning with a way to have it otherwise.
+    /// Adds a way to have it otherwise.
     #[must_use]
     pub fn remedy(mut self, remedy: Remedy) -> Self {
         self.remedy = Some(remedy);
         self
     }
 
-    /// The same warning with its remedy in the words of a front end.
+    /// Puts the remedy into the words of a front end.
     #[must_use]
     pub fn worded(mut self, words: impl Fn(&Remedy) -> String) -> Self {
         self.remedy = self.remedy.map(|remedy| Remedy::Words(words(&remedy)));
@@ -82,7 +82,7 @@ impl Warning {
         self.remedy.as_ref().map_or(Ok(()), |remedy| write!(f, "; {remedy}"))
     }
 
-    /// The same warning about a number of items.
+    /// Makes it a warning about a number of items.
     #[must_use]
     pub fn of(mut self, count: u64, noun: impl Into<String>) -> Self {
         self.counted = Some(Counted { count, noun: noun.into() });

@@ -12,7 +12,7 @@ use crate::heat::{byte, heat};
 /// The most pixels of a map; larger views have a coarser one.
 const MOST_PIXELS: f64 = 150_000.0;
 
-/// What a map shows.
+/// The quantity that a map shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Counted {
     Rays,

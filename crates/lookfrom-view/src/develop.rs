@@ -110,7 +110,7 @@ fn layer_of(request: &ViewRequest) -> Result<Layer> {
     request.layer.as_deref().map_or(Ok(Layer::Color), |word| named(Layer::WORDS, word, "layer"))
 }
 
-/// What a heat map of the cost shows, if the request is for one.
+/// The quantity of a heat map of the cost, if one is requested.
 ///
 /// # Errors
 /// `Request` for an unknown layer.

@@ -48,7 +48,7 @@ impl Document {
         Self { settings, state: Mutex::default(), windows: Mutex::default() }
     }
 
-    /// What is shown, and with which options.
+    /// The scene that is shown, and its options.
     pub(crate) fn settings(&self) -> &Settings {
         &self.settings
     }

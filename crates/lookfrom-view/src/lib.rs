@@ -33,7 +33,7 @@ use lookfrom::session::Options;
 
 pub use server::Server;
 
-/// What is shown, and where.
+/// The scene that is shown, and the address of its page.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// A scene or model file.

@@ -63,7 +63,7 @@ fn of_ring(ring: usize, normal: Vec3, (x, y): (Vec3, Vec3)) -> impl Iterator<Ite
     })
 }
 
-/// What scatters at a vertex.
+/// The scattering at a vertex.
 enum Balloon<'a> {
     /// A BSDF.
     Bsdf(&'a SurfaceInteraction, &'a lookfrom::shading::material::Shading),

@@ -1,4 +1,4 @@
-//! What is on the way between the socket of a window and its thread. Only the latest counts: a request replaces an earlier
+//! Messages on the way between the socket of a window and its thread. Only the latest counts: a request replaces an earlier
 //! one of its type that has not been taken, a picture an earlier one that has not been sent.
 
 use std::collections::VecDeque;
@@ -128,7 +128,7 @@ impl Mailbox {
     }
 }
 
-/// What a mutex guards, though a thread may have panicked while it held it.
+/// Locks a mutex, though a thread may have panicked while it held it.
 pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

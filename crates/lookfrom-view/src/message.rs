@@ -14,7 +14,7 @@ pub(crate) const LONGEST: usize = 1 << 16;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Request {
-    /// What to show; replaces the whole view before.
+    /// The view to show; replaces the whole view before.
     View(Box<ViewRequest>),
     /// All samples of a pixel.
     Pixel { id: u64, x: u32, y: u32 },
@@ -34,7 +34,7 @@ pub(crate) enum Request {
     Pause { paused: bool },
 }
 
-/// What a page wants to see; `None` is the scene's own.
+/// The view that a page requests; `None` is the scene's own.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct ViewRequest {
     pub(crate) id: u64,
@@ -134,7 +134,7 @@ pub(crate) enum Answer {
         y: u32,
         rgb: [f32; 3],
         samples: u64,
-        /// Of one sample.
+        /// Variance of one sample.
         variance: [f32; 3],
         reference: Option<[f32; 3]>,
     },
@@ -146,7 +146,7 @@ pub(crate) enum Answer {
     },
 }
 
-/// What there is to see, and the settings it has by itself.
+/// A scene, and the settings it has by itself.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SceneAnswer {
     pub(crate) generation: u64,
@@ -166,7 +166,7 @@ pub(crate) struct SceneAnswer {
     pub(crate) layers: Vec<LayerAnswer>,
     pub(crate) variants: Vec<String>,
     pub(crate) animations: Vec<AnimationAnswer>,
-    /// Of keyframes and expressions of the scene, in seconds.
+    /// Duration of keyframes and expressions of the scene, in seconds.
     pub(crate) duration: Option<f64>,
     pub(crate) turntable: bool,
     pub(crate) counts: Counts,
@@ -207,7 +207,7 @@ pub(crate) struct AnimationAnswer {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LightAnswer {
     pub(crate) name: &'static str,
-    /// Of an area light the centre of its bounds; `None` for lights that are nowhere.
+    /// Its position; of an area light the centre of its bounds; `None` for lights that are nowhere.
     pub(crate) position: Option<[f64; 3]>,
 }
 

@@ -92,7 +92,7 @@ impl Wait {
         Self { patience, end: Box::pin(sleep(patience)), is_waiting: false }
     }
 
-    /// What was polled, or the error that it has waited for too long.
+    /// The polled result, or the error that it has waited for too long.
     fn watch<T>(&mut self, context: &mut Context<'_>, polled: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
         if polled.is_ready() {
             self.is_waiting = false;

@@ -34,7 +34,7 @@ const LOOK: Duration = Duration::from_millis(100);
 /// The longest wait for the threads of windows at the end.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What the page may load: nothing from elsewhere.
+/// The page's content security policy: nothing is loaded from elsewhere.
 const POLICY: &str =
     "default-src 'self'; img-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
@@ -47,7 +47,7 @@ pub struct Server {
     patience: Duration,
 }
 
-/// What all requests share.
+/// State shared by all requests.
 #[derive(Debug)]
 struct ServerState {
     token: String,
@@ -74,7 +74,7 @@ impl Server {
         Ok(Self { listener, address, state, patience: patience::PATIENCE })
     }
 
-    /// The same with another longest silence of a client: one that sends nothing, not even answers to pings, or reads nothing
+    /// Sets the longest silence of a client: one that sends nothing, not even answers to pings, or reads nothing
     /// for so long is dropped.
     #[must_use]
     pub fn with_patience(self, patience: Duration) -> Self {

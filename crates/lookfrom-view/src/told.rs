@@ -1,4 +1,4 @@
-//! What a page is told of a scene.
+//! The message that tells a page of a scene.
 
 use lookfrom::inspect::{self, LightPlace};
 use lookfrom::world::World;

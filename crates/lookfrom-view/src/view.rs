@@ -15,7 +15,7 @@ pub(crate) const MOST_PIXELS: u64 = 3840 * 2160;
 /// The largest depth, as on the command line.
 const MOST_DEPTH: u32 = 256;
 
-/// What cannot be changed in a session: the scene is read again for it.
+/// Settings that cannot be changed in a session: the scene is read again for it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Variation {
     rotate_environment: Option<f64>,

@@ -56,7 +56,7 @@ pub(crate) struct Coarse {
     pub(crate) film: Film,
 }
 
-/// What is to be rendered next.
+/// The stage of a picture that is to be rendered next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Stage {
     Coarse(u32),
@@ -128,7 +128,7 @@ impl ViewRender {
         Ok(rendered.reason != StopReason::Cancelled)
     }
 
-    /// What follows the coarse picture, if the camera stands still.
+    /// The stage after the coarse picture, if the camera stands still.
     pub(crate) fn after_coarse(&self) -> Stage {
         let finer = self.pace.map_or(FIRST_SCALE, |pace| scale_of(self.session.image(), pace / 4.0));
         match &self.coarse {

@@ -84,7 +84,7 @@ pub(crate) enum Samples {
     One(u32),
     /// The brightest.
     Worst,
-    /// Those of the picture.
+    /// All samples of the picture.
     All,
     /// Some of them.
     Range(Range<u32>),

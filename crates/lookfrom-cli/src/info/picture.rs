@@ -26,7 +26,7 @@ struct Picture {
     film: Option<Film>,
 }
 
-/// What a film holds.
+/// The content of a film.
 #[derive(Serialize)]
 struct Film {
     /// Columns and rows, the last two exclusive.

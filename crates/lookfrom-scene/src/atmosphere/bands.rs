@@ -27,7 +27,7 @@ pub(super) fn rgb(values: &Bands, weights: &[[f64; 3]; COUNT]) -> [f64; 3] {
     rgb
 }
 
-/// What each wavelength adds to RGB under the sun's spectrum outside the atmosphere, in units of 10 000 lx. The values are
+/// Contribution of each wavelength to RGB under the sun's spectrum outside the atmosphere, in units of 10 000 lx. The values are
 /// linear between the wavelengths.
 ///
 /// The sun is a blackbody of 5772 K, its effective temperature (IAU 2015), which gives 1361 W/m².

@@ -24,7 +24,7 @@ pub(super) struct Scattering<'a> {
     steps: u32,
 }
 
-/// What a ray gathers: light scattered once by all kinds alike, and what of a uniform radiance 1 it would scatter.
+/// Light that a ray gathers: light scattered once by all kinds alike, and what of a uniform radiance 1 it would scatter.
 #[derive(Clone, Copy)]
 struct Gathered {
     once: Bands,
@@ -42,7 +42,7 @@ impl<'a> Scattering<'a> {
         Self { air, mean, steps: STEPS }
     }
 
-    /// The same with many more steps along each direction.
+    /// The integrator with many more steps along each direction.
     #[cfg(test)]
     pub(super) fn with_steps(self, steps: u32) -> Self {
         Self { steps, ..self }

@@ -187,7 +187,7 @@ impl Document {
         self.elements(index, asked)
     }
 
-    /// The same for unsigned integers: indices of vertices and joints.
+    /// As [`Document::vectors`], for unsigned integers: indices of vertices and joints.
     ///
     /// # Errors
     /// As [`Document::vectors`], and if the components are floating-point or signed.

@@ -86,7 +86,7 @@ impl Compressed {
     /// The decoded mesh of a buffer view.
     ///
     /// # Errors
-    /// Those of `decode`.
+    /// The errors of `decode`.
     ///
     /// # Panics
     /// If the file has no such view.

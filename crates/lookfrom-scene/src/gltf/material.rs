@@ -44,7 +44,7 @@ pub(super) struct Brought {
 pub(super) enum Colors {
     #[default]
     None,
-    /// Those of its vertices.
+    /// The colours of its vertices.
     OfVertices,
     /// One for all of it, as bits.
     One([u32; 3]),

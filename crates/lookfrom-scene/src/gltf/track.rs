@@ -73,7 +73,7 @@ impl Track<'_> {
         }
     }
 
-    /// The same for quaternions (x, y, z, w): of unit length if the keyframes are, along the shorter arc.
+    /// The value at a time for quaternions (x, y, z, w): of unit length if the keyframes are, along the shorter arc.
     pub(super) fn rotation(&self, time: f64) -> DVec4 {
         let unit = |numbers: &[f64]| match numbers {
             &[x, y, z, w] => DVec4::new(x, y, z, w).normalize_or_zero(),

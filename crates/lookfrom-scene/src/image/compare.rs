@@ -78,7 +78,7 @@ pub struct Comparison {
 pub struct NoiseTest {
     /// Fraction of the pixels that differ by at most [`MOST_STANDARD_ERRORS`] in all three channels.
     pub pixels_within: f64,
-    /// The same for the means of blocks of [`BLOCK`] × [`BLOCK`] pixels.
+    /// Fraction of the means that differ by at most as much, of blocks of [`BLOCK`] × [`BLOCK`] pixels.
     pub blocks_within: f64,
     /// The difference of the images' means in standard errors.
     pub mean: [f64; 3],

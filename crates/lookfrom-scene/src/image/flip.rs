@@ -61,7 +61,7 @@ pub fn flip(
     errors
 }
 
-/// The same of images that are compared as a whole.
+/// The perceived differences of images that are compared as a whole.
 fn flip_band(images: [&[[f32; 3]]; 2], width: usize, scale: f32, pixels_per_degree: f64) -> Vec<f32> {
     let opponents = images.map(|rgb| {
         let color = |rgb: &[f32; 3]| opponent(rgb.map(|c| f64::from(c * scale).clamp(0.0, 1.0)));

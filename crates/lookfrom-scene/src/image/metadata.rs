@@ -11,7 +11,7 @@ pub struct Metadata {
 }
 
 impl Metadata {
-    /// Of a picture made by a program, from a text with its settings. The same texts give the same bytes.
+    /// Metadata of a picture made by a program, from a text with its settings. The same texts give the same bytes.
     pub fn new(software: &str, description: &str) -> Self {
         Self { exif: exif(software, description), icc_profile: srgb_profile() }
     }
@@ -49,7 +49,7 @@ const LONG: u16 = 4;
 /// The Exif of a picture in sRGB: a TIFF file without pixels.
 fn exif(software: &str, description: &str) -> Vec<u8> {
     const HEADER: u32 = 8;
-    /// Of the first directory.
+    /// Number of fields of the first directory.
     const FIELDS: u32 = 3;
     /// Longest text, so that all fit into a segment of a JPEG.
     const LONGEST: usize = 30_000;

@@ -92,7 +92,7 @@ struct Decoded {
     attributes: Vec<(String, String)>,
     /// The colours that R, G and B stand for, if the file tells.
     chromaticities: Option<Chromaticities>,
-    /// Of twice the values: as the crate returns them, or with the colours of a picture.
+    /// Memory of twice the values: as the crate returns them, or with the colours of a picture.
     memory: Reservation,
 }
 

@@ -21,7 +21,7 @@ pub(super) fn is(bytes: &[u8]) -> bool {
     bytes.starts_with(b"#?") || head.split(|&byte| byte == b'\n').any(|line| line.starts_with(FORMAT))
 }
 
-/// What the header says.
+/// The header of a file.
 struct Header {
     is_xyz: bool,
     /// Factors of the channels that are in the pixels.

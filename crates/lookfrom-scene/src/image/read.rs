@@ -15,14 +15,14 @@ use crate::files::{Limits, LoadContext};
 /// The names of the readable formats, for messages.
 const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2";
 
-/// What to do about a damaged file.
+/// The hint for a damaged file.
 pub(super) const WHOLE: &str =
     "check that the file is whole; opening it in another program and saving it again may repair it";
 
 /// Bytes of a texel for decoding 8 bits per channel, besides the decoder's result.
 const SHALLOW: u64 = 6;
 
-/// The same for more than 8 bits.
+/// Bytes of a texel for decoding more than 8 bits per channel, besides the decoder's result.
 const DEEP: u64 = 20;
 
 /// Reads a colour image: 8- and 16-bit formats are taken to be sRGB-encoded and become linear, floating-point formats are

@@ -57,7 +57,7 @@ impl Image {
         Self::from_linear_and_alpha(name, width, height, texels, Vec::new())
     }
 
-    /// The same with alpha: one per texel, or none.
+    /// An image with alpha: one per texel, or none.
     ///
     /// # Panics
     /// If the number of texels differs.
@@ -215,7 +215,7 @@ impl Image {
         sums.map(|sum| (sum / self.len().max(1) as f64) as f32)
     }
 
-    /// The same image with other colours, each made of the linear one.
+    /// A copy of the image with other colours, each made of the linear one.
     pub fn with_colors(&self, color: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
         let texels = self.texels().map(color).collect();
         let alpha =

@@ -6,7 +6,7 @@ use crate::files::LoadContext;
 /// Colours that are brighter than this are bytes.
 const BRIGHTEST: f32 = 16.0;
 
-/// What the values of colours mean.
+/// The meaning of the values of colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Range {
     /// 1 is white.

@@ -20,7 +20,7 @@ const MANY_STEPS: f64 = (1 << 18) as f64;
 /// Where the positions of a file are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
-    /// What the positions are relative to: 0 on axes along which they are near the origin.
+    /// The point that positions are relative to: 0 on axes along which they are near the origin.
     pub(crate) origin: DVec3,
     /// The step between neighbouring numbers, at the largest coordinate.
     step: f64,

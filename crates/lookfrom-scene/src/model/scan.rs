@@ -23,7 +23,7 @@ impl<'a> Scanner<'a> {
         Self { bytes, position: 0, line: 1, line_start: 0, word_start: 0, joins_lines: false }
     }
 
-    /// The same, for formats in which a backslash at the end of a line, before blanks or not, continues the line.
+    /// A scanner for formats in which a backslash at the end of a line, before blanks or not, continues the line.
     pub(crate) fn joining_lines(bytes: &'a [u8]) -> Self {
         Self { joins_lines: true, ..Self::new(bytes) }
     }

@@ -40,7 +40,7 @@ impl Tally {
         self.tell(WarningKind::Warning, noun, what, file, context);
     }
 
-    /// The same as a note: the image is as intended.
+    /// Tells the count as a note: the image is as intended.
     pub(crate) fn notice(self, noun: &str, what: &str, file: &Location, context: &mut LoadContext<'_>) {
         self.tell(WarningKind::Notice, noun, what, file, context);
     }

@@ -51,7 +51,7 @@ pub(super) struct Look {
     pub(super) alpha: Option<Scalar>,
 }
 
-/// What a material depends on in the geometry that has it.
+/// Properties of the geometry that its material depends on.
 #[derive(Clone, Copy)]
 pub(super) struct Surface {
     /// Whether vertices have colours.

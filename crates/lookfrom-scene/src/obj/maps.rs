@@ -27,7 +27,7 @@ pub(super) struct Images {
     texels: u64,
 }
 
-/// What an image is read for.
+/// The use that an image is read for.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Use {
     /// A colour: the bits of the range and of the tint that are applied to the texels.

@@ -114,7 +114,7 @@ impl Reader<'_, '_> {
         self.folder.join(name)
     }
 
-    /// The same, relative to the folder of the current file.
+    /// A path relative to the folder of the current file.
     fn resolve_locally(&self, name: &str) -> Option<PathBuf> {
         Some(self.open.last()?.parent()?.join(name))
     }

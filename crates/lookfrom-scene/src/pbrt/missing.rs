@@ -23,7 +23,7 @@ impl Missing {
     /// Records a missing file, once per file.
     ///
     /// # Errors
-    /// The same error if there are too many.
+    /// The given error if there are too many.
     pub(super) fn add(&mut self, path: &Path, error: Error) -> Result<()> {
         if self.errors.len() >= MOST_MISSING {
             return Err(error);
@@ -34,7 +34,7 @@ impl Missing {
         Ok(())
     }
 
-    /// The same for a part of the scene's text.
+    /// As [`add`](Self::add), for a part of the scene's text.
     ///
     /// # Errors
     /// As [`add`](Self::add).

@@ -9,7 +9,7 @@ use super::params::{Kind, Parameters};
 use crate::error::Result;
 use crate::packed;
 
-/// What a perspective camera takes over from a lens system.
+/// Properties of a lens system that a perspective camera takes over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Optics {
     /// The tangent of half the field of view along the diagonal of the film.

@@ -45,7 +45,7 @@ impl Reader<'_, '_> {
         self.uniform(parameter, parameters.space, meaning).map(Some)
     }
 
-    /// The same with a default.
+    /// A colour, with a default.
     pub(super) fn color(
         &mut self,
         parameters: &Parameters,
@@ -79,7 +79,7 @@ impl Reader<'_, '_> {
         parameters.float_or_none(name).map(|value| value.map(Scalar::Value))
     }
 
-    /// The same with a default.
+    /// A number, with a default.
     pub(super) fn scalar(
         &mut self,
         parameters: &Parameters,

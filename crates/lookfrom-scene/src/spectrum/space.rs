@@ -35,9 +35,9 @@ pub fn xyz_from(space: &str) -> Option<Matrix> {
 /// The colours that red, green, blue and white stand for, as CIE xy chromaticities: those that a picture file states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chromaticities {
-    /// Of red, green and blue.
+    /// Chromaticities of red, green and blue.
     pub primaries: [[f64; 2]; 3],
-    /// Of (1, 1, 1).
+    /// Chromaticity of (1, 1, 1).
     pub white: [f64; 2],
 }
 

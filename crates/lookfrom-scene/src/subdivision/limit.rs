@@ -13,7 +13,7 @@ pub(super) struct Limit {
 }
 
 impl Limit {
-    /// Of a cage that was refined at least once, so that all its faces are quadrilaterals.
+    /// The limit surface of a cage that was refined at least once, so that all its faces are quadrilaterals.
     pub(super) fn of(cage: &Cage) -> Self {
         let adjacency = Adjacency::of(cage);
         let mut around = vec![Around::default(); cage.positions.len()];

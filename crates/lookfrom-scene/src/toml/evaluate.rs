@@ -15,7 +15,7 @@ const MOST: u64 = 1 << 24;
 /// The deepest nesting of lists in a value.
 const DEEPEST_LIST: usize = 16;
 
-/// What evaluation may still take, so that a few lines cannot ask for endless memory or time.
+/// Depth and work that evaluation may still take, so that a few lines cannot ask for endless memory or time.
 #[derive(Debug, Default)]
 pub(super) struct Allowance {
     depth: Cell<usize>,

@@ -65,7 +65,7 @@ const LEVELS: [&[(&str, Operator)]; 5] = [
 /// The greatest depth of parentheses, signs, powers, choices and calls.
 const DEEPEST: usize = 48;
 
-/// What is wrong with an expression, and the byte offset where. Without a message it follows from an error that is told
+/// The fault of an expression, and the byte offset where. Without a message it follows from an error that is told
 /// elsewhere.
 #[derive(Debug, Default)]
 pub(super) struct Fault {

@@ -14,7 +14,7 @@ pub(super) const KEYFRAMES: &str = "keyframes";
 /// The keys of the table.
 pub(super) const KEYS: &[&str] = &[KEYFRAMES, "interpolation", "repeat"];
 
-/// What is between two keyframes.
+/// The interpolation between two keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
     /// A straight line.

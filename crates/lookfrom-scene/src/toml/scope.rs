@@ -36,10 +36,10 @@ struct Definition<'a> {
 pub(super) struct Scope<'a> {
     variables: &'a Variables<'a>,
     document: &'a Document,
-    /// Those that the file defines, and no file that imports it.
+    /// Variables that the file defines, and no file that imports it.
     own: BTreeMap<&'a str, Definition<'a>>,
     done: RefCell<BTreeMap<&'a str, Option<Quantity>>>,
-    /// Those whose values are being determined, each for the one before.
+    /// Variables whose values are being determined, each for the one before.
     pending: RefCell<Vec<&'a str>>,
     knows_all: bool,
 }

@@ -55,7 +55,7 @@ pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "p
 /// The keys of `[[instance]]`.
 pub(super) const INSTANCE: &[&str] = &["object", "material"];
 
-/// What a table says of a shape besides its geometry.
+/// The keys of a shape's table besides its geometry.
 pub(super) struct Look {
     pub(super) name: Option<String>,
     pub(super) material: Option<MaterialId>,

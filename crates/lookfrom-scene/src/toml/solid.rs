@@ -37,7 +37,7 @@ const MOST_SEGMENTS: u64 = 1 << 12;
 /// Maximum depth of solids in solids.
 const DEEPEST: usize = 16;
 
-/// What is common to a solid and all that is in it.
+/// State shared by a solid and all that is in it.
 struct Build {
     /// The parts that the result may have, in the order in which they are written: their geometry is that of the operand.
     parts: Vec<Part>,

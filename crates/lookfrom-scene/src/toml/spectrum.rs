@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
         Ok(self.extended(id))
     }
 
-    /// The same spectrum with its first and last values extended to the ends of the visible range.
+    /// A spectrum with its first and last values extended to the ends of the visible range.
     fn extended(&mut self, id: CurveId) -> CurveId {
         match &self.scene.curves[id.index()] {
             curve @ Curve::Tabulated { .. } => {

@@ -118,7 +118,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Those of the keys that may still be added: those that the table does not have yet, and shapes and lights, which may be
+    /// Keys that may still be added: those that the table does not have yet, and shapes and lights, which may be
     /// several. No other can be meant by an unknown one.
     fn absent(&self, keys: &[&'static str]) -> Vec<&'static str> {
         let is_open = |key: &str| match self.map.get(key).map(::toml::Spanned::get_ref) {

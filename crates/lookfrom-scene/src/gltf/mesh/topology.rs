@@ -30,7 +30,7 @@ impl Topology {
         })
     }
 
-    /// The same as a list of separate triangles.
+    /// The topology once strips and fans are listed as separate triangles.
     pub(super) fn listed(self) -> Self {
         match self {
             Self::TriangleStrip | Self::TriangleFan => Self::Triangles,

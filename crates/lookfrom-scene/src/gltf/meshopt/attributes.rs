@@ -7,7 +7,7 @@ const GROUP: usize = 16;
 
 /// The bit widths of a group's deltas, by its two header bits.
 const WIDTHS_OF_VERSION_0: [u32; 4] = [0, 2, 4, 8];
-/// The same, by the two control bits of a byte position; the other two controls have no header.
+/// Widths of version 1, by the two control bits of a byte position; the other two controls have no header.
 const WIDTHS_OF_VERSION_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 
 /// The encoding of deltas of four bytes of an element.

@@ -46,7 +46,7 @@ struct Layer {
     /// The name with that of the part.
     name: String,
     kind: Option<Kind>,
-    /// The same, or numbers that are no colours.
+    /// As `kind`, or numbers that are no colours.
     values: Option<Kind>,
 }
 
@@ -128,7 +128,7 @@ fn layers(parts: &[Part]) -> Vec<Layer> {
     layers
 }
 
-/// What the channels of a layer make, if they are colours.
+/// The kind of colour that the channels of a layer make, if they are colours.
 fn kind(channels: &[(usize, &str)], is_unnamed: bool) -> Option<Kind> {
     all(channels, [&["R", "red"], &["G", "green"], &["B", "blue"]])
         .map(Kind::Rgb)

@@ -18,7 +18,7 @@ use crate::image::read::check_size;
 /// The most bytes of pixels in a byte of a file: run lengths pack 128 bytes in two.
 const MOST_IN_RUNS: u64 = 64;
 
-/// The same of deflate, 1032; nothing that we read packs more.
+/// The highest ratio of compression, deflate's 1032; nothing that we read packs more.
 const MOST_PACKED: u64 = 1040;
 
 /// An OpenEXR file of one part of scan lines, whose channels have 32 bits a number.

@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::image::write::check;
 use crate::parallel;
 
-/// Of 10 levels, the fastest that searches for repetitions: files are 1 to 5 % larger than at level 4, which takes four times as
+/// The compression level: of 10, the fastest that searches for repetitions: files are 1 to 5 % larger than at level 4, which takes four times as
 /// long.
 const DEFLATE_LEVEL: u8 = 1;
 
@@ -21,7 +21,7 @@ const ZIP_ROWS: u32 = 16;
 /// The name of the checksum's attribute: the CRC-32 of the whole file, in which its eight hexadecimal digits are zeros.
 pub(super) const CHECKSUM: &str = "crc32";
 
-/// What a file says before its pixels.
+/// The header of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ExrHeader {
     /// Width in pixels.
@@ -52,7 +52,7 @@ pub trait ExrFill: Sync {
     /// Makes these rows ready, before any of them is filled. They follow those of the call before, from 0 at the top on.
     ///
     /// # Errors
-    /// Those of what the rows come from.
+    /// The errors of what the rows come from.
     fn prepare(&mut self, _rows: Range<u32>) -> Result<()> {
         Ok(())
     }
