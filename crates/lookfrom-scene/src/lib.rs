@@ -6,8 +6,10 @@
 pub mod atmosphere;
 mod boolean;
 pub mod budget;
+mod builder;
 pub mod camera;
 mod chain;
+mod composite;
 pub mod contents;
 pub mod count;
 pub mod digest;

@@ -9,7 +9,6 @@ mod camera;
 mod clear_sky;
 mod color;
 mod color_names;
-mod composite;
 mod curve;
 mod directional;
 mod document;

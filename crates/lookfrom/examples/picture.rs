@@ -16,7 +16,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         Format::of_path(Path::new(&picture)).ok_or("the picture's extension is of no known format")?;
     let session = Session::open(&scene, &Options { format: Some(format), ..Options::default() })?;
     session.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
-    let finished = session.render(&())?;
-    std::fs::write(&picture, finished.encode(format)?)?;
+    session.render(&())?.save(&picture)?;
     Ok(())
 }

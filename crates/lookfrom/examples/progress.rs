@@ -7,7 +7,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 
 use lookfrom::render::{Progress, TileDone};
-use lookfrom::session::{Format, Options, Session};
+use lookfrom::session::{Options, Session};
 
 /// Sends every tile through a channel. The render does not wait for the receiver: no lock is held during the call.
 struct Tiles(Sender<TileDone>);
@@ -39,6 +39,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let finished = running.finish()?;
     eprintln!("\nended by {}, {} samples a pixel", finished.rendered.reason.word(), finished.samples_taken());
-    std::fs::write(picture, finished.encode(Format::Png)?)?;
+    finished.save(picture)?;
     Ok(())
 }

@@ -4,9 +4,9 @@
 
 use std::error::Error;
 
+use lookfrom::bvh::{Hit, Ray};
 use lookfrom::glam::DVec3;
 use lookfrom::session::{Options, Session};
-use lookfrom_bvh::{Hit, Ray};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let model = std::env::args().nth(1).ok_or("usage: rays MODEL")?;

@@ -5,12 +5,11 @@
 //! cancellation; its camera and settings may be changed and the picture rendered again.
 //!
 //! ```no_run
-//! use lookfrom::session::{Format, Options, Session};
+//! use lookfrom::session::{Options, Session};
 //!
 //! let session = Session::open("scene.toml", &Options::default())?;
-//! let picture = session.render(&())?;
-//! std::fs::write("scene.png", picture.encode(Format::Png)?)?;
-//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! session.render(&())?.save("scene.png")?;
+//! # Ok::<(), lookfrom::scene::Error>(())
 //! ```
 
 mod encode;
@@ -27,6 +26,7 @@ mod outliers;
 mod prepare;
 mod provenance;
 mod running;
+mod save;
 mod series;
 mod shown;
 mod source;

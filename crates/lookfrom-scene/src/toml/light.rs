@@ -3,10 +3,10 @@
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::composite::tangents;
 use super::table::{Kinds, Table};
 use super::transform::{about, rotate};
 use super::value::Value;
+use crate::composite::tangents;
 use crate::error::{Error, Result};
 use crate::light::{Falloff, Light, LightKind, Power};
 use crate::material::Color;

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
+use super::Reader;
 use super::mesh::too_many;
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, composite};
+use crate::composite;
 use crate::error::Result;
 use crate::shape::{Geometry, Sphere};
 

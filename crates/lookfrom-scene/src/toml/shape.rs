@@ -4,7 +4,8 @@ use glam::{DMat4, DVec3, Vec3};
 
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, composite, curve, light, quadric, transform};
+use super::{Reader, curve, light, quadric, transform};
+use crate::composite;
 use crate::error::Result;
 use crate::material::Scalar;
 use crate::scene::MaterialId;

@@ -6,6 +6,7 @@ mod analytic;
 mod architecture;
 mod area_lights;
 mod bump_maps;
+mod by_code;
 mod coated_lamps;
 mod denoise;
 mod dispersion;

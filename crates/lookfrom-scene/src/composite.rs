@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::shape::{Mesh, Sphere};
 
 /// Two unit vectors `u`, `v` with `u × v = n`, for a unit normal; `u` is horizontal if possible.
-pub(super) fn tangents(n: DVec3) -> (DVec3, DVec3) {
+pub(crate) fn tangents(n: DVec3) -> (DVec3, DVec3) {
     let level = DVec3::Y.cross(n);
     let u = if level.length_squared() < 1e-12 { DVec3::X } else { level.normalize() };
     let v = n.cross(u);
@@ -13,7 +13,7 @@ pub(super) fn tangents(n: DVec3) -> (DVec3, DVec3) {
 }
 
 /// A square part of a plane around a point; uv are distances from the point.
-pub(super) fn plane(point: DVec3, normal: DVec3, size: f64) -> Mesh {
+pub(crate) fn plane(point: DVec3, normal: DVec3, size: f64) -> Mesh {
     let (u, v) = tangents(normal.normalize());
     let half = 0.5 * size;
     let corners = [(-half, -half), (half, -half), (half, half), (-half, half)];
@@ -27,7 +27,7 @@ pub(super) fn plane(point: DVec3, normal: DVec3, size: f64) -> Mesh {
 }
 
 /// The box between two corners, with its faces oriented outwards; uv runs from 0 to 1 over each face.
-pub(super) fn cuboid(min: DVec3, max: DVec3) -> Mesh {
+pub(crate) fn cuboid(min: DVec3, max: DVec3) -> Mesh {
     let mut mesh = Mesh { name: "box".to_owned(), ..Mesh::default() };
     for axis in 0..3 {
         for side in [min, max] {
@@ -53,13 +53,13 @@ pub(super) fn cuboid(min: DVec3, max: DVec3) -> Mesh {
 }
 
 /// The number of spheres of a sphereflake: `(9^(depth + 1) − 1) / 8`.
-pub(super) fn sphereflake_count(depth: u32) -> u64 {
+pub(crate) fn sphereflake_count(depth: u32) -> u64 {
     9_u64.checked_pow(depth + 1).map_or(u64::MAX, |power| (power - 1) / 8)
 }
 
 /// The sphereflake (the "balls" of Haines' standard procedural databases, 1987): on each sphere are nine of a third of its
 /// radius, six around the equator and three above, each with its pole pointing away from its parent.
-pub(super) fn sphereflake(center: DVec3, radius: f64, depth: u32) -> Vec<Sphere> {
+pub(crate) fn sphereflake(center: DVec3, radius: f64, depth: u32) -> Vec<Sphere> {
     let mut spheres = vec![Sphere { center, radius }];
     let mut poles = vec![(DVec3::Y, DVec3::X)];
     let mut generation = 0..1;
@@ -98,7 +98,7 @@ fn children(n: DVec3, u: DVec3) -> [DVec3; 9] {
 }
 
 /// A mesh of one triangle.
-pub(super) fn triangle(positions: [Vec3; 3]) -> Mesh {
+pub(crate) fn triangle(positions: [Vec3; 3]) -> Mesh {
     Mesh {
         name: "triangle".to_owned(),
         positions: positions.to_vec(),
