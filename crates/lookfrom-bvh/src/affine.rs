@@ -1,9 +1,12 @@
 //! Affine maps in double precision: the transformations of instances.
 
+#[cfg(feature = "glam")]
+mod of_glam;
+
 use crate::vector::{cross, dot};
 
 /// `x ↦ matrix · x + translation`. For an instance: world from object. Reflections, shears and any scale are
-/// allowed.
+/// allowed. With the feature `glam` it is made from a `DAffine3`, whose matrix is by columns.
 ///
 /// ```
 /// use lookfrom_bvh::Affine;

@@ -8,6 +8,7 @@ mod closest_point;
 mod counts;
 mod double;
 mod extremes;
+mod hit_points;
 mod instances;
 mod origins;
 mod query;

@@ -95,7 +95,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "conservative item node",
             "common_origin ray8 stack statistics",
             "bvh coherence packet_bounds",
-            "build settings validate",
+            "build hit_point settings validate",
             "refit visibility",
             "traverse",
             "interleaved packet",

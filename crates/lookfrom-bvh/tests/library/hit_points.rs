@@ -1,0 +1,109 @@
+//! Is the point of a hit on the surface that the ray meets, with the normal that it has there?
+
+use std::sync::Arc;
+
+use lookfrom_bvh::{Affine, Builder, Hit, NONE, Ray, Sphere, Triangles};
+
+use crate::testing::Random;
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn unit(a: [f64; 3]) -> [f64; 3] {
+    let length = dot(a, a).sqrt();
+    a.map(|x| x / length)
+}
+
+/// A shear and scale of moderate size, in half of the cases with a reflection.
+fn random_map(random: &mut Random) -> Affine {
+    loop {
+        let matrix = [0; 3].map(|_| [0; 3].map(|_| f64::from(2.0 * random.unit() - 1.0)));
+        let map = Affine { matrix, translation: [0; 3].map(|_| f64::from(8.0 * random.unit() - 4.0)) };
+        if map.inverse().is_some_and(|back| back.matrix.iter().flatten().all(|x| x.abs() < 10.0)) {
+            return map;
+        }
+    }
+}
+
+#[test]
+fn points_and_normals_are_those_of_the_primitives_computed_directly() {
+    let mut random = Random::new(77);
+    let (mut triangles, mut spheres) = (0, 0);
+    for _ in 0..200 {
+        let corners: Vec<[[f32; 3]; 3]> =
+            (0..40).map(|_| [0; 3].map(|_| random.near([0.0; 3], 2.0))).collect();
+        let positions: Vec<[f32; 3]> = corners.iter().flatten().copied().collect();
+        let indices: Vec<[u32; 3]> = (0..40).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let balls: Vec<Sphere> = (0..10)
+            .map(|_| Sphere { center: random.near([0.0; 3], 2.0), radius: 0.1 + 0.5 * random.unit() })
+            .collect();
+        let fill = |builder: &mut Builder| {
+            builder.triangles(Triangles { positions: &positions, indices: &indices });
+            builder.spheres(&balls);
+        };
+        let mut object = Builder::new();
+        fill(&mut object);
+        let object = Arc::new(object.build().unwrap());
+        let maps: Vec<Affine> = (0..4).map(|_| random_map(&mut random)).collect();
+        let mut builder = Builder::new();
+        fill(&mut builder);
+        for map in &maps {
+            builder.instance(object.clone(), *map);
+        }
+        let bvh = builder.build().unwrap();
+
+        for _ in 0..300 {
+            let ray = Ray::new(random.near([0.0; 3], 10.0), random.direction());
+            let hit = bvh.closest_hit(&ray);
+            if !hit.is_hit() {
+                assert_eq!(bvh.hit_point(&ray, &hit), None);
+                continue;
+            }
+            let at = bvh.hit_point(&ray, &hit).unwrap();
+            let map = if hit.instance == NONE { Affine::IDENTITY } else { maps[hit.instance as usize] };
+            let back = map.inverse().unwrap();
+            let mirrored = dot(map.matrix[0], cross(map.matrix[1], map.matrix[2])) < 0.0;
+
+            // It is where the ray is at t.
+            let [o, d] = [ray.origin, ray.direction].map(|v| v.map(f64::from));
+            let along = [0, 1, 2].map(|i| o[i] + f64::from(hit.t) * d[i]);
+            let off = minus(at.point.position, along);
+            assert!(dot(off, off).sqrt() < 1e-4, "{off:?}");
+
+            let n = if hit.geometry == 0 {
+                triangles += 1;
+                let [p0, p1, p2] =
+                    corners[hit.primitive as usize].map(|corner| map.point(corner.map(f64::from)));
+                let n = unit(cross(minus(p1, p0), minus(p2, p0)));
+                // On the plane, up to the bound of the error.
+                let height = dot(n, minus(at.point.position, p0)).abs();
+                assert!(height <= dot(n.map(f64::abs), at.point.error), "{height}");
+                if mirrored { n.map(|x| -x) } else { n }
+            } else {
+                spheres += 1;
+                let Sphere { center, radius } = balls[hit.primitive as usize];
+                let offset = minus(back.point(at.point.position), center.map(f64::from));
+                assert!((dot(offset, offset).sqrt() - f64::from(radius)).abs() < 1e-13);
+                unit(back.normal_back(offset))
+            };
+            let turn = minus(n, at.normal);
+            assert!(dot(turn, turn).sqrt() < 1e-9, "{n:?} {:?}", at.normal);
+            // A ray that leaves it does not meet the surface again.
+            let facing = if dot(n, d) > 0.0 { n.map(|x| -x) } else { n };
+            let leaving = facing.map(|x| x as f32);
+            let again = bvh.closest_hit(&Ray::new(at.origin(leaving), leaving));
+            let same = |hit: &Hit| (hit.instance, hit.geometry, hit.primitive);
+            assert!(hit.geometry == 1 || same(&again) != same(&hit));
+        }
+    }
+    assert!(triangles > 1000 && spheres > 300, "{triangles} {spheres}");
+}
