@@ -51,8 +51,14 @@ pub use shadow::{Shadow, ShadowTransparency, Shadows};
 pub use spectral_modes::SpectralModes;
 pub use whitted::Whitted;
 
-/// A light transport algorithm. Implement it to plug one of your own into a [`Renderer`](crate::render::Renderer): the
-/// renderer traces rays in batches, and calls [`Integrator::step`] for each path and its hit.
+/// A light transport algorithm. Implement it to plug one of your own into a [`Renderer`](crate::render::Renderer) or a
+/// [`Session`](crate::session::Session::set_integrator): the renderer traces rays in batches, and calls [`Integrator::step`]
+/// for each path and its hit.
+///
+/// A step is usually that of `examples/integrator.rs`: absorb on the way ([`StepOutput::absorbed`]), show the surroundings
+/// where nothing was hit ([`StepOutput::add_surroundings`]), pass what is not there ([`Path::goes_through`],
+/// [`Path::passed`]), leave the surface to AOVs ([`StepOutput::leave_first_surface`]), add light ([`StepOutput::add`],
+/// [`StepOutput::cast_shadow`]), and push further paths to [`Queues::paths`].
 pub trait Integrator: std::fmt::Debug + Send + Sync {
     /// True if the integrator computes light, to which the spectral mode and the sensor apply; false for false colours.
     const IS_LIGHT: bool = true;
@@ -119,14 +125,14 @@ impl Path {
     pub const ROOT: u64 = 1;
 
     /// The light sample context of the previous vertex.
-    pub(crate) fn light_context(&self) -> LightSampleContext {
+    pub fn light_context(&self) -> LightSampleContext {
         LightSampleContext { point: self.previous.point.as_dvec3(), n: self.previous.n }
     }
 
     /// Whether the path passes the surface as if it were not there: by the alpha test, decided by `u ∈ [0, 1)` where it
-    /// is stochastic, because it hit the back of a single-sided surface on its way from the camera, or, elsewhere, an open
+    /// is stochastic ([`SampleStream::presence`]), because it hit the back of a single-sided surface on its way from the camera, or, elsewhere, an open
     /// front of one.
-    fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
+    pub fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
         let is_back = surface.single_sided && !surface.front && !self.previous.blurred;
         let is_open = world.is_open_front(surface) && self.previous.blurred;
         let u = if is_open { u / World::COVERAGE_OF_OPEN_FRONTS } else { u };
@@ -151,12 +157,19 @@ impl Path {
         }
     }
 
-    /// This path continued behind a surface that it passes.
-    fn passed(&self, surface: &SurfaceInteraction) -> Self {
+    /// This path continued behind a surface that it passes ([`Path::goes_through`]), in the medium that it was in.
+    pub fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
         let previous = PreviousVertex { origin_primitive: surface.origin_primitive, ..self.previous };
         Self { ray, address: self.address + 1, previous, ..*self }
+    }
+
+    /// The same path continued behind a surface that is only an interface between media, or an empty one: in the medium there.
+    pub fn passed_interface(&self, world: &World, surface: &SurfaceInteraction) -> Self {
+        let direction = Vec3::from_array(self.ray.direction);
+        let interior = self.interior.leaving(&world.materials, surface, direction, true);
+        Self { interior, ..self.passed(surface) }
     }
 }
 
@@ -172,8 +185,8 @@ pub struct SampleStream {
 }
 
 impl SampleStream {
-    /// A number in `[0, 1)` for the alpha test, in a dimension that integrators use for nothing else.
-    fn presence(&self, world: &World, surface: &SurfaceInteraction) -> f32 {
+    /// A number in `[0, 1)` for [`Path::goes_through`], in a dimension that integrators should use for nothing else.
+    pub fn presence(&self, world: &World, surface: &SurfaceInteraction) -> f32 {
         if world.is_stochastic(surface) { self.two(u32::MAX)[0] } else { 0.0 }
     }
 
@@ -266,12 +279,12 @@ pub struct StepOutput<'a, P: Probe> {
 
 impl<P: Probe> StepOutput<'_, P> {
     /// The spectral mode of a path.
-    fn mode(&self, path: &Path) -> SpectralMode {
+    pub fn mode(&self, path: &Path) -> SpectralMode {
         self.queues.modes[path.slot as usize]
     }
 
-    /// [`Path::absorbed`], and tells the probe.
-    fn absorbed(&mut self, world: &World, path: &Path, hit: &Hit) -> Path {
+    /// A path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to infinity.
+    pub fn absorbed(&mut self, world: &World, path: &Path, hit: &Hit) -> Path {
         let mode = self.mode(path);
         let absorbed = path.absorbed(world, hit, &mode);
         let length = || path.length_to(hit);
@@ -310,9 +323,10 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// Leaves the surface that a path has met, and does not pass, to AOVs: where it is a camera ray, and nothing is seen
-    /// through the surface. `albedo` is called where it may be known.
+    /// through the surface. `albedo` is called where it may be known: the sum of what is reflected and transmitted, in linear
+    /// Rec. 709; where it is not, it is that of the material.
     #[inline]
-    fn leave_first_surface(
+    pub fn leave_first_surface(
         &mut self,
         world: &World,
         path: &Path,

@@ -28,7 +28,7 @@ use lookfrom_scene::scene::MediumId;
 use crate::core::math;
 use crate::core::points::{Points, StoredPlacement, amplification};
 use crate::core::spectrum::Spectrum;
-use crate::light::{IncompletePdf, Light, LightChoice, LightSampleContext};
+use crate::light::{ChosenLight, IncompletePdf, Light, LightChoice, LightSample, LightSampleContext};
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
 use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::SurfaceInteraction;
@@ -342,6 +342,22 @@ impl World {
             }
             _ => Spectrum::BLACK,
         }
+    }
+
+    /// A sample of one of the lights from a point, by `u ∈ [0, 1)²`: the light's index and the sample, whose density includes
+    /// that of the choice. `None` if no light arrives. Lights that only surround the scene evenly may be left to chance, as
+    /// [`Self::light_pdf`] tells: it is 0 for their directions.
+    pub fn sample_light(
+        &self,
+        at: &LightSampleContext,
+        [which, v]: [f32; 2],
+        mode: &SpectralMode,
+    ) -> Option<(u32, LightSample)> {
+        let ChosenLight { light, probability, rest } = self.light_choice.sample(at, which)?;
+        let u = [rest, v];
+        let sample =
+            self.lights[light as usize].sample(&self.textures, at, u, mode, IncompletePdf::Allowed)?;
+        Some((light, LightSample { pdf: probability * sample.pdf, ..sample }))
     }
 
     /// The solid angle density of the unit direction `wi` in light sampling, the choice of the light included. A ray in

@@ -35,7 +35,7 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// Adds the light of the environments to a path that hit nothing, unless it shows the view's own background.
-    pub(super) fn add_surroundings(&mut self, world: &World, path: &Path) {
+    pub fn add_surroundings(&mut self, world: &World, path: &Path) {
         if !self.shows_background(path) {
             self.add(
                 path,

@@ -218,9 +218,7 @@ impl PathTracer {
         let seed = if world.takes_seed(&surface) { stream.two(dimension::WALK)[0] } else { 0.0 };
         let arrival = ShadingContext { mode, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(mut shading) = world.shading(&surface, arrival) else {
-            let direction = Vec3::from_array(path.ray.direction);
-            let interior = path.interior.leaving(&world.materials, &surface, direction, true);
-            output.queues.paths.push(Path { interior, ..path.passed(&surface) });
+            output.queues.paths.push(path.passed_interface(world, &surface));
             return;
         };
         if self.regularize && path.previous.blurred {

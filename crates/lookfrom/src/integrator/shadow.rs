@@ -8,10 +8,13 @@ mod lanes;
 mod passing;
 mod queue;
 
-use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Ray};
+use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
 
+use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Event, Probe, Queues, StepOutput, Term};
+use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
+use crate::light::{LightSample, Target};
+use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{Material, MaterialKind};
 use crate::world::World;
@@ -44,6 +47,46 @@ pub struct Shadow {
 impl Shadow {
     /// No number of [`Shadow::last_scattering`].
     pub const NO_SCATTERING: u32 = u32::MAX;
+}
+
+impl<P: Probe> StepOutput<'_, P> {
+    /// Casts a shadow ray from a surface that `path` has met toward the sample of a light: unless it is blocked, `contribution`
+    /// is added to the path's sample, attenuated by the medium and by what the ray passes
+    /// ([`Integrator::shadow_transparency`](crate::integrator::Integrator::shadow_transparency)). For light-path expressions
+    /// the surface counts as diffuse.
+    pub fn cast_shadow(
+        &mut self,
+        world: &World,
+        path: &Path,
+        surface: &SurfaceInteraction,
+        (light, sample): (u32, &LightSample),
+        contribution: Spectrum,
+    ) {
+        let wi = sample.wi;
+        let origin = surface.origin(wi);
+        let ray = match sample.target {
+            Target::Infinity => Ray::new(origin, wi.to_array()),
+            Target::Point(position) => toward(origin, position.to_array()),
+            Target::Surface(Point { position, error }, normal) => {
+                let points = Points::<f32> { position: position.into(), error: error.into() };
+                let way = points.just_before(normal.into(), wi.into(), origin.into());
+                Ray { t_max: 1.0, ..Ray::new(origin, way.into()) }
+            }
+        };
+        let crosses = surface.crosses(wi);
+        let all = self.mode(path).one();
+        let last_scattering = self.last_scattering(path, crosses, || all);
+        self.queues.shadows.push(Shadow {
+            ray,
+            origin_primitive: surface.origin_primitive,
+            contribution,
+            slot: path.slot,
+            address: path.address,
+            term: Term::Light(light),
+            interior: path.interior.leaving(&world.materials, surface, wi, crosses),
+            last_scattering,
+        });
+    }
 }
 
 /// The ray from `origin` to `target`, which is at t = 1.

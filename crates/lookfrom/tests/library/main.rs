@@ -22,6 +22,7 @@ mod layers;
 mod light_paths;
 mod media;
 mod nested;
+mod own_integrator;
 mod path;
 mod portal;
 mod references;
