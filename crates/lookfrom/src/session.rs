@@ -12,6 +12,7 @@
 //! # Ok::<(), lookfrom::scene::Error>(())
 //! ```
 
+mod edit;
 mod encode;
 mod exposure;
 mod film_file;
@@ -87,6 +88,8 @@ pub struct Session {
     name: String,
     renderer: Renderer,
     camera: Camera,
+    /// The scene as it was compiled, if it is kept.
+    kept: Option<Arc<Scene>>,
     /// The source from which the scene can be read again.
     source: Source,
     /// The turntable, if enabled by the options.
@@ -109,6 +112,8 @@ pub struct Session {
 /// A scene that was read or made, with its memory and the warnings of its reader.
 struct Given {
     scene: Scene,
+    /// Whether the session keeps it.
+    is_kept: bool,
     memory: Vec<Reservation>,
     warnings: Vec<Warning>,
 }
@@ -194,7 +199,14 @@ impl Session {
         let scene = load::scene(path, &mut context)?;
         let LoadContext { warnings, kept: memory, .. } = context;
         let identity = options.film.then(|| Identity::of_files(digested, path, options));
-        Self::prepare(Given { scene, memory, warnings }, path, source, identity, started, options)
+        Self::prepare(
+            Given { scene, is_kept: false, memory, warnings },
+            path,
+            source,
+            identity,
+            started,
+            options,
+        )
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -203,10 +215,15 @@ impl Session {
     /// As [`Session::open`] and [`Scene::validate`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
         scene.validate()?;
+        Self::of_valid_scene(scene, false, options)
+    }
+
+    /// A session of a valid scene, which may be kept.
+    fn of_valid_scene(scene: Scene, is_kept: bool, options: &Options) -> Result<Self> {
         let identity = options.film.then(|| Identity::of_scene(&scene, options));
         let memory = options.budget.reserve(scene.bytes(), "the scene", &Location::default())?;
         Self::prepare(
-            Given { scene, memory: vec![memory], warnings: Vec::new() },
+            Given { scene, is_kept, memory: vec![memory], warnings: Vec::new() },
             Path::new(""),
             Source::Elsewhere,
             identity,
@@ -216,7 +233,7 @@ impl Session {
     }
 
     fn prepare(
-        Given { mut scene, memory, mut warnings }: Given,
+        Given { mut scene, is_kept, memory, mut warnings }: Given,
         path: &Path,
         source: Source,
         identity: Option<Identity>,
@@ -238,12 +255,15 @@ impl Session {
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene, bounds);
-        let (world, memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
-        let mut world = Arc::new(world);
-        let mut renderer = Renderer::new(world.clone(), view, settings).map_err(in_file(path))?;
-        if renderer.sees_only_backs() {
-            world = Arc::new(world.with_both_sides());
-            renderer = renderer.with_world(world.clone(), renderer.view().clone()).map_err(in_file(path))?;
+        let of_kept = if is_kept { scene.bytes() } else { 0 };
+        let of_kept = options.budget.reserve(of_kept, "the scene that is kept", &Location::default())?;
+        let kept = is_kept.then(|| Arc::new(scene.clone()));
+        let (world, mut memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
+        memory.push(of_kept);
+        let renderer = Renderer::new(Arc::new(world), view, settings).map_err(in_file(path))?;
+        let (renderer, shows_backs) = seeing_backs(renderer).map_err(in_file(path))?;
+        let world = renderer.world().clone();
+        if shows_backs {
             warnings.push(Warning::new(&Location::file(path), BOTH_SIDES));
         }
         if world.has_open_fronts {
@@ -259,6 +279,7 @@ impl Session {
             name: path.display().to_string(),
             renderer,
             camera,
+            kept,
             source,
             turntable,
             stop: options.stop,
@@ -482,6 +503,16 @@ impl Session {
     fn has_room_for_layers(&self) -> bool {
         self.format.is_none_or(Format::has_layers)
     }
+}
+
+/// A renderer of the same picture that shows surfaces from both sides, where it would otherwise see nothing but backs of
+/// single-sided ones; and whether it does so.
+fn seeing_backs(renderer: Renderer) -> Result<(Renderer, bool)> {
+    if !renderer.sees_only_backs() {
+        return Ok((renderer, false));
+    }
+    let world = Arc::new(renderer.world().with_both_sides());
+    Ok((renderer.with_world(world, renderer.view().clone())?, true))
 }
 
 /// Completes an error that has no location by the scene's file.

@@ -49,6 +49,13 @@ impl Identity {
         Self::new(vec![("scene".to_owned(), digest.finish())], options)
     }
 
+    /// The same options with a scene that has been changed.
+    pub(super) fn with_scene(&self, scene: &Scene) -> Self {
+        let mut digest = Digest::default();
+        let _ = write!(digest, "{scene:?}");
+        Self { inputs: vec![("scene".to_owned(), digest.finish())], ..self.clone() }
+    }
+
     fn new(inputs: Vec<(String, String)>, options: &Options) -> Self {
         let environment = options.environment.as_ref().map(|image| {
             let mut digest = Digest::default();

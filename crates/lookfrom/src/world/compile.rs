@@ -28,9 +28,23 @@ impl World {
     /// # Errors
     /// `Invalid` for a camera whose position is not finite or a transform that cannot be inverted; `Limit` for more
     /// than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
-    pub fn compile(mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+    pub fn compile(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+        Self::compile_on(None, scene, warnings)
+    }
+
+    /// Compiles a scene of the same shapes, objects and instances as this world's, which may have other materials, textures and
+    /// lights: on this world's trees and its origin.
+    ///
+    /// # Errors
+    /// As [`World::compile`].
+    pub(crate) fn compile_changed(&self, scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+        Self::compile_on(Some(self), scene, warnings)
+    }
+
+    /// Compiles a scene: on the trees of another world, if that is given.
+    fn compile_on(before: Option<&Self>, mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         let camera = scene.camera.clone().unwrap_or_default();
-        let origin = origin::of_render_space(&camera, &scene);
+        let origin = before.map_or_else(|| origin::of_render_space(&camera, &scene), |world| world.origin);
         if !origin.is_finite() {
             return Err(Error::invalid(&camera.at, format!("lookfrom is {origin}; expected finite numbers")));
         }
@@ -86,7 +100,8 @@ impl World {
         (compiler.has_instance_grain, compiler.is_in_object) = (false, false);
         let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
         let quality = quality(&scene);
-        let trees = objects
+        let built = if before.is_none() { &*objects } else { &[] };
+        let trees = built
             .iter()
             .map(|primitives| tree(primitives, Builder::new(), quality).map(Arc::new))
             .collect::<Result<Vec<_>>>()?;
@@ -101,7 +116,9 @@ impl World {
             for shape in labelled(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }
-            builder.instance(trees[written.object.index()].clone(), math::affine(&matrix));
+            if let Some(tree) = trees.get(written.object.index()) {
+                builder.instance(tree.clone(), math::affine(&matrix));
+            }
             instanced.push((written.object.0, material));
         }
         for light in &scene.lights {
@@ -131,7 +148,10 @@ impl World {
         let vertex_normals = scene.vertex_normals;
         drop((scene, labels));
         let primitives = in_world.into_primitives();
-        let bvh = tree(&primitives, builder, quality)?;
+        let bvh = match before {
+            None => Arc::new(tree(&primitives, builder, quality)?),
+            Some(world) => world.bvh.clone(),
+        };
         let placed = instanced.into_iter().zip(0..);
         let instances: Arc<[Instance]> = placed
             .map(|((object, material), id)| Instance::new(object, material, bvh.instance_map(id)))
@@ -159,7 +179,7 @@ impl World {
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
         let mut world = Self {
             origin,
-            bvh: Arc::new(bvh),
+            bvh,
             classes: Arc::default(),
             plain_materials: Arc::default(),
             object_classes: Arc::default(),

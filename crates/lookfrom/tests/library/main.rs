@@ -7,6 +7,7 @@ mod architecture;
 mod area_lights;
 mod bump_maps;
 mod by_code;
+mod changed;
 mod coated_lamps;
 mod denoise;
 mod dispersion;

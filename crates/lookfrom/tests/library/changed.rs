@@ -1,0 +1,123 @@
+//! Materials and lights that are changed: the bits of a scene compiled anew, on the same trees.
+
+use lookfrom::prelude::*;
+use lookfrom::scene::ErrorKind;
+use lookfrom::scene::Location;
+use lookfrom::scene::light::{Light, Power};
+use lookfrom::scene::material::{BumpMapping, Material};
+use lookfrom::scene::scene::MaterialId;
+
+use crate::support::{SMALL, scene};
+
+/// A lamp, an instance, a floor, glass that absorbs.
+fn room() -> Scene {
+    scene(&format!(
+        r#"{SMALL}
+        samples = 4
+        [camera]
+        lookfrom = [0, 2, 6]
+        lookat = [0, 0.8, 0]
+        fov = 40
+        [materials.floor]
+        type = "diffuse"
+        reflectance = 0.5
+        [materials.glass]
+        type = "dielectric"
+        [materials.lamp]
+        type = "diffuse"
+        reflectance = 0
+        [[plane]]
+        point = [0, 0, 0]
+        normal = [0, 1, 0]
+        material = "floor"
+        [[sphere]]
+        center = [-1, 1, 0]
+        radius = 1
+        material = "glass"
+        [[objects.post.box]]
+        min = [-0.3, 0, -0.3]
+        max = [0.3, 1.5, 0.3]
+        material = "floor"
+        [[instance]]
+        object = "post"
+        translate = [1, 0, 0]
+        [[sphere]]
+        center = [0, 4, 2]
+        radius = 0.3
+        material = "lamp"
+        emission = 20
+        [[light]]
+        type = "point"
+        position = [2, 4, 3]
+        intensity = 5
+        "#
+    ))
+}
+
+fn picture(session: &Session) -> lookfrom::film::Picture {
+    session.render(&()).expect("a picture").picture.clone()
+}
+
+fn anew(scene: Scene) -> lookfrom::film::Picture {
+    picture(&Session::of_scene(scene, &Options::default()).expect("a scene"))
+}
+
+#[test]
+fn changed_materials_and_lights_have_the_bits_of_a_scene_compiled_anew() {
+    let mut session = Session::keeping(room(), &Options::default()).expect("a scene");
+    let before = picture(&session);
+    let tree: *const _ = session.world().bvh();
+    let mut expected = room();
+
+    // Rough metal needs derivatives of meshes, clear bodies have media, and all materials are compiled together.
+    let metal = MaterialKind::Conductor {
+        metal: Metal::Reflectance(Color::Value([0.9, 0.6, 0.3])),
+        roughness: Roughness { u: Scalar::Value(0.1), v: Scalar::Value(0.4), remap: true },
+        energy: Energy::Conserved,
+    };
+    let tinted = MaterialKind::Whitted(Whitted {
+        transmission: Color::gray(1.0),
+        absorption: [0.5, 0.1, 0.9],
+        ..Whitted::default()
+    });
+    for (id, kind) in [(MaterialId(0), metal), (MaterialId(1), tinted)] {
+        let material =
+            Material { kind, bump_mapping: BumpMapping::None, ..expected.materials[id.index()].clone() };
+        expected.materials[id.index()] = material.clone();
+        session.set_material(id, material).expect("a material");
+        let changed = picture(&session);
+        assert!(changed != before);
+        assert_eq!(changed, anew(expected.clone()));
+    }
+
+    let sky = LightKind::Environment {
+        sky: Sky::Gradient { zenith: [0.2, 0.4, 1.0], horizon: [1.0; 3], nadir: [0.1; 3] },
+        portal: None,
+        illuminates: true,
+    };
+    let light = Light { name: None, at: Location::default(), kind: sky, power: Power::AS_WRITTEN };
+    expected.lights = vec![light.clone()];
+    session.set_lights(vec![light]).expect("a light");
+    assert_eq!(picture(&session), anew(expected));
+    assert!(std::ptr::eq(tree, session.world().bvh()), "a tree was built");
+}
+
+#[test]
+fn what_is_refused_changes_nothing() {
+    let mut session = Session::keeping(room(), &Options::default()).expect("a scene");
+    let before = picture(&session);
+    let material =
+        |color| Material::new("wrong", Location::default(), MaterialKind::Diffuse { reflectance: color });
+    let refused =
+        session.set_material(MaterialId(0), material(Color::gray(f32::NAN))).expect_err("no number");
+    assert_eq!(refused.kind, ErrorKind::Invalid);
+    let refused = session.set_material(MaterialId(9), material(Color::BLACK)).expect_err("no such material");
+    assert_eq!(refused.kind, ErrorKind::Request);
+    assert_eq!(session.scene().expect("it is kept").materials[0].name, room().materials[0].name);
+    assert_eq!(picture(&session), before);
+
+    let mut without = Session::of_scene(room(), &Options::default()).expect("a scene");
+    assert!(without.scene().is_none());
+    let refused = without.set_lights(Vec::new()).expect_err("it is not kept");
+    assert_eq!(refused.kind, ErrorKind::Request);
+}
