@@ -165,7 +165,7 @@ impl Path {
         Self { ray, address: self.address + 1, previous, ..*self }
     }
 
-    /// The same path continued behind a surface that is only an interface between media, or an empty one: in the medium there.
+    /// This path continued behind a surface that is only an interface between media, or an empty one: in the medium there.
     pub fn passed_interface(&self, world: &World, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let interior = self.interior.leaving(&world.materials, surface, direction, true);
@@ -346,15 +346,11 @@ impl<P: Probe> StepOutput<'_, P> {
         path: &Path,
         [is_specular, is_diffuse, is_transmission]: [bool; 3],
     ) -> LightPathState {
-        #[cold]
-        fn scattered(light_paths: &LightPaths, from: LightPathState, lobe: Lobes) -> LightPathState {
-            light_paths.scattered(from, lobe)
-        }
         match self.light_paths {
             None => path.light_path,
             Some(light_paths) => {
                 let lobe = Lobes::sampled(is_specular, is_diffuse, is_transmission);
-                scattered(light_paths, path.light_path, lobe)
+                light_paths.scattered(path.light_path, lobe)
             }
         }
     }

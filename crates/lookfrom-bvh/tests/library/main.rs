@@ -17,4 +17,5 @@ mod selection;
 mod shapes;
 #[path = "../../src/testing.rs"]
 mod testing;
+mod vector;
 mod watertight;

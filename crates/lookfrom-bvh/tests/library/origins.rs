@@ -7,21 +7,10 @@ use std::sync::Arc;
 use lookfrom_bvh::{Affine, Builder, Bvh, Hit, OriginPrimitive, Point, Ray, Sphere, Triangles};
 
 use crate::testing::Random;
+use crate::vector::{cross, dot, minus};
 
 fn rays() -> usize {
     std::env::var("LOOKFROM_RAYS").ok().and_then(|text| text.parse().ok()).unwrap_or(100_000)
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 fn wide(a: [f32; 3]) -> [f64; 3] {

@@ -8,6 +8,7 @@ use lookfrom_bvh::{
 };
 
 use crate::testing::Random;
+use crate::vector::{cross, dot, minus};
 
 /// A mask and faces.
 #[derive(Clone, Copy, Debug)]
@@ -128,18 +129,9 @@ impl Told {
     }
 }
 
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 fn normal(corners: &Corners) -> [f64; 3] {
     let [p0, p1, p2] = corners.map(|p| p.map(f64::from));
-    let [a, b] = [minus(p1, p0), minus(p2, p0)];
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    cross(minus(p1, p0), minus(p2, p0))
 }
 
 fn random_selection(random: &mut Random) -> Selection {

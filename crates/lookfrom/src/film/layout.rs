@@ -1,4 +1,4 @@
-//! Which sums a film has besides those of light: by the settings of a picture, or by the channels of a film's file.
+//! The layout of a film, its sums besides those of light: by the settings of a picture, or by the channels of a film's file.
 
 use std::fmt;
 

@@ -121,7 +121,8 @@ impl LightPaths {
         self.start
     }
 
-    /// The state after light was scattered by one lobe.
+    /// The state after light was scattered by one lobe. Cold: few pictures have layers of light paths.
+    #[cold]
     pub(super) fn scattered(&self, from: LightPathState, lobe: Lobes) -> LightPathState {
         self.next(from, Symbol::scattering(lobe))
     }

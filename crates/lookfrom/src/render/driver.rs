@@ -150,18 +150,16 @@ impl Work<'_> {
         let Some(pilot) = pilot.or_else(|| stop.noise.map(|_| FEWEST_SAMPLES.min(end))) else {
             return self.rounds(0..end, stop, &mut clock);
         };
-        // An interrupted render has decided already.
         let (mut samples, mut reason) = self.rounds(0..pilot, stop, &mut clock)?;
-        let mut is_decided = self.goals().is_some();
+        // An interrupted render has decided already.
+        let mut decided = self.goals();
         while reason == StopReason::Samples {
-            if !is_decided && !self.decide(stop.noise) {
+            let Some((total, most)) = decided.take().or_else(|| self.decide(stop.noise)) else {
                 return Ok((samples, if self.is_clean(stop.noise) { StopReason::Noise } else { reason }));
-            }
-            let (total, most) = self.goals().unwrap_or_default();
+            };
             self.total.store(total, Ordering::Relaxed);
             let further = self.rounds(pilot..most, stop, &mut clock)?;
             (samples, reason) = (samples.max(further.0), further.1);
-            is_decided = false;
             if stop.noise.is_none() {
                 break;
             }
@@ -318,8 +316,8 @@ impl Work<'_> {
     }
 
     /// Decides how many samples each pixel shall have: the settings' number in the mean, or such that the picture comes near to
-    /// a limit of noise. False where it has enough.
-    fn decide(&self, noise: Option<f64>) -> bool {
+    /// a limit of noise. Returns the sum of these numbers and the greatest, or `None` if the picture has enough samples.
+    fn decide(&self, noise: Option<f64>) -> Option<(u64, u32)> {
         let mut guard = locked(&self.film);
         let film = &mut guard.0;
         let PixelBounds { x0, y0, x1, .. } = film.area();
@@ -327,10 +325,9 @@ impl Work<'_> {
         let goals = match noise {
             Some(noise) => film.allocation_for_error(noise, FEWEST_SAMPLES.min(most), most),
             None => Some(film.allocation(most)),
-        };
-        let Some(goals) = goals else { return false };
+        }?;
         film.ledger_mut().set_goals(|[x, y]| goals[((y - y0) * (x1 - x0) + x - x0) as usize]);
-        true
+        film.ledger().goals()
     }
 }
 

@@ -56,7 +56,7 @@ fn identifier(code: &str) -> &str {
     code.split(|c| !is_identifier(c)).next().unwrap_or_default()
 }
 
-/// What stands after each `crate::`, or in the braces there: names of modules, also where they are in groups.
+/// The names of modules after each `crate::`, or in the braces there, also where they are in groups.
 fn named_from_the_root<'a>(code: &'a str, groups: &[&str]) -> Vec<&'a str> {
     let found = code.match_indices("crate::").filter(|(at, _)| !code[..*at].ends_with(is_identifier));
     found.flat_map(|(at, found)| named_first(&code[at + found.len()..], groups)).collect()

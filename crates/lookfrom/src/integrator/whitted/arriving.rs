@@ -27,7 +27,7 @@ pub(super) struct Arriving<R: Real> {
     pub(super) pdf: R,
     /// The lanes at which light arrives.
     pub(super) exists: R::Mask,
-    /// Where shadow rays end.
+    /// As [`LightSample::target`].
     pub(super) target: Targets<R>,
 }
 

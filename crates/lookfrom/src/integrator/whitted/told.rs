@@ -1,4 +1,4 @@
-//! What only a probe is told of Whitted's step, by lane: from the vectors that make the light and the paths.
+//! Events of Whitted's step for a probe, by lane: from the vectors that make the light and the paths.
 
 use lookfrom_bvh::Point;
 use lookfrom_simd::LaneMask;

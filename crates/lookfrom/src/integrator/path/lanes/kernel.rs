@@ -259,7 +259,7 @@ pub(super) struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Where Russian roulette ends no path.
+    /// The lanes in which Russian roulette ends no path.
     #[inline(always)]
     fn are_safe<W: Width>(&self, width: W) -> Mask<W> {
         if self.light_sampling != LightSampling::MultipleImportance {
