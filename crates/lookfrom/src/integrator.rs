@@ -17,6 +17,7 @@ mod sample_streams;
 mod scratch;
 mod shadow;
 mod spectral_modes;
+mod wavefront;
 mod whitted;
 
 use glam::Vec3;

@@ -21,13 +21,12 @@ use lookfrom_bvh::{Affine, Hit, Point};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
-pub(crate) use mesh::lanes::{gather_triangles, points_on_meshes};
+pub(crate) use mesh::lanes::points_on_meshes;
 pub use mesh::{Mesh, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub use sphere::{SphereBinding, Spheres};
-pub(crate) use triangle::Triangles;
 
 /// The material, light and other attributes of a primitive's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +67,7 @@ impl MaterialBinding {
 
     /// Whether its surfaces are besides without vertex data of their own, and seen from both sides.
     #[inline]
-    pub(crate) fn is_plain(&self) -> bool {
+    pub(crate) fn is_bare(&self) -> bool {
         self.is_only_material() && self.vertex_data.is_none() && !self.single_sided
     }
 }

@@ -15,9 +15,7 @@ mod precision;
 mod reflectance;
 mod sides;
 
-pub use class::Class;
-pub(crate) use class::Plain;
-use class::PlainMaterials;
+use class::Class;
 
 use std::sync::Arc;
 
@@ -52,11 +50,9 @@ pub struct World {
     /// Objects, which instances repeat: primitives by geometry id.
     pub(crate) objects: Arc<[Vec<Primitives>]>,
     /// Classes of the primitives that are not instanced, by the kernel's geometry id.
-    pub(crate) classes: Arc<[Class]>,
-    /// Materials of their plain surfaces, likewise.
-    plain_materials: Arc<[PlainMaterials]>,
+    classes: Arc<[Class]>,
     /// The classes of the objects.
-    pub(crate) object_classes: Arc<[Vec<Class>]>,
+    object_classes: Arc<[Vec<Class>]>,
     /// Instances, by the kernel's instance id.
     pub(crate) instances: Arc<[Instance]>,
     /// Materials of surfaces.
@@ -239,6 +235,30 @@ impl World {
         let Vec2 { x: u, y: v } = surface.on_primitive;
         let mesh = &self.vertex_data[index as usize];
         let VertexData { more_uvs, opacity } = mesh.vertex_data(surface.primitive as usize, u, v);
+        TexturePoint { more_uvs, opacity, ..point }
+    }
+
+    /// [`World::texture_point`] of a hit on a mesh, by position and geometric normal, and texture coordinates.
+    #[inline]
+    pub(crate) fn texture_point_on_mesh<'a>(
+        &self,
+        mesh: &'a Mesh,
+        hit: &Hit,
+        (position, n): ([f64; 3], Vec3),
+        uv: [f32; 2],
+    ) -> TexturePoint<'a> {
+        let Hit { primitive, u, v, .. } = *hit;
+        let point = TexturePoint {
+            uv: uv.into(),
+            world: self.origin + DVec3::from_array(position),
+            color: mesh.color(primitive as usize, u, v),
+            n,
+            ..TexturePoint::NOWHERE
+        };
+        if !mesh.has_vertex_data() {
+            return point;
+        }
+        let VertexData { more_uvs, opacity } = mesh.vertex_data(primitive as usize, u, v);
         TexturePoint { more_uvs, opacity, ..point }
     }
 

@@ -262,9 +262,9 @@ pub(crate) fn scatter_rays<S: Simd>(
     simd: S,
     origin: Vector<f32x8<S>>,
     direction: Vector<f32x8<S>>,
-    t_max: f32,
+    t_max: f32x8<S>,
 ) -> [Ray; LANES] {
-    let (zero, end) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
+    let zero = f32x8::splat(simd, 0.0);
     let rows = lookfrom_simd::transposed([
         origin.x,
         origin.y,
@@ -273,7 +273,7 @@ pub(crate) fn scatter_rays<S: Simd>(
         direction.x,
         direction.y,
         direction.z,
-        end,
+        t_max,
     ]);
     by_lane!(lane => {
         let [ox, oy, oz, t_min, dx, dy, dz, t_max]: [f32; LANES] = rows[lane].into();
@@ -307,7 +307,7 @@ mod tests {
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let [origin, direction] = gather_rays(simd, &by_lane!(lane => &self.0[lane]));
             let spectra = gather_spectrum(simd, self.1);
-            (scatter_rays(simd, origin, direction, 7.0), scatter_spectrum(spectra))
+            (scatter_rays(simd, origin, direction, f32x8::splat(simd, 7.0)), scatter_spectrum(spectra))
         }
     }
 

@@ -9,11 +9,12 @@ mod lanes;
 use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
 
-use lanes::{HitBatch, Waiting};
+use lanes::Waiting;
 
 use crate::core::lanes::are_shaded_together;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
+use crate::integrator::wavefront::HitBatch;
 use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput, Term};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
@@ -124,13 +125,10 @@ impl Integrator for PathTracer {
         let batch = HitBatch { world, paths, hits, streams };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
             output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-            let is_plain = batch.is_plain(index);
-            if in_lanes && is_plain && !hit.is_hit() {
+            let in_vacuum = in_lanes && batch.is_in_vacuum(index);
+            if in_vacuum && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
-            } else if in_lanes
-                && is_plain
-                && let Some(class) = batch.mesh_class(self, index)
-            {
+            } else if in_vacuum && let Some(class) = batch.mesh_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
             } else {
                 self.arrive(world, &streams.of(path), (path, hit), &mut waiting, output);

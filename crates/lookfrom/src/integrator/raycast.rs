@@ -2,8 +2,10 @@
 
 use lookfrom_bvh::Hit;
 
+use crate::integrator::wavefront::HitBatch;
+use crate::integrator::whitted::{self, Shaded};
 use crate::integrator::{
-    BatchStreams, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput, whitted,
+    BatchStreams, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::world::World;
 
@@ -31,7 +33,7 @@ impl Integrator for Raycast {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        whitted::step_all(None, world, streams, paths, hits, output);
+        whitted::step_all(None, &HitBatch { world, streams, paths, hits }, output);
     }
 
     fn step<P: Probe>(
@@ -42,6 +44,6 @@ impl Integrator for Raycast {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        whitted::step(None, world, stream, path, hit, &mut whitted::Steps::default(), output);
+        whitted::step(None, world, stream, (path, hit), &mut Shaded::default(), output);
     }
 }

@@ -4,36 +4,27 @@
 //! *Adaptive depth control* (Hall & Greenberg 1983): a branch whose throughput is below a limit is not
 //! followed.
 
-mod arriving;
-mod bins;
 mod coefficients;
+mod emit;
 mod first_surfaces;
-mod groups;
-mod plain;
+mod shaded;
 mod step;
-mod steps;
-mod surfaces;
 mod told;
 
-use lookfrom_bvh::Hit;
+use lookfrom_bvh::{Hit, OriginPrimitive};
 
-use crate::core::lanes::are_shaded_together;
+use crate::core::lanes::{are_shaded_together, shade_together};
 use crate::core::spectrum::Spectrum;
+use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, Rounds};
 use crate::integrator::{
-    BatchStreams, Cut, Event, Integrator, Path, Probe, SampleStream, ShadowTransparency, StepOutput,
+    BatchStreams, Cut, Event, Integrator, Path, Probe, Queues, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
-pub(super) use plain::PlainHits;
-use step::Wanted;
-pub(super) use steps::Steps;
-use steps::Vertex;
-pub(super) use surfaces::Surfaces;
-
-/// Number of paths whose plain hits are shaded before their results are used: enough for groups of eight of one material,
-/// few enough for the cache.
-const TOGETHER: usize = 512;
+use emit::Vertex;
+pub(super) use shaded::Shaded;
+use step::{BareEight, BareKernel, Wanted, shade_one};
 
 /// The depth of the deepest tree that [`Path::address`] can number.
 const DEEPEST: u32 = 62;
@@ -66,7 +57,7 @@ impl Integrator for Whitted {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        step_all(Some(self), world, streams, paths, hits, output);
+        step_all(Some(self), &HitBatch { world, streams, paths, hits }, output);
     }
 
     fn step<P: Probe>(
@@ -77,7 +68,7 @@ impl Integrator for Whitted {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        step(Some(self), world, stream, path, hit, &mut Steps::default(), output);
+        step(Some(self), world, stream, (path, hit), &mut Shaded::default(), output);
     }
 }
 
@@ -95,23 +86,71 @@ impl Whitted {
     }
 }
 
+/// Memory that is reused from batch to batch.
+#[derive(Debug, Default)]
+struct Memory {
+    rounds: Rounds,
+    bins: Bins,
+    shaded: Shaded,
+}
+
 /// [`Integrator::step_all`] of Whitted ray tracing, or without a `tree` of ray casting.
 pub(super) fn step_all<P: Probe>(
     tree: Option<&Whitted>,
-    world: &World,
-    streams: &BatchStreams<'_>,
-    paths: &[Path],
-    hits: &[Hit],
+    batch: &HitBatch<'_>,
     output: &mut StepOutput<'_, P>,
 ) {
-    let wanted = wanted(tree, output);
+    let HitBatch { world, streams, paths, hits } = *batch;
     let in_lanes = are_shaded_together();
-    let mut steps = output.queues.scratch.take::<Steps>();
-    // Of samples with several paths, light is added in the order of the paths. Others need no results but those at hand.
-    let in_any_order = in_lanes && !P::LISTENS && steps.are_of_different_samples(paths);
-    let use_step = |steps: &Steps, path: &Path, hit: &Hit, index: usize, output: &mut StepOutput<'_, P>| {
-        output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-        let Some(shaded) = steps.of(index) else { return };
+    let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
+    let mut memory = output.queues.scratch.take::<Memory>();
+    let Memory { rounds, bins, shaded } = &mut *memory;
+    rounds.divide(paths);
+    for round in 0..rounds.count() {
+        for &index in rounds.paths(round) {
+            let (path, hit) = (&paths[index as usize], &hits[index as usize]);
+            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            if !hit.is_hit() {
+                output.add_surroundings_behind_medium(world, path, even_sky);
+            } else if let Some(bare) = world.bare_surface(hit).filter(|_| in_lanes) {
+                let kind = 2 * bare.material as usize + usize::from(bare.is_sphere);
+                bins.push(kind, index, bare.material, |eight| {
+                    shade_bare_hits(tree, batch, (eight, bare.is_sphere), shaded, output);
+                });
+            } else {
+                step(tree, world, &streams.of(path), (path, hit), shaded, output);
+            }
+        }
+        for (mask, are_on_spheres) in [(Bins::EVEN, false), (Bins::ODD, true)] {
+            bins.flush(mask, |eight| {
+                shade_bare_hits(tree, batch, (eight, are_on_spheres), shaded, output);
+            });
+        }
+    }
+    output.queues.scratch.put(memory);
+}
+
+/// The step of up to eight paths that met bare surfaces of one kind of shape.
+#[inline(never)]
+fn shade_bare_hits<P: Probe>(
+    tree: Option<&Whitted>,
+    batch: &HitBatch<'_>,
+    (eight, are_on_spheres): (&Eight<'_>, bool),
+    shaded: &mut Shaded,
+    output: &mut StepOutput<'_, P>,
+) {
+    let (world, count) = (batch.world, eight.paths.len());
+    let eight = &BareEight::of(batch, eight, are_on_spheres);
+    let wanted = wanted(tree, output);
+    let Queues { modes, first_surfaces, .. } = &mut output.queues;
+    let mut left = eight.left(world, count, modes, first_surfaces);
+    let first = left.as_mut().map(|left| &mut *left.first);
+    shade_together(BareKernel { world, eight, streams: batch.streams, modes, wanted, shaded, first });
+    if let Some(left) = left {
+        left.set_other_albedos(world, eight);
+    }
+    for lane in 0..count {
+        let (path, hit) = (eight.paths[lane], eight.bare.hits[lane]);
         let absorbed;
         let path = match P::LISTENS {
             true => {
@@ -120,37 +159,14 @@ pub(super) fn step_all<P: Probe>(
             }
             false => path,
         };
-        shaded.finish(world, &Vertex { path, hit, surface: None }, tree, output);
-    };
-    let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
-    let together = if in_any_order { paths.len() } else { TOGETHER };
-    for (paths, hits) in paths.chunks(together).zip(hits.chunks(together)) {
-        steps.clear(paths.len());
-        if in_lanes {
-            steps.compute(world, streams, (paths, hits), wanted, output, |steps, indices, output| {
-                if in_any_order {
-                    for index in indices.iter().map(|&index| index as usize) {
-                        use_step(steps, &paths[index], &hits[index], index, output);
-                    }
-                    steps.remove_groups();
-                }
-            });
-        }
-        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
-            if steps.is_plain(index) {
-                if !in_any_order {
-                    use_step(&steps, path, hit, index, output);
-                }
-                continue;
-            }
-            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
-            match hit.is_hit() {
-                true => step(tree, world, &streams.of(path), path, hit, &mut steps, output),
-                false => output.add_surroundings_behind_medium(world, path, even_sky),
-            }
-        }
+        let material = eight.materials[lane];
+        let boundary = match world.materials[material as usize].is_body() {
+            true => Boundary::Body { material, front: shaded.front & 1 << lane != 0 },
+            false => Boundary::None,
+        };
+        let departure = Departure { path, origin_primitive: OriginPrimitive::of(hit), boundary };
+        shaded.finish(world, (&Vertex { departure, hit }, lane), tree, output);
     }
-    output.queues.scratch.put(steps);
 }
 
 /// The step of one path, whatever it has hit.
@@ -158,9 +174,8 @@ pub(super) fn step<P: Probe>(
     tree: Option<&Whitted>,
     world: &World,
     stream: &SampleStream,
-    path: &Path,
-    hit: &Hit,
-    steps: &mut Steps,
+    (path, hit): (&Path, &Hit),
+    shaded: &mut Shaded,
     output: &mut StepOutput<'_, P>,
 ) {
     // A ray that leaves the scene sees the sky.
@@ -195,9 +210,10 @@ pub(super) fn step<P: Probe>(
         is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });
     let wanted = wanted(tree, output);
-    steps.shade_one(world, (path, stream, &mode), surface, &coefficients, wanted, |shaded| {
-        shaded.finish(world, &Vertex { path, hit, surface: Some(surface) }, tree, output);
-    });
+    shade_one(world, (path, stream, &mode), surface, &coefficients, wanted, shaded);
+    let (origin_primitive, boundary) = (OriginPrimitive::of(hit), Boundary::Surface(surface));
+    let departure = Departure { path, origin_primitive, boundary };
+    shaded.finish(world, (&Vertex { departure, hit }, 0), tree, output);
 }
 
 fn wanted<'a, P: Probe>(tree: Option<&'a Whitted>, output: &StepOutput<'_, P>) -> Wanted<'a> {

@@ -181,7 +181,6 @@ impl World {
             origin,
             bvh,
             classes: Arc::default(),
-            plain_materials: Arc::default(),
             object_classes: Arc::default(),
             primitives: primitives.into(),
             objects: objects.into(),

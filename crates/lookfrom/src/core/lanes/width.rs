@@ -33,7 +33,12 @@ pub(crate) trait Width: Copy {
     /// The rows of spectra.
     fn spectra(self, spectra: Spectrum<Self::Real>) -> [Spectrum; LANES];
     /// The rows of rays, which start at t = 0.
-    fn rays(self, origin: Vector<Self::Real>, direction: Vector<Self::Real>, t_max: f32) -> [Ray; LANES];
+    fn rays(
+        self,
+        origin: Vector<Self::Real>,
+        direction: Vector<Self::Real>,
+        t_max: Self::Real,
+    ) -> [Ray; LANES];
 }
 
 /// Numbers of double precision of a width.
@@ -168,7 +173,7 @@ impl<S: Simd> Width for S {
         scatter_spectrum(spectra)
     }
     #[inline(always)]
-    fn rays(self, origin: Vector<f32x8<S>>, direction: Vector<f32x8<S>>, t_max: f32) -> [Ray; LANES] {
+    fn rays(self, origin: Vector<f32x8<S>>, direction: Vector<f32x8<S>>, t_max: f32x8<S>) -> [Ray; LANES] {
         scatter_rays(self, origin, direction, t_max)
     }
 }

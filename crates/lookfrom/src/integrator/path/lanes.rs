@@ -8,24 +8,23 @@
 
 mod bent_frames;
 mod kernel;
-mod light_samples;
 mod mesh_hits;
 mod skies;
-mod surfaces;
+mod vertices;
 
 use glam::Vec3;
-use lookfrom_bvh::{OriginPrimitive, Ray};
+use lookfrom_bvh::Ray;
 use lookfrom_simd::LaneMask;
 
 use kernel::{ScatterKernel, Scattered, Task};
-pub(super) use mesh_hits::HitBatch;
 use mesh_hits::MeshPoints;
-use surfaces::SurfaceColumns;
+use vertices::VertexColumns;
 
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, Shadow, StepOutput, Term};
+use crate::integrator::wavefront::{Bins, Boundary, Departure, HitBatch, Modes};
+use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, StepOutput};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
@@ -34,20 +33,20 @@ use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::{BsdfClass, BsdfSample, Uniform, bsdf_classes};
-use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
-/// Paths that wait for others of their class: those that hit nothing and those that hit meshes, by index in the batch, and
+/// Paths that wait for others of their class: those that hit meshes by their class and those that hit nothing, in bins, and
 /// all others as vertices.
 pub(super) struct Waiting {
     /// Whether they wait at all: otherwise each is scattered alone, at once.
     in_lanes: bool,
-    escaped: Vec<u32>,
-    mesh_hits: [Vec<u32>; BsdfClass::COUNT],
+    bins: Bins,
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
     memory: Memory,
 }
+
+/// The bin of paths that hit nothing, after those of the classes.
+const ESCAPED: usize = BsdfClass::COUNT;
 
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
 struct Memory {
@@ -89,8 +88,7 @@ macro_rules! call {
 impl Waiting {
     /// None yet; to be scattered in lanes or alone.
     pub(super) fn new(in_lanes: bool) -> Self {
-        let (escaped, memory) = (Vec::new(), Memory::default());
-        Self { in_lanes, escaped, mesh_hits: Default::default(), vertices: Default::default(), memory }
+        Self { in_lanes, bins: Bins::default(), vertices: Default::default(), memory: Memory::default() }
     }
 
     /// Adds a path that hit nothing, and ends the paths of its kind where they fill the lanes.
@@ -102,10 +100,7 @@ impl Waiting {
         index: usize,
         output: &mut StepOutput<'_, P>,
     ) {
-        if fills_lanes(&mut self.escaped, index as u32) {
-            tracer.escape(batch, &self.escaped, output);
-            self.escaped.clear();
-        }
+        self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape(batch, eight, output));
     }
 
     /// Adds a hit, and scatters the hits of its class where they fill the lanes.
@@ -117,11 +112,10 @@ impl Waiting {
         (class, index): (BsdfClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        let hits = &mut self.mesh_hits[class as usize];
-        if fills_lanes(hits, index as u32) {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, &mut self.memory, output));
-            hits.clear();
-        }
+        let memory = &mut self.memory;
+        self.bins.push(class as usize, index as u32, 0, |eight| {
+            with_class!(class, tracer.scatter_mesh_hits(batch, eight, memory, output));
+        });
     }
 
     /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. A vertex whose BSDF has no class is
@@ -152,11 +146,13 @@ impl Waiting {
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        tracer.escape(batch, &self.escaped, output);
-        for (class, (hits, vertices)) in BsdfClass::ALL.iter().zip(self.mesh_hits.iter().zip(&self.vertices))
-        {
-            with_class!(class, tracer.scatter_mesh_hits(batch, hits, &mut self.memory, output));
-            let (world, scattered) = (batch.world, &mut self.memory.scattered);
+        self.bins.flush(1 << ESCAPED, |eight| tracer.escape(batch, eight, output));
+        for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
+            let memory = &mut self.memory;
+            self.bins.flush(1 << class as usize, |eight| {
+                with_class!(class, tracer.scatter_mesh_hits(batch, eight, memory, output));
+            });
+            let (world, scattered) = (batch.world, &mut memory.scattered);
             with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
         }
     }
@@ -172,33 +168,11 @@ fn fills_lanes<T>(waiting: &mut Vec<T>, path: T) -> bool {
     waiting.len() == LANES
 }
 
-/// Scalar data of one lane's vertex, before it is scattered.
-#[derive(Clone, Copy)]
-struct Item<'a> {
-    path: &'a Path,
-    origin_primitive: OriginPrimitive,
-    /// The surface, where it may change what the path travels in.
-    surface: Option<&'a SurfaceInteraction>,
-    is_catcher: bool,
-}
-
-impl<'a> From<&'a Vertex> for Item<'a> {
-    #[inline]
-    fn from(vertex: &'a Vertex) -> Self {
-        let Vertex { path, surface, is_catcher, .. } = vertex;
-        let origin_primitive = surface.origin_primitive;
-        Self { path, origin_primitive, surface: Some(surface), is_catcher: *is_catcher }
-    }
-}
-
-impl Item<'_> {
-    /// The media around light that has left to `wi`, passing through the surface or not.
-    #[inline]
-    fn interior(&self, world: &World, wi: Vec3, passes: bool) -> InteriorStack {
-        match self.surface {
-            Some(surface) => self.path.interior.leaving(&world.materials, surface, wi, passes),
-            None => self.path.interior,
-        }
+impl Vertex {
+    fn departure(&self) -> Departure<'_> {
+        let Self { path, surface, .. } = self;
+        let (origin_primitive, boundary) = (surface.origin_primitive, Boundary::Surface(surface));
+        Departure { path, origin_primitive, boundary }
     }
 }
 
@@ -217,14 +191,15 @@ impl PathTracer {
         let vertices: [&Vertex; LANES] = by_lane!(lane => vertices.get(lane).unwrap_or(last));
         let Some(last_bsdf) = B::of(&last.shading.bsdf) else { return };
         let bsdfs = by_lane!(lane => B::of(&vertices[lane].shading.bsdf).unwrap_or(last_bsdf));
-        let surfaces = SurfaceColumns::of_vertices(&vertices);
+        let surfaces = VertexColumns::of_vertices(&vertices);
         let task = &self.task(
             by_lane!(lane => &vertices[lane].path),
             by_lane!(lane => &vertices[lane].stream),
             output,
         );
         ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
-        self.go_on(world, |lane| vertices[lane].into(), active, scattered, output);
+        let departure = |lane: usize| (vertices[lane].departure(), vertices[lane].is_catcher);
+        self.go_on(world, departure, active, scattered, output);
     }
 
     /// Scatters one path by any BSDF.
@@ -235,7 +210,7 @@ impl PathTracer {
         scattered: &mut Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let surfaces = SurfaceColumns::of_vertices(&[vertex]);
+        let surfaces = VertexColumns::of_vertices(&[vertex]);
         let task = self.task([&vertex.path; LANES], [&vertex.stream; LANES], output);
         let bsdf = &vertex.shading.bsdf;
         match self.light_sampling {
@@ -245,7 +220,8 @@ impl PathTracer {
             }
             _ => task.scatter_one(world, &surfaces, bsdf, scattered),
         }
-        self.go_on(world, |_| vertex.into(), 1, scattered, output);
+        let departure = |_| (vertex.departure(), vertex.is_catcher);
+        self.go_on(world, departure, 1, scattered, output);
     }
 
     #[inline(always)]
@@ -260,25 +236,26 @@ impl PathTracer {
             wants_shares: output.light_paths.is_some(),
             paths,
             streams,
-            modes: by_lane!(lane => &output.queues.modes[paths[lane].slot as usize]),
+            modes: Modes::of(&paths, &output.queues.modes),
         }
     }
 
-    /// The shadow rays and further paths of scattered paths, in the lanes of a mask.
+    /// The shadow rays and further paths of scattered paths, in the lanes of a mask. `departure` also tells whether the surface
+    /// is a shadow catcher that the camera sees.
     fn go_on<'a, P: Probe>(
         &self,
         world: &World,
-        item: impl Fn(usize) -> Item<'a>,
+        departure: impl Fn(usize) -> (Departure<'a>, bool),
         active: u32,
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
         for lane in LaneMask(active) {
-            let item = item(lane);
+            let departure = departure(lane);
             if scattered.has_density & 1 << lane != 0 {
-                self.shadow_ray(world, &item, lane, scattered, output);
+                self.shadow_ray(world, departure, lane, scattered, output);
             }
-            self.next_path(world, &item, lane, scattered, output);
+            self.next_path(world, departure, lane, scattered, output);
         }
     }
 
@@ -287,12 +264,12 @@ impl PathTracer {
     fn shadow_ray<P: Probe>(
         &self,
         world: &World,
-        item: &Item<'_>,
+        (departure, is_catcher): (Departure<'_>, bool),
         lane: usize,
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Path { slot, address, .. } = *item.path;
+        let address = departure.path.address;
         let (connections, lights) = (&scattered.connections, &scattered.lights);
         let is = |mask: u32| mask & 1 << lane != 0;
         let Some((light, probability)) = lights.light(lane).filter(|_| is(connections.is_sampled)) else {
@@ -311,25 +288,19 @@ impl PathTracer {
         if !is(connections.is_lit) {
             return;
         }
-        let ray = lights.shadow_ray(lane, row(&connections.origin, lane), &connections.end);
+        let ray = Ray::new(row(&connections.origin, lane), row(&connections.way, lane))
+            .with_t_max(connections.t_max[lane]);
         let contribution = Spectrum(row(&connections.contribution, lane));
         // Through the surface of a body it travels in what is behind.
         let wi = Vec3::from_array(row(&lights.wi, lane));
-        let crosses = item.surface.is_some_and(|surface| surface.crosses(wi));
+        let crosses = departure.crosses(wi);
         let share = || Spectrum(row(&connections.diffuse, lane));
-        let last_scattering = output.last_scattering(item.path, crosses, share);
-        output.queues.shadows.push(Shadow {
-            ray,
-            origin_primitive: item.origin_primitive,
-            contribution,
-            slot,
-            address,
-            term: Term::Light(light),
-            interior: item.interior(world, wi, crosses),
-            last_scattering,
-        });
-        if item.is_catcher {
-            self.expect_light(&world.lights[light as usize], item.path, contribution, output);
+        let last_scattering = output.last_scattering(departure.path, crosses, share);
+        let interior = departure.interior(world, wi, crosses);
+        let shadow = departure.shadow(ray, (light, contribution), interior, last_scattering);
+        output.queues.shadows.push(shadow);
+        if is_catcher {
+            self.expect_light(&world.lights[light as usize], departure.path, contribution, output);
         }
     }
 
@@ -338,12 +309,12 @@ impl PathTracer {
     fn next_path<P: Probe>(
         &self,
         world: &World,
-        item: &Item<'_>,
+        (departure, is_catcher): (Departure<'_>, bool),
         lane: usize,
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Item { path, origin_primitive, is_catcher, .. } = *item;
+        let Departure { path, origin_primitive, .. } = departure;
         let is = |mask: u32| mask & 1 << lane != 0;
         let (is_specular, is_transmission) = (is(scattered.is_specular), is(scattered.is_transmission));
         let wi = Vec3::from_array(row(&scattered.wi, lane));
@@ -377,7 +348,7 @@ impl PathTracer {
             slot: path.slot,
             depth: path.depth + 1,
             address: path.address + 1,
-            interior: item.interior(world, wi, is_transmission),
+            interior: departure.interior(world, wi, is_transmission),
             previous: PreviousVertex {
                 pdf: scattered.mis_pdf[lane],
                 origin_primitive,

@@ -1,5 +1,5 @@
-//! Shadow rays that pass plain surfaces (see [`crate::world::Plain`]) of materials that transmit the same everywhere, behind
-//! eight surfaces side by side. The bits are those of one by one.
+//! Shadow rays continued through bare surfaces ([`World::bare_surface`](crate::world::World::bare_surface)) of materials that transmit the same
+//! everywhere, eight at a time. The bits are those of `passing`.
 
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
@@ -8,7 +8,7 @@ use super::ShadowLight;
 use crate::core::lanes::{LANES, by_lane, filled, gather_rays, scatter};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::SpectralModes;
-use crate::integrator::whitted::{PlainHits, Surfaces};
+use crate::integrator::wavefront::{BareHits, Surfaces};
 use crate::shading::material::MaterialKind;
 use crate::shading::texture::{SpectralMode, TexturePoint};
 use crate::world::World;
@@ -31,12 +31,12 @@ impl Crossings {
     /// Takes a ray that a surface lets pass, with its hit, unless that is of another kind.
     #[inline(always)]
     pub(super) fn take(&mut self, world: &World, place: u32, hit: &Hit) -> bool {
-        let Some(plain) = world.plain(hit) else { return false };
-        let material = &world.materials[plain.material as usize];
+        let Some(bare) = world.bare_surface(hit) else { return false };
+        let material = &world.materials[bare.material as usize];
         if material.whitted.transmission.varies() || matches!(material.kind, MaterialKind::Interface) {
             return false;
         }
-        let places = if plain.is_sphere { &mut self.on_spheres } else { &mut self.on_triangles };
+        let places = if bare.is_sphere { &mut self.on_spheres } else { &mut self.on_triangles };
         places.push(place);
         true
     }
@@ -92,10 +92,9 @@ impl Kernel for GoOn<'_> {
             let mut memory = None;
             let eight = filled(places, &mut memory);
             let hits = by_lane!(lane => &hits[eight[lane] as usize]);
-            let plain =
-                PlainHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, are_on_spheres };
-            let surfaces = Surfaces::of_eight(simd, world, &plain, false);
-            let [_, directions] = gather_rays(simd, &plain.rays);
+            let bare = BareHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, are_on_spheres };
+            let surfaces = Surfaces::of_eight(simd, world, &bare, false);
+            let [_, directions] = gather_rays(simd, &bare.rays);
             let origins = scatter(surfaces.exits().toward(directions));
             let front = surfaces.front.to_bitmask();
             for (lane, &place) in places.iter().enumerate() {
@@ -116,7 +115,7 @@ impl Kernel for GoOn<'_> {
 }
 
 impl ShadowLight {
-    /// Attenuates the light by a plain surface and by the medium up to it, of which the ray met the outside or the inside,
+    /// Attenuates the light by a bare surface and by the medium up to it, of which the ray met the outside or the inside,
     /// and continues in what is behind. Returns the factor.
     #[inline(always)]
     fn cross(
@@ -127,16 +126,16 @@ impl ShadowLight {
         is_outside: bool,
         mode: &SpectralMode,
     ) -> Spectrum {
-        let Some(plain) = world.plain(hit) else { return Spectrum::BLACK };
-        let material = &world.materials[plain.material as usize];
+        let Some(bare) = world.bare_surface(hit) else { return Spectrum::BLACK };
+        let material = &world.materials[bare.material as usize];
         let transmission = &material.whitted.transmission;
         let transmission = world.textures.spectrum(transmission, &TexturePoint::NOWHERE, mode);
         let passed = transmission * self.transmittance(world, ray, hit.t, mode);
         self.contribution *= passed;
         if material.is_body() {
             self.interior = match is_outside {
-                true => self.interior.entered(plain.material),
-                false => self.interior.left(plain.material),
+                true => self.interior.entered(bare.material),
+                false => self.interior.left(bare.material),
             };
         }
         passed

@@ -1,9 +1,9 @@
-//! Plain surfaces that camera rays meet, left to AOVs.
+//! Bare surfaces that camera rays meet, left to AOVs.
 
 use lookfrom_simd::LaneMask;
 
 use super::coefficients::texture_point;
-use super::step::Eight;
+use super::step::BareEight;
 use crate::core::lanes::{by_lane, row, set_row};
 use crate::integrator::{FirstSurfaceColumns, FirstSurfaces, Path, SpectralModes};
 use crate::shading::material::{self, MaterialKind};
@@ -18,7 +18,7 @@ pub(super) struct Left<'a> {
     has_other_albedo: u32,
 }
 
-impl Eight<'_> {
+impl BareEight<'_> {
     /// Room for those of the first `count` surfaces that are left, if any are: where camera rays meet a material that leaves normals as
     /// they are, and that nothing is seen through.
     #[inline]
@@ -55,14 +55,14 @@ impl Eight<'_> {
 impl Left<'_> {
     /// Replaces the albedos that are not those of Whitted's coefficients.
     #[inline]
-    pub(super) fn set_other_albedos(self, world: &World, eight: &Eight<'_>) {
+    pub(super) fn set_other_albedos(self, world: &World, eight: &BareEight<'_>) {
         let Self { first, has_other_albedo } = self;
         let World { materials, textures, .. } = world;
         for lane in LaneMask(has_other_albedo & first.lanes) {
             let material = &materials[eight.materials[lane] as usize];
             let albedo = material.even_albedo().unwrap_or_else(|| {
                 let (position, ng) = (row(&first.position, lane), row(&first.ng, lane));
-                let point = texture_point(world, eight.plain.hits[lane], position, ng);
+                let point = texture_point(world, eight.bare.hits[lane], position, ng);
                 material::albedo(materials, textures, material, &point)
             });
             set_row(&mut first.albedo, lane, albedo);

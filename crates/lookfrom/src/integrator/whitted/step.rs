@@ -4,19 +4,16 @@
 use lookfrom_simd::{Float, Kernel, Mask, Real, Simd};
 
 use super::Whitted;
-use super::arriving::{Arriving, Destination, Targets};
-use super::coefficients::Modes;
-use super::groups::{BranchRays, Groups};
-use super::plain::PlainHits;
-use super::surfaces::Surfaces;
+use super::shaded::{BranchRays, FromLight, Shaded};
 use super::told::Told;
 use crate::core::lanes::width::{One, Width};
-use crate::core::lanes::{LANES, by_lane, gather_spectrum};
+use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::sample_streams::SampleStreams;
+use crate::integrator::wavefront::{BareHits, Eight, HitBatch, LightSamples, Modes, Receivers, Surfaces};
 use crate::integrator::{BatchStreams, FirstSurfaceColumns, Path, SampleStream, SpectralModes};
-use crate::light::Light;
+use crate::light::IncompletePdf;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
@@ -42,44 +39,54 @@ pub(super) struct Step<'a, W: Width> {
     paths: [&'a Path; LANES],
     /// Path throughputs, after absorption on the way.
     beta: Spectrum<W::Real>,
-    /// Indices into the world's materials.
-    materials: [u32; LANES],
     wanted: Wanted<'a>,
 }
 
 impl<W: Width> Step<'_, W> {
-    /// Computes the next group. `arriving` is the light of a source.
+    /// Shades them. `numbers` are two random ones for a light, and `sample` samples it.
     #[inline(always)]
     fn shade(
         &self,
         i_a: Spectrum<W::Real>,
-        mut arriving: impl FnMut(&Destination<'_, W::Real>, &Light, u32) -> Option<Arriving<W::Real>>,
-        groups: &mut Groups,
+        modes: &Modes<'_>,
+        numbers: impl Fn(u32) -> [W::Real; 2],
+        mut sample: impl FnMut(&mut LightSamples, &Receivers<'_, W::Real>, [W::Real; 2]),
+        shaded: &mut Shaded,
     ) {
-        let Self { width, world, surfaces, coefficients, paths, beta, materials, wanted } = *self;
+        let Self { width, world, surfaces, coefficients, paths, beta, wanted } = *self;
         let mut told = wanted.is_watched.then(|| Told::new(width, coefficients));
-        let (group, mut lights) = groups.next();
-        group.ambient = width.spectra(beta * coefficients.ambient * i_a);
-        (group.materials, group.front) = (materials, width.bits(surfaces.front));
+        shaded.ambient = width.spectra(beta * coefficients.ambient * i_a);
+        shaded.front = width.bits(surfaces.front);
 
-        // Add the light of each source.
-        group.lights = [lights.count(); 2];
+        // Add the light of each source: I_j, its radiance over π and over the density of the direction.
+        shaded.lights.clear();
         let zero = width.splat(0.0);
         let exits = surfaces.exits();
-        let at = Destination { world, points: surfaces.points.position, n: surfaces.ns_facing };
+        let at = Receivers {
+            points: surfaces.points.position,
+            n: surfaces.ns_facing,
+            modes,
+            incomplete_pdf: IncompletePdf::Forbidden,
+        };
         let is_lit = coefficients.is_lit();
-        for (index, source) in (0..).zip(&world.lights).filter(|_| is_lit.any()) {
-            let Some(light) = arriving(&at, source, index) else {
-                if let Some(told) = &mut told {
-                    told.add_light(width, (&paths, is_lit), index, None, [Spectrum::splat(zero); 2]);
-                }
+        let samples = &mut shaded.samples;
+        for (index, light) in (0..).zip(&world.lights).filter(|_| is_lit.any()) {
+            if !light.illuminates() && told.is_none() {
                 continue;
-            };
-            let wi = light.wi;
+            }
+            let is_random = light.illuminates() && !light.is_delta();
+            samples.choose_all(index);
+            sample(samples, &at, if is_random { numbers(index) } else { [zero; 2] });
+            let li = load_spectrum(width, &samples.li);
+            let exists = width.mask(samples.is_valid) & !li.is_black();
+            if !exists.any() && told.is_none() {
+                continue;
+            }
+            let wi = load(width, &samples.wi);
             let n_dot_l = surfaces.ns_facing.dot(wi);
             // Light from behind the surface does not reach its front, whatever the interpolated normal says.
-            let exists = light.exists & !surfaces.cross(wi);
-            let mut lit = exists & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
+            let faces = exists & !surfaces.cross(wi);
+            let mut lit = faces & !(n_dot_l.lt(zero) | Float::eq(n_dot_l, zero));
             if !lit.any() && told.is_none() {
                 continue;
             }
@@ -87,29 +94,30 @@ impl<W: Width> Step<'_, W> {
             if let Some(told) = &mut told {
                 let reflected =
                     [diffuse, specular].map(|part| Spectrum::select(lit, part, Spectrum::splat(zero)));
-                told.add_light(width, (&paths, is_lit), index, Some((&light, width.bits(exists))), reflected);
+                told.add_light(width, (&paths, is_lit), samples, faces, reflected);
             }
-            let contribution = beta * (diffuse + specular) * light.intensity();
+            let intensity = li / (width.load_f32(&samples.pdf) * std::f32::consts::PI);
+            let contribution = beta * (diffuse + specular) * intensity;
             lit = lit & !contribution.is_black();
-            let origin = exits.toward(wi);
-            let (direction, t_max) = match light.target {
-                Targets::Infinity => (wi, f32::INFINITY),
-                Targets::Points(position) => (Vector::narrow(position - origin.widen()), 1.0),
-                Targets::Surfaces(points, normal) => (points.just_before(normal, wi, origin), 1.0),
-            };
-            let from = lights.add();
-            from.light = index;
-            from.lit = width.bits(lit);
-            from.contribution = width.spectra(contribution);
-            if wanted.shares {
-                from.diffuse = width.spectra(diffuse.share_of(diffuse + specular));
+            if !lit.any() {
+                continue;
             }
-            from.rays = width.rays(origin, direction, t_max);
-            group.lights[1] = lights.count();
+            let origin = exits.toward(wi);
+            let (way, t_max) = samples.ways(width, origin);
+            shaded.lights.push(FromLight {
+                light: index,
+                lit: width.bits(lit),
+                contribution: width.spectra(contribution),
+                diffuse: match wanted.shares {
+                    true => width.spectra(diffuse.share_of(diffuse + specular)),
+                    false => [Spectrum::BLACK; LANES],
+                },
+                rays: width.rays(origin, way, t_max),
+            });
         }
 
         // Grow the tree: k_r S and k_t T.
-        for branch in &mut group.branches {
+        for branch in &mut shaded.branches {
             branch.exist = 0;
         }
         let Surfaces { ns_facing, wo, front, .. } = *surfaces;
@@ -122,15 +130,13 @@ impl<W: Width> Step<'_, W> {
             if let Some(told) = &mut told {
                 told.add_branches(width, (&paths, tree), beta, &branches, [exist, is_refracted]);
             }
-            let [mirrored, refracted] = &mut group.branches;
+            let [mirrored, refracted] = &mut shaded.branches;
             self.set_rays(mirrored, exist, branches.mirrored, 1.0);
             if is_refracted.any() {
                 self.set_rays(refracted, is_refracted, branches.refracted, -1.0);
             }
         }
-        if let Some(told) = told {
-            groups.tell(told);
-        }
+        shaded.told = told;
     }
 
     /// Sets the rays of a branch, which leave to the side of `wo` (1) or to the other (−1).
@@ -145,7 +151,11 @@ impl<W: Width> Step<'_, W> {
         let direction = same_side(direction, self.surfaces.ng_facing, self.width.splat(side));
         rays.exist = self.width.bits(exist);
         rays.beta = self.width.spectra(self.beta * weight);
-        rays.rays = self.width.rays(self.surfaces.exits().toward(direction), direction, f32::INFINITY);
+        rays.rays = self.width.rays(
+            self.surfaces.exits().toward(direction),
+            direction,
+            self.width.splat(f32::INFINITY),
+        );
     }
 }
 
@@ -158,66 +168,80 @@ fn same_side<R: Real>(direction: Vector<R>, ng: Vector<R>, side: R) -> Vector<R>
     Vector::select(on_side.gt(zero) | Float::eq(on_side, zero), direction, direction - ng * (cos * 2.0))
 }
 
-/// Computes the next group, of one path.
+/// Shades the surface that one path has met.
 pub(super) fn shade_one(
     world: &World,
     (path, stream, mode): (&Path, &SampleStream, &SpectralMode),
     surface: &SurfaceInteraction,
     coefficients: &Coefficients,
     wanted: Wanted<'_>,
-    groups: &mut Groups,
+    shaded: &mut Shaded,
 ) {
     let surfaces = &Surfaces::of_one(surface);
-    let materials = [surface.material; LANES];
     let (paths, beta) = ([path; LANES], path.beta);
-    let step = Step { width: One, world, surfaces, coefficients, paths, beta, materials, wanted };
-    let arriving = |at: &Destination<'_, f32>, source: &Light, index| {
-        let u = if super::arriving::is_random(source) { stream.two_with_pixel(index) } else { [0.0; 2] };
-        Arriving::at_one(at, source, u, mode)
-    };
-    step.shade(world.ambient(mode), arriving, groups);
+    let step = Step { width: One, world, surfaces, coefficients, paths, beta, wanted };
+    step.shade(
+        world.ambient(mode),
+        &Modes::of_one(mode),
+        |light| stream.two_with_pixel(light),
+        |samples, at, u| samples.sample_one(world, at, u),
+        shaded,
+    );
 }
 
-/// Eight paths with plain hits on one kind of shape.
-pub(super) struct Eight<'a> {
+/// Eight paths that met bare surfaces of one kind of shape.
+pub(super) struct BareEight<'a> {
     pub(super) paths: [&'a Path; LANES],
-    pub(super) plain: PlainHits<'a>,
+    pub(super) bare: BareHits<'a>,
     /// Indices into the world's materials.
     pub(super) materials: [u32; LANES],
 }
 
-impl Eight<'_> {
+impl<'a> BareEight<'a> {
+    /// Eight paths of a batch, and what they have met. Unused lanes repeat the last.
+    #[inline(always)]
+    pub(super) fn of(batch: &HitBatch<'a>, eight: &Eight<'_>, are_on_spheres: bool) -> Self {
+        let &Eight { paths: indices, materials } = eight;
+        let mut memory = [None; 2];
+        let [first, second] = &mut memory;
+        let (indices, materials) = (filled(indices, first), *filled(materials, second));
+        let hits = by_lane!(lane => &batch.hits[indices[lane] as usize]);
+        let paths = by_lane!(lane => &batch.paths[indices[lane] as usize]);
+        let rays = by_lane!(lane => &paths[lane].ray);
+        Self { paths, bare: BareHits { rays, hits, are_on_spheres }, materials }
+    }
+
     /// The throughput of a path, attenuated by the medium on the way.
     #[inline(always)]
     fn throughput(&self, world: &World, lane: usize, mode: &SpectralMode) -> Spectrum {
-        self.paths[lane].absorbed(world, self.plain.hits[lane], mode).beta
+        self.paths[lane].absorbed(world, self.bare.hits[lane], mode).beta
     }
 }
 
-/// Computes the next group, of eight paths.
-pub(super) struct PlainKernel<'a> {
+/// Shades the surfaces that eight paths have met.
+pub(super) struct BareKernel<'a> {
     pub(super) world: &'a World,
-    pub(super) eight: &'a Eight<'a>,
+    pub(super) eight: &'a BareEight<'a>,
     pub(super) streams: &'a BatchStreams<'a>,
     /// By slot.
     pub(super) modes: &'a SpectralModes,
     pub(super) wanted: Wanted<'a>,
-    pub(super) groups: &'a mut Groups,
+    pub(super) shaded: &'a mut Shaded,
     /// Receives the surfaces for AOVs, with the albedo of Whitted's coefficients.
     pub(super) first: Option<&'a mut FirstSurfaceColumns>,
 }
 
-impl Kernel for PlainKernel<'_> {
+impl Kernel for BareKernel<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, streams, modes, wanted, groups, first } = self;
-        let modes = Modes::of(eight, modes);
+        let Self { world, eight, streams, modes, wanted, shaded, first } = self;
+        let modes = &Modes::of(&eight.paths, modes);
         // Of spheres they are costly.
-        let wants_uvs = first.is_some() || !eight.plain.are_on_spheres;
-        let surfaces = &Surfaces::of_eight(simd, world, &eight.plain, wants_uvs);
-        let coefficients = &Coefficients::at_eight(simd, world, eight, surfaces, &modes);
+        let wants_uvs = first.is_some() || !eight.bare.are_on_spheres;
+        let surfaces = &Surfaces::of_eight(simd, world, &eight.bare, wants_uvs);
+        let coefficients = &Coefficients::at_eight(simd, world, eight, surfaces, modes);
         if let Some(first) = first {
             surfaces.leave(first);
             let Coefficients { diffuse, mirror, transmission, .. } = *coefficients;
@@ -225,26 +249,20 @@ impl Kernel for PlainKernel<'_> {
             first.albedo = [r.into(), g.into(), b.into()];
         }
         let beta = gather_spectrum(simd, &by_lane!(lane => eight.throughput(world, lane, modes.lane(lane))));
-        let (paths, materials) = (eight.paths, eight.materials);
-        let step = Step { width: simd, world, surfaces, coefficients, paths, beta, materials, wanted };
+        let paths = eight.paths;
+        let step = Step { width: simd, world, surfaces, coefficients, paths, beta, wanted };
         let i_a = modes.constant(simd, world, &world.ambient);
         step.shade(
             i_a,
+            modes,
             #[inline(always)]
-            |at, source, index| {
-                Arriving::at_eight(
-                    simd,
-                    at,
-                    source,
-                    #[inline(always)]
-                    || {
-                        let alone = by_lane!(lane => streams.of(eight.paths[lane]));
-                        SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(index)
-                    },
-                    &modes,
-                )
+            |light| {
+                let alone = by_lane!(lane => streams.of(eight.paths[lane]));
+                SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(light)
             },
-            groups,
+            #[inline(always)]
+            |samples, at, u| samples.sample(simd, world, at, u, (1 << LANES) - 1),
+            shaded,
         );
     }
 }

@@ -1,15 +1,13 @@
 //! Events of Whitted's step for a probe, by lane: from the vectors that make the light and the paths.
 
-use lookfrom_bvh::Point;
 use lookfrom_simd::LaneMask;
 
 use super::Whitted;
-use super::arriving::{Arriving, Targets};
 use crate::core::lanes::width::{Lanes, Mask, Width};
-use crate::core::lanes::{LANES, row, store, store_f64};
+use crate::core::lanes::{LANES, row, store};
 use crate::core::spectrum::Spectrum;
+use crate::integrator::wavefront::LightSamples;
 use crate::integrator::{Branch, Event, Path};
-use crate::light::{LightSample, Target};
 use crate::shading::material::{Branches, Coefficients};
 
 /// Coefficients and events of the lanes of a group.
@@ -44,17 +42,17 @@ impl Told {
         &mut self,
         width: W,
         (paths, is_lit): (&[&Path; LANES], Mask<W>),
-        light: u32,
-        arriving: Option<(&Arriving<W::Real>, u32)>,
+        lights: &LightSamples,
+        exists: Mask<W>,
         reflected: [Spectrum<W::Real>; 2],
     ) {
         let [diffuse, specular] = reflected.map(|part| width.spectra(part));
-        let samples = arriving.map(|(arriving, exists)| (arriving.samples(width), exists));
+        let exists = width.bits(exists);
         for lane in LaneMask(width.bits(is_lit)) {
             self.events[lane].push(Event::LocalLight {
                 address: paths[lane].address,
-                light,
-                sample: samples.filter(|(_, exists)| exists & 1 << lane != 0).map(|(of, _)| of[lane]),
+                light: lights.of_all(),
+                sample: (exists & 1 << lane != 0).then(|| lights.light_sample(lane)),
                 diffuse: diffuse[lane],
                 specular: specular[lane],
             });
@@ -89,32 +87,5 @@ impl Told {
                 });
             }
         }
-    }
-}
-
-impl<R: Lanes> Arriving<R> {
-    /// The light sample of each lane.
-    fn samples(&self, width: impl Width<Real = R>) -> [LightSample; LANES] {
-        let (wi, li, pdf) = (store(self.wi), width.spectra(self.li), self.pdf.column());
-        let target: &dyn Fn(usize) -> Target = match self.target {
-            Targets::Infinity => &|_| Target::Infinity,
-            Targets::Points(points) => {
-                let points = store_f64(points);
-                &move |lane| Target::Point(row(&points, lane).into())
-            }
-            Targets::Surfaces(points, normals) => {
-                let [position, error, normal] = [points.position, points.error, normals].map(store_f64);
-                &move |lane| {
-                    let point = Point { position: row(&position, lane), error: row(&error, lane) };
-                    Target::Surface(point, row(&normal, lane).into())
-                }
-            }
-        };
-        std::array::from_fn(|lane| LightSample {
-            wi: row(&wi, lane).into(),
-            li: li[lane],
-            pdf: pdf[lane],
-            target: target(lane),
-        })
     }
 }

@@ -9,19 +9,6 @@ use super::{
 use crate::core::lanes::{LANES, bitmask, by_lane};
 use crate::core::vector::Vector;
 
-impl AreaLight {
-    /// Whether all points of it are sampled in lanes.
-    pub(crate) fn is_in_lanes(&self) -> bool {
-        self.is_uniform()
-            && match &self.shape {
-                LightShape::Mesh(light) => light.has_one_normal_per_triangle(),
-                LightShape::Quadric(light) => light.sphere().is_some() || light.disk().is_some(),
-                LightShape::Disk(_) => true,
-                LightShape::Patches(_) => false,
-            }
-    }
-}
-
 /// The shapes that the lanes sample.
 struct Chosen<'a> {
     triangles: [Option<&'a LightTriangle>; LANES],

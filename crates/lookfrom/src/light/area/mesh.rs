@@ -87,11 +87,6 @@ impl MeshLight {
         Some((by_lane!(lane => &self.triangles[indices[lane]]), probability, u0))
     }
 
-    /// Whether [`MeshLight::triangle`] is known for every number.
-    pub(super) fn has_one_normal_per_triangle(&self) -> bool {
-        self.is_flat
-    }
-
     /// A mesh of uniform emission. None for one without area.
     pub fn new(mesh: Arc<Mesh>) -> Option<Self> {
         let area = area(&mesh)?;

@@ -85,7 +85,7 @@ pub(crate) fn gather_triangles<S: Simd>(
     triangles
 }
 
-/// The points of hits on meshes, in instances or not.
+/// The points of hits on meshes, in instances or not: most often on one triangle.
 #[inline(always)]
 pub(crate) fn points_on_meshes<S: Simd>(
     simd: S,
@@ -94,7 +94,12 @@ pub(crate) fn points_on_meshes<S: Simd>(
     placements: &[Option<StoredPlacement<'_>>; LANES],
     wants_uvs: bool,
 ) -> TrianglePoints<f32x8<S>> {
-    let triangles = gather_triangles(simd, meshes, &by_lane!(lane => hits[lane].primitive), wants_uvs);
+    let indices = by_lane!(lane => hits[lane].primitive);
+    let is_one = by_lane!(lane => std::ptr::eq(meshes[lane], meshes[0]) && indices[lane] == indices[0]);
+    let triangles = match bitmask(&is_one) == (1 << LANES) - 1 {
+        true => meshes[0].triangle(indices[0] as usize).splat(simd),
+        false => gather_triangles(simd, meshes, &indices, wants_uvs),
+    };
     let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].u));
     let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].v));
     let at = triangles.points(u, v);

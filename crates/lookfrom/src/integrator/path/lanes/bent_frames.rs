@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lookfrom_simd::{Kernel, Simd, f32x8, mask32x8, prelude::*};
 
-use super::surfaces::SurfaceColumns;
+use super::vertices::VertexColumns;
 use crate::core::lanes::{Columns, LANES, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
@@ -34,7 +34,7 @@ impl BentFrames {
 
     /// The geometry of a lane, whose frame is bent alone.
     #[inline]
-    pub(super) fn geometry(&self, surfaces: &SurfaceColumns, lane: usize, front: bool) -> ShadingGeometry {
+    pub(super) fn geometry(&self, surfaces: &VertexColumns, lane: usize, front: bool) -> ShadingGeometry {
         ShadingGeometry {
             ng: DVec3::from_array(surfaces.ng(lane)).as_vec3(),
             ns: row(&self.ns, lane).into(),
@@ -57,7 +57,7 @@ impl BentFrames {
 
     /// Bends the frames of the lanes that were noted. `front` are the lanes whose ray hit the outside.
     #[inline]
-    pub(super) fn bend(&mut self, surfaces: &mut SurfaceColumns, front: u32) {
+    pub(super) fn bend(&mut self, surfaces: &mut VertexColumns, front: u32) {
         if self.bent != 0 {
             bend(BendKernel { frames: self, surfaces, front });
         }
@@ -72,7 +72,7 @@ fn bend(kernel: BendKernel<'_>) {
 
 struct BendKernel<'a> {
     frames: &'a BentFrames,
-    surfaces: &'a mut SurfaceColumns,
+    surfaces: &'a mut VertexColumns,
     front: u32,
 }
 

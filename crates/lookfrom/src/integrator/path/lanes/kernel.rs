@@ -3,8 +3,7 @@
 
 use lookfrom_simd::{Float, Kernel, Mask as _, Real, Simd};
 
-use super::light_samples::LightSamples;
-use super::surfaces::{SurfaceColumns, Surfaces};
+use super::vertices::{VertexColumns, Vertices};
 use crate::core::lanes::width::{Lanes, Mask, One, Width};
 use crate::core::lanes::{Columns, LANES, load, load_spectrum, shade_together, store, store_spectrum};
 use crate::core::math::power_heuristic;
@@ -13,9 +12,10 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::path::{LightSampling, SAFE_BOUNCES, SURVIVAL, dimension};
 use crate::integrator::sample_streams::SampleStreams;
+use crate::integrator::wavefront::{LightSamples, Modes, Receivers};
 use crate::integrator::{Path, SampleStream};
+use crate::light::IncompletePdf;
 use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
-use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The samples of eight paths. Masks have bit i for lane i.
@@ -99,9 +99,10 @@ pub(super) struct Connections {
     pub(super) is_sampled: u32,
     /// Lanes whose contribution is not black.
     pub(super) is_lit: u32,
+    /// The origins of the shadow rays, and their directions and ends.
     pub(super) origin: Columns<3>,
-    /// From there to the light, where that is a surface.
-    pub(super) end: Columns<3>,
+    pub(super) way: Columns<3>,
+    pub(super) t_max: [f32; LANES],
 }
 
 impl Connections {
@@ -115,14 +116,15 @@ impl Connections {
         is_sampled: 0,
         is_lit: 0,
         origin: [[0.0; LANES]; 3],
-        end: [[0.0; LANES]; 3],
+        way: [[0.0; LANES]; 3],
+        t_max: [0.0; LANES],
     };
 }
 
 /// Paths at surfaces whose BSDFs are of one class.
 struct Step<'a, W: Width, B> {
     width: W,
-    surfaces: &'a Surfaces<W::Real>,
+    surfaces: &'a Vertices<W::Real>,
     bsdf: &'a B,
     /// Path throughputs.
     beta: Spectrum<W::Real>,
@@ -131,9 +133,13 @@ struct Step<'a, W: Width, B> {
 }
 
 impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
-    /// Samples lights, by `sample_lights` in the lanes of a mask, and directions at the surfaces.
+    /// Samples lights, by `sample_lights` with two random numbers in the lanes of a mask, and directions at the surfaces.
     #[inline(always)]
-    fn scatter(&self, sample_lights: impl FnOnce(&mut LightSamples, u32), scattered: &mut Scattered) {
+    fn scatter(
+        &self,
+        sample_lights: impl FnOnce(&mut LightSamples, &Receivers<'_, W::Real>, [W::Real; 2], u32),
+        scattered: &mut Scattered,
+    ) {
         let Self { width, surfaces, bsdf, beta, streams, task } = *self;
         let (paths, kind) = (task.paths, bsdf.kind());
         let (zero, one) = (width.splat(0.0), width.splat(1.0));
@@ -147,7 +153,14 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
             _ => width.bits(bsdf.has_density()),
         };
         if scattered.has_density != 0 {
-            sample_lights(&mut scattered.lights, scattered.has_density);
+            let at = Receivers {
+                points: surfaces.points.position,
+                n: surfaces.n,
+                modes: &task.modes,
+                incomplete_pdf: IncompletePdf::Allowed,
+            };
+            let u = streams.two_with_pixel(dimension::LIGHT);
+            sample_lights(&mut scattered.lights, &at, u, scattered.has_density);
             self.connect(&view, &exits, &scattered.lights, &mut scattered.connections);
         }
 
@@ -244,7 +257,8 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         connections.is_sampled = is_sampled;
         connections.is_lit = is_sampled & !width.bits(contribution.is_black());
         connections.origin = store(origin);
-        connections.end = lights.ends(width, origin);
+        let (way, t_max) = lights.ways(width, origin);
+        (connections.way, connections.t_max) = (store(way), t_max.column());
     }
 }
 
@@ -255,7 +269,7 @@ pub(super) struct Task<'a> {
     pub(super) wants_shares: bool,
     pub(super) paths: [&'a Path; LANES],
     pub(super) streams: [&'a SampleStream; LANES],
-    pub(super) modes: [&'a SpectralMode; LANES],
+    pub(super) modes: Modes<'a>,
 }
 
 impl Task<'_> {
@@ -286,21 +300,25 @@ impl Task<'_> {
     pub(super) fn scatter_one<B: LaneBsdf<f32>>(
         &self,
         world: &World,
-        surfaces: &SurfaceColumns,
+        surfaces: &VertexColumns,
         bsdf: &B,
         scattered: &mut Scattered,
     ) {
         let (width, surfaces) = (One, &surfaces.load(One));
         let streams = &SampleStreams::new(width, &self.streams);
         let step = Step { width, surfaces, bsdf, beta: self.beta(width), streams, task: self };
-        step.scatter(|lights, _| lights.sample_one(world, surfaces, streams, self.modes[0]), scattered);
+        let sample_lights = |lights: &mut LightSamples, at: &Receivers<'_, f32>, [which, v]: [f32; 2], _| {
+            let u = [lights.choose_one(world, at, which), v];
+            lights.sample_one(world, at, u);
+        };
+        step.scatter(sample_lights, scattered);
     }
 }
 
 /// Scatters eight paths at surfaces whose BSDFs are of one class.
 pub(super) struct ScatterKernel<'a, B> {
     pub(super) world: &'a World,
-    pub(super) surfaces: &'a SurfaceColumns,
+    pub(super) surfaces: &'a VertexColumns,
     pub(super) bsdfs: &'a [&'a B; LANES],
     pub(super) task: &'a Task<'a>,
     /// Memory for the samples.
@@ -327,7 +345,10 @@ impl<B: RowBsdf> Kernel for ScatterKernel<'_, B> {
         let step = Step { width: simd, surfaces, bsdf, beta: task.beta(simd), streams, task };
         step.scatter(
             #[inline(always)]
-            |lights, mask| lights.sample(simd, world, surfaces, streams, &task.modes, mask),
+            |lights, at, [which, v], mask| {
+                let u = [lights.choose(simd, world, at, which, mask), v];
+                lights.sample(simd, world, at, u, mask);
+            },
             scattered,
         );
     }

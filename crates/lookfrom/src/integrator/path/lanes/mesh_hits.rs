@@ -4,44 +4,32 @@ use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
 use lookfrom_simd::{Float, Kernel, LaneMask, Simd, f32x8, prelude::*};
 
+use super::Memory;
 use super::bent_frames::BentFrames;
 use super::kernel::ScatterKernel;
-use super::surfaces::SurfaceColumns;
-use super::{Item, Memory};
+use super::vertices::VertexColumns;
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, shade_together, store};
 use crate::core::points::{Lift, StoredPlacement};
 use crate::core::vector::Vector;
 use crate::integrator::path::{PathTracer, dimension};
-use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput};
-use crate::primitive::{Mesh, VertexData, points_on_meshes};
+use crate::integrator::wavefront::{Boundary, Departure, Eight, HitBatch};
+use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::primitive::{Mesh, points_on_meshes};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext, frame_about};
 use crate::shading::texture::TexturePoint;
-use crate::world::World;
-
-/// A batch of paths and what they have hit.
-pub(in crate::integrator::path) struct HitBatch<'a> {
-    pub(in crate::integrator::path) world: &'a World,
-    pub(in crate::integrator::path) paths: &'a [Path],
-    pub(in crate::integrator::path) hits: &'a [Hit],
-    pub(in crate::integrator::path) streams: &'a BatchStreams<'a>,
-}
 
 impl<'a> HitBatch<'a> {
     /// Whether a path travels in no medium and comes from no shadow catcher.
     #[inline]
-    pub(in crate::integrator::path) fn is_plain(&self, index: usize) -> bool {
+    pub(in crate::integrator) fn is_in_vacuum(&self, index: usize) -> bool {
         let path = &self.paths[index];
         path.interior.is_empty() && !path.previous.is_catcher
     }
 
     /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there.
     #[inline]
-    pub(in crate::integrator::path) fn mesh_class(
-        &self,
-        tracer: &PathTracer,
-        index: usize,
-    ) -> Option<BsdfClass> {
+    pub(in crate::integrator) fn mesh_class(&self, tracer: &PathTracer, index: usize) -> Option<BsdfClass> {
         match self.paths[index].depth < tracer.depth {
             true => self.world.mesh_class(&self.hits[index]),
             false => None,
@@ -81,13 +69,13 @@ impl PathTracer {
     pub(super) fn scatter_mesh_hits<B: MaterialRow, P: Probe>(
         &self,
         batch: &HitBatch<'_>,
-        indices: &[u32],
+        eight: &Eight<'_>,
         memory: &mut Memory,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Some(last) = indices.last() else { return };
+        let indices = eight.paths;
         // Unused lanes repeat the last hit.
-        let hits = by_lane!(lane => match batch.mesh_hit(*indices.get(lane).unwrap_or(last)) {
+        let hits = by_lane!(lane => match batch.mesh_hit(indices[lane.min(indices.len() - 1)]) {
             Some(hit) => hit,
             None => return,
         });
@@ -123,8 +111,8 @@ impl PathTracer {
         if varies {
             let points = varying.insert([TexturePoint::NOWHERE; LANES]);
             for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
-                let at = [surfaces.position(lane), surfaces.ng(lane)];
-                points[lane] = texture_point(world, hit.mesh, hit.hit, at, row(uv, lane));
+                let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
+                points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
             }
             look_ups = world.textures.look_up_lanes(&pictures, points);
             if let Some(look_ups) = &look_ups {
@@ -196,13 +184,12 @@ impl PathTracer {
         let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
         let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
         ScatterKernel { world, surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
-        let item = |lane: usize| Item {
-            path: hits[lane].path,
-            origin_primitive: OriginPrimitive::of(hits[lane].hit),
-            surface: None,
-            is_catcher: false,
+        let departure = |lane: usize| {
+            let MeshHit { path, hit, .. } = hits[lane];
+            let origin_primitive = OriginPrimitive::of(hit);
+            (Departure { path, origin_primitive, boundary: Boundary::None }, false)
         };
-        self.go_on(world, item, active, scattered, output);
+        self.go_on(world, departure, active, scattered, output);
     }
 }
 
@@ -212,33 +199,9 @@ fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
     if B::TAKES_SEED { stream.two(dimension::WALK)[0] } else { 0.0 }
 }
 
-/// The inputs of texture evaluation at a hit on a mesh, by position and geometric normal, and texture coordinates.
-#[inline]
-fn texture_point<'a>(
-    world: &World,
-    mesh: &'a Mesh,
-    hit: &Hit,
-    [position, ng]: [[f64; 3]; 2],
-    uv: [f32; 2],
-) -> TexturePoint<'a> {
-    let Hit { primitive, u: b1, v: b2, .. } = *hit;
-    let point = TexturePoint {
-        uv: uv.into(),
-        world: world.origin + DVec3::from_array(position),
-        color: mesh.color(primitive as usize, b1, b2),
-        n: DVec3::from_array(ng).as_vec3(),
-        ..TexturePoint::NOWHERE
-    };
-    if !mesh.has_vertex_data() {
-        return point;
-    }
-    let VertexData { more_uvs, opacity } = mesh.vertex_data(primitive as usize, b1, b2);
-    TexturePoint { more_uvs, opacity, ..point }
-}
-
 /// The points of eight hits, in the frames of materials without bump mapping.
 pub(super) struct MeshPoints {
-    surfaces: SurfaceColumns,
+    surfaces: VertexColumns,
     uv: Columns<2>,
     /// Bit i for lane i: whether the ray hit the outside.
     front: u32,
@@ -251,7 +214,7 @@ pub(super) struct MeshPoints {
 impl MeshPoints {
     /// None yet.
     pub(super) const NONE: Self = Self {
-        surfaces: SurfaceColumns::NONE,
+        surfaces: VertexColumns::NONE,
         uv: [[0.0; LANES]; 2],
         front: 0,
         smooth: 0,

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::mesh_hits::HitBatch;
 use crate::core::lanes::by_lane;
 use crate::integrator::path::PathTracer;
+use crate::integrator::wavefront::{Eight, HitBatch};
 use crate::integrator::{Path, Probe, StepOutput};
 use crate::light::Light;
 
@@ -13,13 +13,12 @@ impl PathTracer {
     pub(super) fn escape<P: Probe>(
         &self,
         batch: &HitBatch<'_>,
-        indices: &[u32],
+        eight: &Eight<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Some(last) = indices.last() else { return };
-        let world = batch.world;
+        let (world, indices) = (batch.world, eight.paths);
         // Unused lanes repeat the last path.
-        let paths = by_lane!(lane => &batch.paths[*indices.get(lane).unwrap_or(last) as usize]);
+        let paths = by_lane!(lane => &batch.paths[indices[lane.min(indices.len() - 1)] as usize]);
         let mut sees_sky = 0;
         for (lane, path) in paths.iter().enumerate().take(indices.len()) {
             sees_sky |= u32::from(!output.shows_background(path)) << lane;

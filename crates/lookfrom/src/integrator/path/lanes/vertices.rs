@@ -1,4 +1,4 @@
-//! Surfaces of the vertices of paths: in columns of memory, and as numbers of any width.
+//! Vertices of paths on surfaces, with the frames that they are shaded in: in columns of memory, and as numbers of any width.
 
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
@@ -9,9 +9,9 @@ use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
 
-/// Eight surfaces in memory, by component.
+/// Eight vertices in memory, by component.
 #[derive(Clone, Copy)]
-pub(super) struct SurfaceColumns {
+pub(super) struct VertexColumns {
     position: Columns<3, f64>,
     error: Columns<3, f64>,
     ng: Columns<3, f64>,
@@ -24,7 +24,7 @@ pub(super) struct SurfaceColumns {
     lifted: u32,
 }
 
-impl SurfaceColumns {
+impl VertexColumns {
     /// None yet.
     pub(super) const NONE: Self = Self {
         position: [[0.0; LANES]; 3],
@@ -153,12 +153,12 @@ impl SurfaceColumns {
 
     /// The surfaces as numbers of a width.
     #[inline(always)]
-    pub(super) fn load<W: Width>(&self, width: W) -> Surfaces<W::Real> {
+    pub(super) fn load<W: Width>(&self, width: W) -> Vertices<W::Real> {
         let [s, t, n] =
             [load(width, &self.frame[0]), load(width, &self.frame[1]), load(width, &self.frame[2])];
         let wo = load(width, &self.wo);
         let ng = load_f64(width, &self.ng);
-        Surfaces {
+        Vertices {
             points: Points { position: load_f64(width, &self.position), error: load_f64(width, &self.error) },
             ng,
             s,
@@ -175,8 +175,8 @@ impl SurfaceColumns {
     }
 }
 
-/// Surfaces and the frames that they are shaded in.
-pub(super) struct Surfaces<R: Real> {
+/// Vertices and the frames that they are shaded in.
+pub(super) struct Vertices<R: Real> {
     pub(super) points: Points<R>,
     /// Geometric normals, of unit length.
     pub(super) ng: Vector<R::Double>,
@@ -192,7 +192,7 @@ pub(super) struct Surfaces<R: Real> {
     pub(super) lift: Option<Lift<R>>,
 }
 
-impl<R: Real> Surfaces<R> {
+impl<R: Real> Vertices<R> {
     /// From render space to the frames.
     #[inline(always)]
     pub(super) fn local(&self, w: Vector<R>) -> Vector<R> {

@@ -1,31 +1,31 @@
-//! Surfaces as Whitted's model needs them: one, or eight plain ones side by side, from their hits.
+//! Bare surfaces: one, or eight side by side, from their hits.
 
 use glam::Vec2;
 use lookfrom_bvh::{Hit, Point};
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, prelude::*};
 
-use super::plain::{self, PlainHits};
+use super::bare_hits::{self, BareHits};
 use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
 use crate::integrator::FirstSurfaceColumns;
-use crate::primitive::{Triangles, gather_triangles};
+use crate::primitive::points_on_meshes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
 /// Surfaces with the directions that shading needs, as [`World::surface`] has them.
 pub(in crate::integrator) struct Surfaces<R: Real> {
-    pub(super) points: Points<R>,
-    pub(super) ng: Vector<R::Double>,
-    pub(super) ng_facing: Vector<R>,
+    pub(in crate::integrator) points: Points<R>,
+    pub(in crate::integrator) ng: Vector<R::Double>,
+    pub(in crate::integrator) ng_facing: Vector<R>,
     ns: Vector<R>,
-    pub(super) ns_facing: Vector<R>,
-    pub(super) wo: Vector<R>,
+    pub(in crate::integrator) ns_facing: Vector<R>,
+    pub(in crate::integrator) wo: Vector<R>,
     pub(in crate::integrator) front: R::Mask,
     /// Texture coordinates, where they are known.
-    pub(super) uv: Option<[R; 2]>,
+    pub(in crate::integrator) uv: Option<[R; 2]>,
     /// The smooth surfaces that meshes stand for.
-    pub(super) lift: Option<Lift<R>>,
+    pub(in crate::integrator) lift: Option<Lift<R>>,
 }
 
 /// Points, geometric and shading normals, texture coordinates where they are known, and the ways to smooth surfaces where
@@ -35,7 +35,7 @@ type Shapes<S> =
 
 impl Surfaces<f32> {
     /// One surface.
-    pub(super) fn of_one(surface: &SurfaceInteraction) -> Self {
+    pub(in crate::integrator) fn of_one(surface: &SurfaceInteraction) -> Self {
         let Point { position, error } = surface.point;
         Self {
             points: Points { position: position.into(), error: error.into() },
@@ -57,13 +57,13 @@ impl<S: Simd> Surfaces<f32x8<S>> {
     pub(in crate::integrator) fn of_eight(
         simd: S,
         world: &World,
-        plain: &PlainHits<'_>,
+        bare: &BareHits<'_>,
         wants_uvs: bool,
     ) -> Self {
-        let [origin, direction] = gather_rays(simd, &plain.rays).map(Vector::widen);
-        let (points, ng, ns, uv, way) = match plain.are_on_spheres {
-            true => on_spheres(simd, world, plain, [origin, direction], wants_uvs),
-            false => on_triangles(simd, world, plain, wants_uvs),
+        let [origin, direction] = gather_rays(simd, &bare.rays).map(Vector::widen);
+        let (points, ng, ns, uv, way) = match bare.are_on_spheres {
+            true => on_spheres(simd, world, bare, [origin, direction], wants_uvs),
+            false => on_triangles(simd, world, bare, wants_uvs),
         };
         let wo = -direction.normalize();
         let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
@@ -82,7 +82,7 @@ impl<S: Simd> Surfaces<f32x8<S>> {
 
     /// Leaves them to AOVs, but for the albedo.
     #[inline(always)]
-    pub(super) fn leave(&self, first: &mut FirstSurfaceColumns) {
+    pub(in crate::integrator) fn leave(&self, first: &mut FirstSurfaceColumns) {
         first.position = store_f64(self.points.position);
         first.ng = store(Vector::<f32x8<S>>::narrow(self.ng));
         (first.ns, first.wo) = (store(self.ns), store(self.wo));
@@ -101,7 +101,7 @@ impl<R: Real> Surfaces<R> {
 
     /// Whether directions lead through the surfaces: the smooth ones, where meshes stand for those.
     #[inline(always)]
-    pub(super) fn cross(&self, wi: Vector<R>) -> R::Mask {
+    pub(in crate::integrator) fn cross(&self, wi: Vector<R>) -> R::Mask {
         let cos = self.ng.dot(wi.widen());
         let mut is_outside = cos.gt(cos.like(0.0));
         if let Some(lift) = &self.lift {
@@ -114,25 +114,12 @@ impl<R: Real> Surfaces<R> {
 
 /// The points of hits on triangles of meshes.
 #[inline(always)]
-fn on_triangles<S: Simd>(simd: S, world: &World, plain: &PlainHits<'_>, wants_uvs: bool) -> Shapes<S> {
-    let hits = &plain.hits;
-    let u = f32x8::load_array(simd, by_lane!(lane => hits[lane].u));
-    let v = f32x8::load_array(simd, by_lane!(lane => hits[lane].v));
-    let Some(first) = plain::mesh(world, hits[0]) else { return nowhere(simd) };
-    if plain.are_on_one() {
-        return at(&first.triangle(hits[0].primitive as usize).splat(simd), u, v);
-    }
-    let meshes = by_lane!(lane => plain::mesh(world, hits[lane]).unwrap_or(first));
-    let indices = by_lane!(lane => hits[lane].primitive);
-    at(&gather_triangles(simd, &meshes, &indices, wants_uvs), u, v)
-}
-
-/// The points on triangles.
-#[inline(always)]
-fn at<S: Simd>(triangles: &Triangles<f32x8<S>>, u: f32x8<S>, v: f32x8<S>) -> Shapes<S> {
-    let at = triangles.points(u, v);
-    let lift = triangles.are_lifted.any().then_some(at.lift);
-    (at.points, at.ng, at.ns, Some(at.uv), lift)
+fn on_triangles<S: Simd>(simd: S, world: &World, bare: &BareHits<'_>, wants_uvs: bool) -> Shapes<S> {
+    let hits = &bare.hits;
+    let Some(first) = bare_hits::mesh(world, hits[0]) else { return nowhere(simd) };
+    let meshes = by_lane!(lane => bare_hits::mesh(world, hits[lane]).unwrap_or(first));
+    let at = points_on_meshes(simd, &meshes, hits, &[None; LANES], wants_uvs);
+    (at.points, at.ng, at.ns, Some(at.uv), meshes.iter().any(|mesh| mesh.is_lifted).then_some(at.lift))
 }
 
 /// No points, of no hits.
@@ -147,14 +134,14 @@ fn nowhere<S: Simd>(simd: S) -> Shapes<S> {
 fn on_spheres<S: Simd>(
     simd: S,
     world: &World,
-    plain: &PlainHits<'_>,
+    bare: &BareHits<'_>,
     [origin, direction]: [Vector<f64x8<S>>; 2],
     wants_uvs: bool,
 ) -> Shapes<S> {
-    let hits = &plain.hits;
+    let hits = &bare.hits;
     let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
     let near = origin + direction * Real::widen(t);
-    let (center, radius, flip) = if plain.are_on_one() {
+    let (center, radius, flip) = if bare.are_on_one() {
         let (center, radius, flip) = sphere_row(world, hits[0]);
         let like = f64x8::splat(simd, flip);
         (Vector::splat(like, center.map(f64::from)), f64x8::splat(simd, f64::from(radius)), like)
@@ -181,7 +168,7 @@ fn sphere_uvs<S: Simd>(
     normals: Vector<f32x8<S>>,
 ) -> [f32x8<S>; 2] {
     let normals = scatter(normals);
-    let uvs = by_lane!(lane => match plain::sphere(world, hits[lane]) {
+    let uvs = by_lane!(lane => match bare_hits::sphere(world, hits[lane]) {
         Some((_, binding)) => binding.uv(normals[lane].into()),
         None => Vec2::ZERO,
     });
@@ -194,7 +181,7 @@ fn sphere_uvs<S: Simd>(
 /// The centre and the radius of a sphere, and −1 where its outside is the side of the centre, otherwise 1.
 #[inline(always)]
 fn sphere_row(world: &World, hit: &Hit) -> ([f32; 3], f32, f64) {
-    match plain::sphere(world, hit) {
+    match bare_hits::sphere(world, hit) {
         Some((sphere, binding)) => (sphere.center, sphere.radius, if binding.flip { -1.0 } else { 1.0 }),
         None => ([0.0; 3], 1.0, 1.0),
     }

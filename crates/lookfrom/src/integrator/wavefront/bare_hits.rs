@@ -1,4 +1,4 @@
-//! Eight plain hits (see [`crate::world::Plain`]) side by side.
+//! Eight hits on bare surfaces ([`World::bare_surface`](crate::world::World::bare_surface)) side by side.
 
 use lookfrom_bvh::{Hit, Ray, Sphere};
 
@@ -6,18 +6,18 @@ use crate::core::lanes::LANES;
 use crate::primitive::{Mesh, Primitives, SphereBinding};
 use crate::world::World;
 
-/// Eight plain hits on one kind of shape.
-pub(in crate::integrator) struct PlainHits<'a> {
+/// Eight hits on bare surfaces of one kind of shape.
+pub(in crate::integrator) struct BareHits<'a> {
     pub(in crate::integrator) rays: [&'a Ray; LANES],
     pub(in crate::integrator) hits: [&'a Hit; LANES],
     /// Whether they are on spheres, not on triangles.
     pub(in crate::integrator) are_on_spheres: bool,
 }
 
-impl PlainHits<'_> {
+impl BareHits<'_> {
     /// Whether all are on one primitive.
     #[inline(always)]
-    pub(super) fn are_on_one(&self) -> bool {
+    pub(in crate::integrator) fn are_on_one(&self) -> bool {
         let (first, mut is_one, mut lane) = (self.hits[0], true, 1);
         while lane < LANES {
             let hit = self.hits[lane];
@@ -30,7 +30,7 @@ impl PlainHits<'_> {
 
 /// The mesh of a hit on a triangle.
 #[inline(always)]
-pub(super) fn mesh<'a>(world: &'a World, hit: &Hit) -> Option<&'a Mesh> {
+pub(in crate::integrator) fn mesh<'a>(world: &'a World, hit: &Hit) -> Option<&'a Mesh> {
     match &world.primitives[hit.geometry as usize] {
         Primitives::Mesh(mesh) => Some(mesh),
         _ => None,
@@ -39,7 +39,10 @@ pub(super) fn mesh<'a>(world: &'a World, hit: &Hit) -> Option<&'a Mesh> {
 
 /// The sphere of a hit on one.
 #[inline(always)]
-pub(super) fn sphere<'a>(world: &'a World, hit: &Hit) -> Option<(&'a Sphere, &'a SphereBinding)> {
+pub(in crate::integrator) fn sphere<'a>(
+    world: &'a World,
+    hit: &Hit,
+) -> Option<(&'a Sphere, &'a SphereBinding)> {
     let Primitives::Spheres(spheres) = &world.primitives[hit.geometry as usize] else { return None };
     let primitive = hit.primitive as usize;
     let binding = &spheres.bindings[spheres.binding_of[primitive] as usize];

@@ -1,0 +1,87 @@
+//! Rays that leave the vertices of paths.
+
+use glam::Vec3;
+use lookfrom_bvh::{OriginPrimitive, Ray};
+
+use crate::core::spectrum::Spectrum;
+use crate::integrator::{Path, Shadow, Term};
+use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
+use crate::world::World;
+
+/// A path at a vertex, as the rays that leave it need it.
+#[derive(Clone, Copy)]
+pub(in crate::integrator) struct Departure<'a> {
+    pub(in crate::integrator) path: &'a Path,
+    /// The primitive there.
+    pub(in crate::integrator) origin_primitive: OriginPrimitive,
+    pub(in crate::integrator) boundary: Boundary<'a>,
+}
+
+/// What a ray that leaves through a surface gets into.
+#[derive(Clone, Copy)]
+pub(in crate::integrator) enum Boundary<'a> {
+    /// What the surface separates.
+    Surface(&'a SurfaceInteraction),
+    /// The body of a material, or out of it where the path has met it from inside.
+    Body {
+        /// Index into the world's materials.
+        material: u32,
+        /// Whether the path has met the outside.
+        front: bool,
+    },
+    /// What the path was in.
+    None,
+}
+
+impl Departure<'_> {
+    /// Whether a ray in a direction leaves through the surface of a body.
+    #[inline]
+    pub(in crate::integrator) fn crosses(&self, wi: Vec3) -> bool {
+        matches!(self.boundary, Boundary::Surface(surface) if surface.crosses(wi))
+    }
+
+    /// The direction back along the path, where the surface is at hand.
+    #[inline(always)]
+    pub(in crate::integrator) fn wo(&self) -> Vec3 {
+        match self.boundary {
+            Boundary::Surface(surface) => surface.wo,
+            _ => Vec3::ZERO,
+        }
+    }
+
+    /// The media around a ray that leaves in a direction, through the surface or not.
+    #[inline(always)]
+    pub(in crate::integrator) fn interior(&self, world: &World, wi: Vec3, passes: bool) -> InteriorStack {
+        let interior = self.path.interior;
+        match self.boundary {
+            Boundary::Surface(surface) => interior.leaving(&world.materials, surface, wi, passes),
+            Boundary::Body { material, front } if passes => match front {
+                true => interior.entered(material),
+                false => interior.left(material),
+            },
+            Boundary::Body { .. } | Boundary::None => interior,
+        }
+    }
+
+    /// The shadow ray to a light, in the media around it.
+    #[inline(always)]
+    pub(in crate::integrator) fn shadow(
+        &self,
+        ray: Ray,
+        (light, contribution): (u32, Spectrum),
+        interior: InteriorStack,
+        last_scattering: u32,
+    ) -> Shadow {
+        Shadow {
+            ray,
+            origin_primitive: self.origin_primitive,
+            contribution,
+            slot: self.path.slot,
+            address: self.path.address,
+            term: Term::Light(light),
+            interior,
+            last_scattering,
+        }
+    }
+}

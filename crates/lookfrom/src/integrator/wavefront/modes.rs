@@ -1,0 +1,78 @@
+//! The spectral modes of paths side by side.
+
+use lookfrom_simd::{Simd, f32x8, prelude::*};
+
+use crate::core::lanes::{LANES, by_lane, splat_spectrum};
+use crate::core::spectrum::Spectrum;
+use crate::integrator::{Path, SpectralModes};
+use crate::light::EmissionSpectrum;
+use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
+use crate::world::World;
+
+/// The spectral modes of eight paths.
+pub(in crate::integrator) struct Modes<'a> {
+    by_lane: [&'a SpectralMode; LANES],
+    /// Whether all are RGB: the modes of a picture are of one kind.
+    are_rgb: bool,
+}
+
+impl<'a> Modes<'a> {
+    #[inline(always)]
+    pub(in crate::integrator) fn of(paths: &[&Path; LANES], modes: &'a SpectralModes) -> Self {
+        let first = &modes[paths[0].slot as usize];
+        if matches!(first, SpectralMode::Rgb) {
+            return Self { by_lane: [first; LANES], are_rgb: true };
+        }
+        let by_lane = by_lane!(lane => &modes[paths[lane].slot as usize]);
+        Self { by_lane, are_rgb: false }
+    }
+
+    /// The mode of one path.
+    pub(in crate::integrator) fn of_one(mode: &'a SpectralMode) -> Self {
+        Self { by_lane: [mode; LANES], are_rgb: matches!(mode, SpectralMode::Rgb) }
+    }
+
+    /// The modes by lane.
+    #[inline(always)]
+    pub(in crate::integrator) fn all(&self) -> &[&'a SpectralMode; LANES] {
+        &self.by_lane
+    }
+
+    /// Whether all are RGB.
+    #[inline(always)]
+    pub(in crate::integrator) fn are_rgb(&self) -> bool {
+        self.are_rgb
+    }
+
+    /// The mode of a lane.
+    #[inline(always)]
+    pub(in crate::integrator) fn lane(&self, lane: usize) -> &'a SpectralMode {
+        self.by_lane[lane]
+    }
+
+    /// The spectra of a colour that does not vary.
+    #[inline(always)]
+    pub(in crate::integrator) fn constant<S: Simd>(
+        &self,
+        simd: S,
+        world: &World,
+        color: &SpectrumTexture,
+    ) -> Spectrum<f32x8<S>> {
+        let textures = &world.textures;
+        match self.are_rgb {
+            true => splat_spectrum(simd, textures.spectrum(color, &TexturePoint::NOWHERE, self.by_lane[0])),
+            false => textures.constants(simd, &[color; LANES], &self.by_lane),
+        }
+    }
+
+    /// The emission of a light whose colour does not vary.
+    #[inline(always)]
+    pub(in crate::integrator) fn emission<S: Simd>(
+        &self,
+        simd: S,
+        world: &World,
+        light: &EmissionSpectrum,
+    ) -> Spectrum<f32x8<S>> {
+        self.constant(simd, world, &light.color) * f32x8::splat(simd, light.scale)
+    }
+}

@@ -1,0 +1,117 @@
+//! What follows from shaded hits, path by path: events, light, shadow rays and the branches of the tree.
+
+use lookfrom_bvh::Hit;
+
+use super::Whitted;
+use super::shaded::Shaded;
+use crate::integrator::wavefront::{Boundary, Departure};
+use crate::integrator::{Branch, Event, Path, Probe, StepOutput, Term};
+use crate::world::World;
+
+/// A path, absorbed by media on its way, at what it has hit.
+pub(super) struct Vertex<'a> {
+    pub(super) departure: Departure<'a>,
+    pub(super) hit: &'a Hit,
+}
+
+impl Shaded {
+    /// Tells the probe of the surface and adds its emission, where it may have any.
+    #[cold]
+    fn tell_surface<P: Probe>(
+        &self,
+        world: &World,
+        (vertex, lane): (&Vertex<'_>, usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Vertex { departure: Departure { path, boundary, .. }, hit } = *vertex;
+        let surface = match boundary {
+            Boundary::Surface(surface) => Some(surface),
+            _ => None,
+        };
+        output.probe.notice_some(|| {
+            self.told.as_ref().map(|told| Event::Surface {
+                address: path.address,
+                surface: Box::new(surface.copied().unwrap_or_else(|| world.surface(&path.ray, hit))),
+                coefficients: Some(Box::new(told.coefficients[lane])),
+            })
+        });
+        if let Some(surface) = surface {
+            let mode = output.mode(path);
+            let emits = world.emitted(surface, &mode) + world.unlit(surface, &mode).unwrap_or_default();
+            output.add(path, Term::Emission, path.beta * emits);
+        }
+    }
+
+    /// Adds the light of the surface in a lane to the sample of its path, and the paths that go on in the tree, if there is one.
+    #[inline(always)]
+    pub(super) fn finish<P: Probe>(
+        &self,
+        world: &World,
+        (vertex, lane): (&Vertex<'_>, usize),
+        tree: Option<&Whitted>,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Departure { path, boundary, .. } = vertex.departure;
+        if P::LISTENS || matches!(boundary, Boundary::Surface(_)) {
+            self.tell_surface(world, (vertex, lane), output);
+        }
+        output.add(path, Term::Ambient, self.ambient[lane]);
+        if P::LISTENS
+            && let Some(told) = &self.told
+        {
+            told.events[lane].iter().for_each(|event| output.probe.notice(|| event.clone()));
+        }
+        self.add_lights(world, (vertex, lane), output);
+        if let Some(tree) = tree {
+            for branch in [Branch::Mirrored, Branch::Refracted] {
+                self.grow(world, (vertex, lane), (tree, branch), output);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_lights<P: Probe>(
+        &self,
+        world: &World,
+        (vertex, lane): (&Vertex<'_>, usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let departure = &vertex.departure;
+        let interior = departure.interior(world, departure.wo(), false);
+        for from in self.lights.iter().filter(|from| from.lit & 1 << lane != 0) {
+            let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
+            let light = (from.light, from.contribution[lane]);
+            output.queues.shadows.push(departure.shadow(from.rays[lane], light, interior, last_scattering));
+        }
+    }
+
+    #[inline(always)]
+    fn grow<P: Probe>(
+        &self,
+        world: &World,
+        (vertex, lane): (&Vertex<'_>, usize),
+        (tree, branch): (&Whitted, Branch),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Departure { path, .. } = vertex.departure;
+        let crosses = branch == Branch::Refracted;
+        let rays = &self.branches[usize::from(crosses)];
+        if rays.exist & 1 << lane == 0 {
+            return;
+        }
+        let (ray, beta) = (rays.rays[lane], rays.beta[lane]);
+        if tree.cut(path, beta).is_none() {
+            let wi = if crosses { ray.direction.into() } else { vertex.departure.wo() };
+            let light_path = output.scattered(path, [true, false, crosses]);
+            output.queues.paths.push(Path {
+                ray,
+                beta,
+                depth: path.depth + 1,
+                address: path.address << 1 | u64::from(crosses),
+                interior: vertex.departure.interior(world, wi, crosses),
+                light_path,
+                ..*path
+            });
+        }
+    }
+}
