@@ -24,6 +24,8 @@ mod dimension {
 pub(crate) struct DirectLighting;
 
 impl Integrator for DirectLighting {
+    type State = ();
+
     fn name(&self) -> &'static str {
         "direct_lighting"
     }
@@ -45,7 +47,7 @@ impl Integrator for DirectLighting {
         // Holes, by alpha: the path goes on as if there were nothing.
         let surface = world.surface(&path.ray, hit);
         if path.goes_through(world, &surface, stream.presence(world, &surface)) {
-            return output.queues.paths.push(path.passed(&surface));
+            return output.paths.push(path.passed(&surface));
         }
 
         // Light of the surface's own.
@@ -63,7 +65,7 @@ impl Integrator for DirectLighting {
         let mode = &mut output.queues.modes[path.slot as usize];
         let arrival = ShadingContext { mode, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(shading) = world.shading(&surface, arrival) else {
-            return output.queues.paths.push(path.passed_interface(world, &surface));
+            return output.paths.push(path.passed_interface(world, &surface));
         };
         output.leave_first_surface(world, &path, &surface, || None);
 

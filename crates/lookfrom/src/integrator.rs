@@ -21,13 +21,12 @@ mod wavefront;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::Background;
 
 use crate::core::hash;
 use crate::core::sampler::PixelSampler;
 use crate::core::spectrum::Spectrum;
-use crate::light::LightSampleContext;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -45,7 +44,7 @@ pub use occlusion::AmbientOcclusion;
 pub use path::{LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
-use scratch::Scratch;
+pub(crate) use scratch::Scratch;
 use shadow::ShadowLight;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use shadow::{Shadow, ShadowTransparency, Shadows};
@@ -59,10 +58,13 @@ pub use whitted::Whitted;
 /// A step is usually that of `examples/integrator.rs`: absorb on the way ([`StepOutput::absorbed`]), show the surroundings
 /// where nothing was hit ([`StepOutput::add_surroundings`]), pass what is not there ([`Path::goes_through`],
 /// [`Path::passed`]), leave the surface to AOVs ([`StepOutput::leave_first_surface`]), add light ([`StepOutput::add`],
-/// [`StepOutput::cast_shadow`]), and push further paths to [`Queues::paths`].
+/// [`StepOutput::cast_shadow`]), and push further paths to [`StepOutput::paths`].
 pub trait Integrator: std::fmt::Debug + Send + Sync {
     /// True if the integrator computes light, to which the spectral mode and the sensor apply; false for false colours.
     const IS_LIGHT: bool = true;
+
+    /// The state that the integrator keeps of a path beside its throughput: weights, densities. `()` for none.
+    type State: PathState;
 
     /// A name of one word.
     fn name(&self) -> &'static str;
@@ -77,9 +79,9 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
         &self,
         world: &World,
         stream: &SampleStream,
-        path: &Path,
+        path: &Path<Self::State>,
         hit: &Hit,
-        output: &mut StepOutput<'_, P>,
+        output: &mut StepOutput<'_, P, Self::State>,
     );
 
     /// [`Integrator::step`] for all paths of a batch and their hits. The result for one path does not depend on the
@@ -88,20 +90,30 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
         &self,
         world: &World,
         streams: &BatchStreams<'_>,
-        paths: &[Path],
+        paths: &[Path<Self::State>],
         hits: &[Hit],
-        output: &mut StepOutput<'_, P>,
+        output: &mut StepOutput<'_, P, Self::State>,
     ) {
         for (path, hit) in paths.iter().zip(hits) {
-            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            output.notice_hit(path, hit);
             self.step(world, &streams.of(path), path, hit, output);
         }
     }
 }
 
+/// An integrator's own state of a path.
+pub trait PathState: Copy + Default + std::fmt::Debug + Send + Sync + 'static {
+    /// The state as the inspector shows it.
+    fn previous(&self) -> PreviousVertex {
+        PreviousVertex::default()
+    }
+}
+
+impl PathState for () {}
+
 /// A ray, its throughput, and the state kept of the path so far.
 #[derive(Clone, Copy, Debug)]
-pub struct Path {
+pub struct Path<S = ()> {
     /// In render space; not of unit length: from the camera, `t = 1` is the image plane.
     pub ray: Ray,
     /// The path throughput: the factor of light along this ray in the sample.
@@ -115,27 +127,41 @@ pub struct Path {
     pub address: u64,
     /// The media that the ray is inside of.
     pub interior: InteriorStack,
-    /// The surface that the ray left.
-    pub previous: PreviousVertex,
+    /// The primitive that the ray left.
+    pub origin_primitive: OriginPrimitive,
+    /// Whether any bounce so far was non-specular.
+    pub blurred: bool,
     /// State in the automaton of the picture's light-path expressions.
     pub light_path: LightPathState,
+    /// What the integrator keeps of it.
+    pub state: S,
 }
 
 impl Path {
     /// The address of the root of the tree.
     pub const ROOT: u64 = 1;
+}
 
-    /// The light sample context of the previous vertex.
-    pub fn light_context(&self) -> LightSampleContext {
-        LightSampleContext { point: self.previous.point.as_dvec3(), n: self.previous.n }
+impl<S: PathState> Path<S> {
+    /// Whether the ray comes straight from the camera.
+    pub fn is_root(&self) -> bool {
+        self.address == Path::ROOT
+    }
+
+    /// The path as the inspector shows it.
+    fn told(&self) -> Path<PreviousVertex> {
+        let &Self { ray, beta, slot, depth, address, interior, origin_primitive, blurred, light_path, state } =
+            self;
+        let state = state.previous();
+        Path { ray, beta, slot, depth, address, interior, origin_primitive, blurred, light_path, state }
     }
 
     /// Whether the path passes the surface as if it were not there: by the alpha test, decided by `u ∈ [0, 1)` where it
     /// is stochastic ([`SampleStream::presence`]), because it hit the back of a single-sided surface on its way from the camera, or, elsewhere, an open
     /// front of one.
     pub fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
-        let is_back = surface.single_sided && !surface.front && !self.previous.blurred;
-        let is_open = world.is_open_front(surface) && self.previous.blurred;
+        let is_back = surface.single_sided && !surface.front && !self.blurred;
+        let is_open = world.is_open_front(surface) && self.blurred;
         let u = if is_open { u / World::COVERAGE_OF_OPEN_FRONTS } else { u };
         is_back || !world.passes_alpha_test(surface, u)
     }
@@ -162,8 +188,8 @@ impl Path {
     pub fn passed(&self, surface: &SurfaceInteraction) -> Self {
         let direction = Vec3::from_array(self.ray.direction);
         let ray = Ray::new(surface.origin(direction), self.ray.direction);
-        let previous = PreviousVertex { origin_primitive: surface.origin_primitive, ..self.previous };
-        Self { ray, address: self.address + 1, previous, ..*self }
+        let origin_primitive = surface.origin_primitive;
+        Self { ray, address: self.address + 1, origin_primitive, ..*self }
     }
 
     /// This path continued behind a surface that is only an interface between media, or an empty one: in the medium there.
@@ -220,9 +246,7 @@ pub struct Queues {
     pub modes: SpectralModes,
     /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
-    /// Paths to be traced next.
-    pub paths: Vec<Path>,
-    /// Shadow rays, to be traced before them.
+    /// Shadow rays.
     pub shadows: Shadows,
     /// The surfaces that camera rays met, as far as steps left them.
     pub first_surfaces: FirstSurfaces,
@@ -245,7 +269,6 @@ impl Queues {
         self.modes.start(modes);
         self.alpha.clear();
         self.alpha.resize(count, Alpha::Opaque);
-        self.paths.clear();
         self.shadows.clear();
         self.layers.clear();
         self.first_surfaces.start(false);
@@ -267,9 +290,11 @@ impl Queues {
 
 /// The output of a step, and the probe that listens.
 #[derive(Debug)]
-pub struct StepOutput<'a, P: Probe> {
+pub struct StepOutput<'a, P: Probe, S = ()> {
     /// The samples, to which steps add.
     pub queues: Queues,
+    /// Paths to be traced next, after the shadow rays.
+    pub paths: Vec<Path<S>>,
     /// The background that camera rays see where they hit nothing.
     pub background: Background,
     /// The light-path expressions of layers, if there are any. Then steps are not computed side by side.
@@ -278,14 +303,19 @@ pub struct StepOutput<'a, P: Probe> {
     pub probe: &'a mut P,
 }
 
-impl<P: Probe> StepOutput<'_, P> {
+impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
+    /// Tells the probe of a path and its hit.
+    fn notice_hit(&mut self, path: &Path<S>, hit: &Hit) {
+        self.probe.notice(|| Event::Hit { path: path.told(), hit: *hit });
+    }
+
     /// The spectral mode of a path.
-    pub fn mode(&self, path: &Path) -> SpectralMode {
+    pub fn mode(&self, path: &Path<S>) -> SpectralMode {
         self.queues.modes[path.slot as usize]
     }
 
     /// A path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to infinity.
-    pub fn absorbed(&mut self, world: &World, path: &Path, hit: &Hit) -> Path {
+    pub fn absorbed(&mut self, world: &World, path: &Path<S>, hit: &Hit) -> Path<S> {
         let mode = self.mode(path);
         let absorbed = path.absorbed(world, hit, &mode);
         let length = || path.length_to(hit);
@@ -303,7 +333,7 @@ impl<P: Probe> StepOutput<'_, P> {
 
     /// Adds light to a path's sample.
     #[inline]
-    pub fn add(&mut self, path: &Path, term: Term, value: Spectrum) {
+    pub fn add(&mut self, path: &Path<S>, term: Term, value: Spectrum) {
         self.add_to(path.slot, path.address, term, value);
         if let Some(light_paths) = self.light_paths {
             light_paths.add(path.light_path, term, value, self.queues.layers_of(path.slot, light_paths));
@@ -330,12 +360,12 @@ impl<P: Probe> StepOutput<'_, P> {
     pub fn leave_first_surface(
         &mut self,
         world: &World,
-        path: &Path,
+        path: &Path<S>,
         surface: &SurfaceInteraction,
         albedo: impl FnOnce() -> Option<[f32; 3]>,
     ) {
         let first_surfaces = &mut self.queues.first_surfaces;
-        if first_surfaces.are_wanted() && path.address == Path::ROOT && world.opacity(surface) == 1.0 {
+        if first_surfaces.are_wanted() && path.is_root() && world.opacity(surface) == 1.0 {
             first_surfaces.push(path.slot, &FirstSurface::of(world, surface, albedo()));
         }
     }
@@ -344,7 +374,7 @@ impl<P: Probe> StepOutput<'_, P> {
     #[inline(always)]
     fn scattered(
         &self,
-        path: &Path,
+        path: &Path<S>,
         [is_specular, is_diffuse, is_transmission]: [bool; 3],
     ) -> LightPathState {
         match self.light_paths {
@@ -361,7 +391,7 @@ impl<P: Probe> StepOutput<'_, P> {
     #[inline(always)]
     fn last_scattering(
         &mut self,
-        path: &Path,
+        path: &Path<S>,
         is_transmission: bool,
         diffuse: impl FnOnce() -> Spectrum,
     ) -> u32 {

@@ -33,8 +33,8 @@ use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
 use crate::film::{FEATURE_SAMPLES, FilmTile, FirstHitSums, SampleSums};
 use crate::integrator::{
-    BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, PreviousVertex, Probe, Queues,
-    StepOutput, resolve_shadows,
+    BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, Probe, Queues, Scratch, StepOutput,
+    resolve_shadows,
 };
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
@@ -132,7 +132,8 @@ struct Batch {
     ids: Vec<SampleId>,
     start: Start,
     queues: Queues,
-    paths: Vec<Path>,
+    /// Paths under way, and those that are next.
+    paths: Scratch,
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
@@ -297,10 +298,13 @@ impl Renderer {
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
         let Batch { start, queues, paths, rays, origin_primitives, hits, first_hits, .. } = batch;
+        let mut both = paths.take::<[Vec<Path<I::State>>; 2]>();
+        let [mut under_way, next] = std::mem::take(&mut *both);
         let light_paths = self.light_paths.as_deref();
         let light_path = light_paths.map_or_else(LightPathState::default, LightPaths::start);
         let mut output = StepOutput {
             queues: std::mem::take(queues),
+            paths: next,
             background: self.image().background,
             light_paths,
             probe,
@@ -312,47 +316,51 @@ impl Renderer {
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
         output.queues.first_surfaces.start(first_hits.are_wanted());
-        let Queues { paths: started, modes, .. } = &mut output.queues;
-        started.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
+        let modes = &output.queues.modes;
+        output.paths.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             ray: *ray,
             beta: modes[slot].one(),
             slot: slot as u32,
             depth: 0,
             address: Path::ROOT,
             interior: self.interior,
-            previous: PreviousVertex::default(),
+            origin_primitive: OriginPrimitive::NONE,
+            blurred: false,
             light_path,
+            state: I::State::default(),
         }));
 
         let streams = BatchStreams { sampler: &self.sampler, ids };
         let mut are_from_camera = true;
-        while !output.queues.paths.is_empty() {
+        while !output.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
-            std::mem::swap(paths, &mut output.queues.paths);
-            output.queues.paths.clear();
+            std::mem::swap(&mut under_way, &mut output.paths);
+            output.paths.clear();
             // All are replaced.
-            hits.resize(paths.len(), Hit::MISS);
+            hits.resize(under_way.len(), Hit::MISS);
             if are_from_camera {
                 self.world.bvh.closest_hits(&start.rays, hits);
             } else {
                 rays.clear();
-                rays.extend(paths.iter().map(|path| path.ray));
+                rays.extend(under_way.iter().map(|path| path.ray));
                 origin_primitives.clear();
-                origin_primitives.extend(paths.iter().map(|path| path.previous.origin_primitive));
+                origin_primitives.extend(under_way.iter().map(|path| path.origin_primitive));
                 self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
             }
             are_from_camera = false;
-            first_hits.note(paths, hits);
+            first_hits.note(&under_way, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
-            integrator.step_all(&self.world, &streams, paths, hits, &mut output);
+            integrator.step_all(&self.world, &streams, &under_way, hits, &mut output);
 
             // Occluded: trace shadow rays and add unoccluded light.
             rays_traced.shadow += resolve_shadows(&self.world, integrator.shadow_transparency(), &mut output);
-            rays_traced.secondary += output.queues.paths.len() as u64;
+            rays_traced.secondary += output.paths.len() as u64;
         }
 
         *queues = output.queues;
+        *both = [under_way, output.paths];
+        paths.put(both);
         rays_traced
     }
 

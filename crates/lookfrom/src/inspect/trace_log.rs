@@ -15,7 +15,7 @@ use super::microfacets::MicrofacetReport;
 use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
 use super::scatter::FoundReport;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Branch, Cut, Event, Path, Term};
+use crate::integrator::{Branch, Cut, Event, Path, PreviousVertex, Term};
 use crate::render::Renderer;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
@@ -39,7 +39,7 @@ pub(super) struct TraceLogBuilder<'a> {
     /// The BSDF at the hit of each ray of a path, and the direction to the viewer.
     shadings: BTreeMap<u64, (Shading, Vec3)>,
     /// Each ray, and the surface that it hit.
-    hits: BTreeMap<u64, (Path, Option<SurfaceInteraction>)>,
+    hits: BTreeMap<u64, (Path<PreviousVertex>, Option<SurfaceInteraction>)>,
 }
 
 /// The finished trace log.

@@ -6,7 +6,7 @@
 use lookfrom_bvh::Hit;
 use lookfrom_scene::settings::Background;
 
-use super::{Path, Probe, StepOutput, Term};
+use super::{Path, PathState, Probe, StepOutput, Term};
 use crate::core::spectrum::Spectrum;
 use crate::world::World;
 
@@ -22,11 +22,11 @@ pub enum Alpha {
     Shadow,
 }
 
-impl<P: Probe> StepOutput<'_, P> {
+impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// For a path that hit nothing: whether it shows the view's own background instead of the environment, and so ends.
     /// Its sample is then transparent.
     #[inline]
-    pub fn shows_background(&mut self, path: &Path) -> bool {
+    pub fn shows_background(&mut self, path: &Path<S>) -> bool {
         let shows = path.depth == 0 && self.background != Background::Environment;
         if shows {
             self.queues.alpha[path.slot as usize] = Alpha::Transparent;
@@ -35,7 +35,7 @@ impl<P: Probe> StepOutput<'_, P> {
     }
 
     /// Adds the light of the environments to a path that hit nothing, unless it shows the view's own background.
-    pub fn add_surroundings(&mut self, world: &World, path: &Path) {
+    pub fn add_surroundings(&mut self, world: &World, path: &Path<S>) {
         if !self.shows_background(path) {
             self.add(
                 path,
@@ -50,7 +50,7 @@ impl<P: Probe> StepOutput<'_, P> {
     pub(super) fn add_surroundings_behind_medium(
         &mut self,
         world: &World,
-        path: &Path,
+        path: &Path<S>,
         even_sky: Option<Spectrum>,
     ) {
         match even_sky {

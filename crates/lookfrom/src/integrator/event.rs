@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Path, Shadow};
+use crate::integrator::{Path, PreviousVertex, Shadow};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -61,7 +61,7 @@ pub enum Event {
     /// A path was traced.
     Hit {
         /// The path.
-        path: Path,
+        path: Path<PreviousVertex>,
         /// Its hit, or a miss.
         hit: Hit,
     },

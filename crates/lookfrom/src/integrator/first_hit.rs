@@ -31,6 +31,8 @@ pub enum FirstHit {
 impl Integrator for FirstHit {
     const IS_LIGHT: bool = false;
 
+    type State = ();
+
     fn name(&self) -> &'static str {
         match self {
             Self::Normals => "normals",
@@ -55,7 +57,7 @@ impl Integrator for FirstHit {
         let surface = world.surface(&path.ray, hit);
         // Surfaces whose alpha is below one half are not shown.
         if path.goes_through(world, &surface, 0.5) {
-            output.queues.paths.push(path.passed(&surface));
+            output.paths.push(path.passed(&surface));
             return;
         }
         output.leave_first_surface(world, path, &surface, || None);

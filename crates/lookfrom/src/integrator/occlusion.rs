@@ -18,6 +18,8 @@ pub struct AmbientOcclusion {
 }
 
 impl Integrator for AmbientOcclusion {
+    type State = ();
+
     fn name(&self) -> &'static str {
         "ambient_occlusion"
     }
@@ -37,7 +39,7 @@ impl Integrator for AmbientOcclusion {
         let surface = world.surface(&path.ray, hit);
         let [presence, _] = stream.two(0);
         if path.goes_through(world, &surface, presence) || world.is_interface(&surface) {
-            output.queues.paths.push(path.passed(&surface));
+            output.paths.push(path.passed(&surface));
             return;
         }
         output.leave_first_surface(world, path, &surface, || None);

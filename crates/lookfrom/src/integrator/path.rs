@@ -7,15 +7,17 @@ mod catcher;
 mod lanes;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, OriginPrimitive};
+use lookfrom_bvh::Hit;
 
 use lanes::Waiting;
 
 use crate::core::lanes::are_shaded_together;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::HitBatch;
-use crate::integrator::{BatchStreams, Event, Integrator, Path, Probe, SampleStream, StepOutput, Term};
+use crate::integrator::{
+    self, BatchStreams, Event, Integrator, PathState, Probe, SampleStream, Term, wavefront,
+};
+use crate::light::LightSampleContext;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Shading, ShadingContext};
@@ -69,13 +71,11 @@ pub struct PathTracer {
     pub light_sampling: LightSampling,
 }
 
-/// The surface that a path left.
+/// The vertex that a path left, as path tracing weights what it finds from there.
 #[derive(Clone, Copy, Debug)]
 pub struct PreviousVertex {
     /// Solid angle density of the sampled direction; infinite after a specular bounce, or from the camera.
     pub pdf: f32,
-    /// The primitive there.
-    pub origin_primitive: OriginPrimitive,
     /// Its position, in render space.
     pub point: Vec3,
     /// Shading normal there.
@@ -83,27 +83,37 @@ pub struct PreviousVertex {
     /// Product of η² over the refractions so far: Russian roulette must not end paths whose radiance is only compressed
     /// into a smaller solid angle.
     pub eta_scale: f32,
-    /// Whether any bounce so far was non-specular.
-    pub blurred: bool,
     /// Whether the surface was a shadow catcher, seen by the camera.
     pub is_catcher: bool,
 }
 
 impl Default for PreviousVertex {
     fn default() -> Self {
-        Self {
-            pdf: f32::INFINITY,
-            origin_primitive: OriginPrimitive::NONE,
-            point: Vec3::ZERO,
-            n: Vec3::Z,
-            eta_scale: 1.0,
-            blurred: false,
-            is_catcher: false,
-        }
+        Self { pdf: f32::INFINITY, point: Vec3::ZERO, n: Vec3::Z, eta_scale: 1.0, is_catcher: false }
     }
 }
 
+impl PreviousVertex {
+    /// The light sample context there.
+    pub fn light_context(&self) -> LightSampleContext {
+        LightSampleContext { point: self.point.as_dvec3(), n: self.n }
+    }
+}
+
+impl PathState for PreviousVertex {
+    fn previous(&self) -> PreviousVertex {
+        *self
+    }
+}
+
+type Path = integrator::Path<PreviousVertex>;
+type StepOutput<'a, P> = integrator::StepOutput<'a, P, PreviousVertex>;
+type HitBatch<'a> = wavefront::HitBatch<'a, PreviousVertex>;
+type Departure<'a> = wavefront::Departure<'a, PreviousVertex>;
+
 impl Integrator for PathTracer {
+    type State = PreviousVertex;
+
     fn name(&self) -> &'static str {
         match self.light_sampling {
             LightSampling::MultipleImportance => "path",
@@ -124,7 +134,7 @@ impl Integrator for PathTracer {
         let mut waiting = Waiting::new(in_lanes);
         let batch = HitBatch { world, paths, hits, streams };
         for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
-            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            output.notice_hit(path, hit);
             let in_vacuum = in_lanes && batch.is_in_vacuum(index);
             if in_vacuum && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
@@ -169,7 +179,7 @@ impl PathTracer {
         waiting: &mut Waiting,
         output: &mut StepOutput<'_, P>,
     ) {
-        if path.previous.is_catcher {
+        if path.state.is_catcher {
             if !hit.is_hit() && self.finds_what_it_expects(path) {
                 return;
             }
@@ -178,7 +188,7 @@ impl PathTracer {
 
         // Absorb on the way.
         let mut path = output.absorbed(world, path, hit);
-        path.previous.is_catcher = false;
+        path.state.is_catcher = false;
 
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
@@ -195,7 +205,7 @@ impl PathTracer {
             false => [0.0; 2],
         };
         if path.goes_through(world, &surface, presence) {
-            output.queues.paths.push(path.passed(&surface));
+            output.paths.push(path.passed(&surface));
             return;
         }
 
@@ -216,10 +226,10 @@ impl PathTracer {
         let seed = if world.takes_seed(&surface) { stream.two(dimension::WALK)[0] } else { 0.0 };
         let arrival = ShadingContext { mode, throughput: &mut path.beta, interior: path.interior, u, seed };
         let Some(mut shading) = world.shading(&surface, arrival) else {
-            output.queues.paths.push(path.passed_interface(world, &surface));
+            output.paths.push(path.passed_interface(world, &surface));
             return;
         };
-        if self.regularize && path.previous.blurred {
+        if self.regularize && path.blurred {
             shading.bsdf.regularize();
         }
         output.leave_first_surface(world, &path, &surface, || None);
@@ -240,11 +250,11 @@ impl PathTracer {
         let direction = Vec3::from_array(path.ray.direction).normalize();
         for &index in &world.environments {
             // Some skies do not illuminate: they are only visible to the camera, in mirrors and through glass.
-            if path.previous.blurred && !world.lights[index as usize].illuminates() {
+            if path.blurred && !world.lights[index as usize].illuminates() {
                 continue;
             }
             let radiance = world.sky_of(index, &path.ray, &output.mode(path));
-            let pdf = || world.light_pdf(index, &path.light_context(), direction, None);
+            let pdf = || world.light_pdf(index, &path.state.light_context(), direction, None);
             self.add_found(path, index, radiance, pdf, output);
         }
     }
@@ -261,7 +271,7 @@ impl PathTracer {
         if radiance.is_black() {
             return;
         }
-        let pdf = || world.light_pdf(light, &path.light_context(), -surface.wo, Some(surface));
+        let pdf = || world.light_pdf(light, &path.state.light_context(), -surface.wo, Some(surface));
         self.add_found(path, light, radiance, pdf, output);
     }
 
@@ -290,8 +300,8 @@ impl PathTracer {
     /// The weight of emission that a path hit; `light_pdf` is the density of its direction in light sampling.
     fn weight_of_found(&self, path: &Path, light_pdf: impl FnOnce() -> f32) -> f32 {
         match self.light_sampling {
-            _ if path.previous.pdf.is_infinite() => 1.0,
-            LightSampling::MultipleImportance => power_heuristic(path.previous.pdf, light_pdf()),
+            _ if path.state.pdf.is_infinite() => 1.0,
+            LightSampling::MultipleImportance => power_heuristic(path.state.pdf, light_pdf()),
             // Light sampling has counted it already.
             LightSampling::NextEventEstimation if light_pdf() > 0.0 => 0.0,
             LightSampling::NextEventEstimation | LightSampling::None => 1.0,

@@ -17,6 +17,8 @@ pub struct Raycast {
 }
 
 impl Integrator for Raycast {
+    type State = ();
+
     fn name(&self) -> &'static str {
         "raycast"
     }

@@ -21,7 +21,7 @@ pub struct BatchStreams<'a> {
 impl BatchStreams<'_> {
     /// The random numbers of a path.
     #[inline(always)]
-    pub fn of(&self, path: &Path) -> SampleStream {
+    pub fn of<S>(&self, path: &Path<S>) -> SampleStream {
         let SampleId { pixel, sample } = self.ids[path.slot as usize];
         SampleStream { sampler: self.sampler.of_pixel(pixel), sample, address: path.address }
     }

@@ -12,7 +12,7 @@ use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
 
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Event, Path, Probe, Queues, StepOutput, Term};
+use crate::integrator::{Event, Path, PathState, Probe, Queues, StepOutput, Term};
 use crate::light::{LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -49,7 +49,7 @@ impl Shadow {
     pub const NO_SCATTERING: u32 = u32::MAX;
 }
 
-impl<P: Probe> StepOutput<'_, P> {
+impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// Casts a shadow ray from a surface that `path` has met toward the sample of a light: unless it is blocked, `contribution`
     /// is added to the path's sample, attenuated by the medium and by what the ray passes
     /// ([`Integrator::shadow_transparency`](crate::integrator::Integrator::shadow_transparency)). For light-path expressions
@@ -57,7 +57,7 @@ impl<P: Probe> StepOutput<'_, P> {
     pub fn cast_shadow(
         &mut self,
         world: &World,
-        path: &Path,
+        path: &Path<S>,
         surface: &SurfaceInteraction,
         (light, sample): (u32, &LightSample),
         contribution: Spectrum,
@@ -129,10 +129,10 @@ impl ShadowTransparency {
 }
 
 /// Traces all shadow rays of a batch and adds their contributions, in their order. Returns the number of rays traced.
-pub(crate) fn resolve<P: Probe>(
+pub(crate) fn resolve<P: Probe, S: PathState>(
     world: &World,
     shadow_transparency: ShadowTransparency,
-    output: &mut StepOutput<'_, P>,
+    output: &mut StepOutput<'_, P, S>,
 ) -> u64 {
     let mut queues = std::mem::take(&mut output.queues);
     let anything_passes =

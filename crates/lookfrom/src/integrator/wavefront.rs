@@ -23,9 +23,9 @@ use crate::world::World;
 
 /// A batch of paths and what they have hit.
 #[derive(Clone, Copy)]
-pub(super) struct HitBatch<'a> {
+pub(super) struct HitBatch<'a, S = ()> {
     pub(super) world: &'a World,
     pub(super) streams: &'a BatchStreams<'a>,
-    pub(super) paths: &'a [Path],
+    pub(super) paths: &'a [Path<S>],
     pub(super) hits: &'a [Hit],
 }

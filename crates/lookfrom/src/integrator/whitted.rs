@@ -17,7 +17,7 @@ use crate::core::lanes::{are_shaded_together, shade_together};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, Rounds};
 use crate::integrator::{
-    BatchStreams, Cut, Event, Integrator, Path, Probe, Queues, SampleStream, ShadowTransparency, StepOutput,
+    BatchStreams, Cut, Integrator, Path, Probe, Queues, SampleStream, ShadowTransparency, StepOutput,
 };
 use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
@@ -41,6 +41,8 @@ pub struct Whitted {
 }
 
 impl Integrator for Whitted {
+    type State = ();
+
     fn name(&self) -> &'static str {
         "whitted"
     }
@@ -109,7 +111,7 @@ pub(super) fn step_all<P: Probe>(
     for round in 0..rounds.count() {
         for &index in rounds.paths(round) {
             let (path, hit) = (&paths[index as usize], &hits[index as usize]);
-            output.probe.notice(|| Event::Hit { path: *path, hit: *hit });
+            output.notice_hit(path, hit);
             if !hit.is_hit() {
                 output.add_surroundings_behind_medium(world, path, even_sky);
             } else if let Some(bare) = world.bare_surface(hit).filter(|_| in_lanes) {
@@ -191,9 +193,9 @@ pub(super) fn step<P: Probe>(
     if path.goes_through(world, surface, stream.presence(world, surface)) {
         let passed = path.passed(surface);
         match tree {
-            None => output.queues.paths.push(passed),
+            None => output.paths.push(passed),
             Some(_) if path.address < 1 << DEEPEST => {
-                output.queues.paths.push(Path { address: path.address << 1 | 1, ..passed });
+                output.paths.push(Path { address: path.address << 1 | 1, ..passed });
             }
             Some(_) => {}
         }

@@ -56,7 +56,7 @@ impl FirstHits {
     }
 
     /// Records the hits of the paths that come straight from the camera. The first call is with all of them, by slot.
-    pub(super) fn note(&mut self, paths: &[Path], hits: &[Hit]) {
+    pub(super) fn note<S>(&mut self, paths: &[Path<S>], hits: &[Hit]) {
         if !self.are_wanted || !self.go_on {
             return;
         }

@@ -192,6 +192,8 @@ fn room(lights: &[&str], settings: &str) -> Scene {
 struct OneByOne<I>(I);
 
 impl<I: Transport> Transport for OneByOne<I> {
+    type State = I::State;
+
     fn name(&self) -> &'static str {
         "one by one"
     }
@@ -204,9 +206,9 @@ impl<I: Transport> Transport for OneByOne<I> {
         &self,
         world: &World,
         stream: &SampleStream,
-        path: &Path,
+        path: &Path<I::State>,
         hit: &Hit,
-        output: &mut StepOutput<'_, P>,
+        output: &mut StepOutput<'_, P, I::State>,
     ) {
         self.0.step(world, stream, path, hit, output);
     }

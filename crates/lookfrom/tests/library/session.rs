@@ -190,6 +190,8 @@ fn a_render_in_the_background_can_be_cancelled() {
 struct Silhouette;
 
 impl Integrator for Silhouette {
+    type State = ();
+
     fn name(&self) -> &'static str {
         "silhouette"
     }

@@ -96,10 +96,10 @@ impl TraceLogBuilder<'_> {
             matches!(self.renderer.settings().integrator, Integrator::Path | Integrator::SimplePath);
         let of_light = &self.world.lights[light as usize];
         let is_left_out = light_pdf == 0.0 && !matches!(of_light, Light::Environment(_));
-        if !samples_lights || path.previous.pdf.is_infinite() || is_left_out {
+        if !samples_lights || path.state.pdf.is_infinite() || is_left_out {
             return None;
         }
-        let at = path.light_context();
+        let at = path.state.light_context();
         let surface = surface.as_ref();
         let wi =
             surface.map_or_else(|| Vec3::from_array(path.ray.direction).normalize(), |surface| -surface.wo);

@@ -8,7 +8,7 @@ use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
 use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 use crate::inspect::scatter::{self, BounceReport};
-use crate::integrator::{Bounce, Path};
+use crate::integrator::{Bounce, Path, PreviousVertex};
 use crate::primitive::Primitives;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, Shading};
@@ -16,7 +16,12 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 impl TraceLogBuilder<'_> {
-    pub(super) fn ray(&self, path: &Path, hit: &Hit, surface: Option<&SurfaceInteraction>) -> RayReport {
+    pub(super) fn ray(
+        &self,
+        path: &Path<PreviousVertex>,
+        hit: &Hit,
+        surface: Option<&SurfaceInteraction>,
+    ) -> RayReport {
         let kind = match (path.address, path.address & 1) {
             (Path::ROOT, _) => "camera",
             (_, 0) => "reflected",
@@ -26,7 +31,7 @@ impl TraceLogBuilder<'_> {
             true => candidate::candidates(self.world, &path.ray, hit),
             false => Default::default(),
         };
-        let pdf = path.previous.pdf;
+        let pdf = path.state.pdf;
         RayReport {
             address: path.address,
             parent: None,
@@ -43,7 +48,7 @@ impl TraceLogBuilder<'_> {
             candidates,
             met: surface.map(|surface| met_report(self.world, hit, surface)),
             absorption: None,
-            eta_scale: path.previous.eta_scale,
+            eta_scale: path.state.eta_scale,
             throughput_there: None,
             only_color: None,
             found: Vec::new(),

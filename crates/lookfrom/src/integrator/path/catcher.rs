@@ -9,9 +9,10 @@ use glam::Vec3;
 use lookfrom_scene::settings::Background;
 
 use super::{LightSampling, PathTracer};
+use super::{Path, StepOutput};
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Alpha, Path, Probe, StepOutput, Term};
+use crate::integrator::{Alpha, Probe, Term};
 use crate::light::Light;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -74,11 +75,11 @@ impl PathTracer {
 /// The light of the environments that a path adds if it hits nothing.
 fn sky_found(world: &World, path: &Path, mode: &SpectralMode) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
-    let at = path.light_context();
+    let at = path.state.light_context();
     let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());
     lit.fold(Spectrum::BLACK, |sum, &index| {
         let light_pdf = world.light_pdf(index, &at, direction, None);
-        let weight = power_heuristic(path.previous.pdf, light_pdf);
+        let weight = power_heuristic(path.state.pdf, light_pdf);
         sum + path.beta * world.sky_of(index, &path.ray, mode) * weight
     })
 }

@@ -20,11 +20,12 @@ use kernel::{ScatterKernel, Scattered, Task};
 use mesh_hits::MeshPoints;
 use vertices::VertexColumns;
 
+use super::{Departure, HitBatch, Path, StepOutput};
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::{Bins, Boundary, Departure, HitBatch, Modes};
-use crate::integrator::{Bounce, Event, Path, Probe, SampleStream, StepOutput};
+use crate::integrator::wavefront::{Bins, Boundary, Modes};
+use crate::integrator::{Bounce, Event, Probe, SampleStream};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
@@ -37,6 +38,7 @@ use crate::world::World;
 
 /// Paths that wait for others of their class: those that hit meshes by their class and those that hit nothing, in bins, and
 /// all others as vertices.
+#[derive(Default)]
 pub(super) struct Waiting {
     /// Whether they wait at all: otherwise each is scattered alone, at once.
     in_lanes: bool,
@@ -49,15 +51,10 @@ pub(super) struct Waiting {
 const ESCAPED: usize = BsdfClass::COUNT;
 
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
+#[derive(Default)]
 struct Memory {
     points: MeshPoints,
     scattered: Scattered,
-}
-
-impl Default for Memory {
-    fn default() -> Self {
-        Self { points: MeshPoints::NONE, scattered: Scattered::NONE }
-    }
 }
 
 /// Calls a generic method of a path tracer with the BSDF of a class.
@@ -88,7 +85,7 @@ macro_rules! call {
 impl Waiting {
     /// None yet; to be scattered in lanes or alone.
     pub(super) fn new(in_lanes: bool) -> Self {
-        Self { in_lanes, bins: Bins::default(), vertices: Default::default(), memory: Memory::default() }
+        Self { in_lanes, ..Self::default() }
     }
 
     /// Adds a path that hit nothing, and ends the paths of its kind where they fill the lanes.
@@ -326,7 +323,7 @@ impl PathTracer {
                 pdf: scattered.pdf[lane],
                 lobe: Lobes::sampled(lobe[0], lobe[1], lobe[2]),
                 eta: scattered.eta[lane],
-                pdf_is_proportional: scattered.kind.pdf_is_proportional,
+                pdf_is_proportional: scattered.pdf_is_proportional,
             };
             let bounce = Bounce {
                 wi,
@@ -342,20 +339,20 @@ impl PathTracer {
             return;
         }
         let light_path = output.scattered(path, lobe);
-        output.queues.paths.push(Path {
+        output.paths.push(Path {
             ray: Ray::new(row(&scattered.origin, lane), wi.to_array()),
             beta: Spectrum(row(&scattered.next_beta, lane)),
             slot: path.slot,
             depth: path.depth + 1,
             address: path.address + 1,
             interior: departure.interior(world, wi, is_transmission),
-            previous: PreviousVertex {
+            origin_primitive,
+            blurred: path.blurred || !is_specular,
+            state: PreviousVertex {
                 pdf: scattered.mis_pdf[lane],
-                origin_primitive,
                 point: row(&scattered.point, lane).into(),
                 n: row(&scattered.n, lane).into(),
                 eta_scale: scattered.eta_scale[lane],
-                blurred: path.previous.blurred || !is_specular,
                 is_catcher,
             },
             light_path,

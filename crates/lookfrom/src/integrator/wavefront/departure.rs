@@ -11,8 +11,8 @@ use crate::world::World;
 
 /// A path at a vertex, as the rays that leave it need it.
 #[derive(Clone, Copy)]
-pub(in crate::integrator) struct Departure<'a> {
-    pub(in crate::integrator) path: &'a Path,
+pub(in crate::integrator) struct Departure<'a, S = ()> {
+    pub(in crate::integrator) path: &'a Path<S>,
     /// The primitive there.
     pub(in crate::integrator) origin_primitive: OriginPrimitive,
     pub(in crate::integrator) boundary: Boundary<'a>,
@@ -34,7 +34,7 @@ pub(in crate::integrator) enum Boundary<'a> {
     None,
 }
 
-impl Departure<'_> {
+impl<S> Departure<'_, S> {
     /// Whether a ray in a direction leaves through the surface of a body.
     #[inline]
     pub(in crate::integrator) fn crosses(&self, wi: Vec3) -> bool {

@@ -38,7 +38,7 @@ impl Receivers<'_, f32> {
 }
 
 /// The light samples of eight lanes. Masks have bit i for lane i; what a lane has not sampled has no meaning.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::integrator) struct LightSamples {
     /// The light that each lane samples, or [`NO_LIGHT`], and the probability of its choice.
     light: [u32; LANES],
@@ -64,23 +64,6 @@ pub(in crate::integrator) struct LightSamples {
 const NO_LIGHT: u32 = u32::MAX;
 
 impl LightSamples {
-    /// No lane has a sample.
-    pub(in crate::integrator) const NONE: Self = Self {
-        light: [NO_LIGHT; LANES],
-        probability: [0.0; LANES],
-        is_one: false,
-        is_valid: 0,
-        is_delta: 0,
-        at_point: 0,
-        on_surface: 0,
-        pdf: [0.0; LANES],
-        li: [[0.0; LANES]; 4],
-        wi: [[0.0; LANES]; 3],
-        position: [[0.0; LANES]; 3],
-        error: [[0.0; LANES]; 3],
-        normal: [[0.0; LANES]; 3],
-    };
-
     /// Chooses a light in the first lane. Returns the rest of the number that chooses it.
     pub(in crate::integrator) fn choose_one(
         &mut self,

@@ -18,7 +18,7 @@ pub(in crate::integrator) struct Modes<'a> {
 
 impl<'a> Modes<'a> {
     #[inline(always)]
-    pub(in crate::integrator) fn of(paths: &[&Path; LANES], modes: &'a SpectralModes) -> Self {
+    pub(in crate::integrator) fn of<S>(paths: &[&Path<S>; LANES], modes: &'a SpectralModes) -> Self {
         let first = &modes[paths[0].slot as usize];
         if matches!(first, SpectralMode::Rgb) {
             return Self { by_lane: [first; LANES], are_rgb: true };

@@ -67,7 +67,7 @@ impl Rounds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::{LightPathState, PreviousVertex};
+    use crate::integrator::LightPathState;
     use crate::shading::interior_stack::InteriorStack;
 
     #[test]
@@ -79,7 +79,9 @@ mod tests {
             depth: 0,
             address,
             interior: InteriorStack::default(),
-            previous: PreviousVertex::default(),
+            origin_primitive: lookfrom_bvh::OriginPrimitive::NONE,
+            blurred: false,
+            state: (),
             light_path: LightPathState::default(),
         };
         let mut rounds = Rounds::default();

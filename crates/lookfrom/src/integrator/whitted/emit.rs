@@ -103,7 +103,7 @@ impl Shaded {
         if tree.cut(path, beta).is_none() {
             let wi = if crosses { ray.direction.into() } else { vertex.departure.wo() };
             let light_path = output.scattered(path, [true, false, crosses]);
-            output.queues.paths.push(Path {
+            output.paths.push(Path {
                 ray,
                 beta,
                 depth: path.depth + 1,

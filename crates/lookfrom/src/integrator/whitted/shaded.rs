@@ -56,7 +56,7 @@ impl Default for Shaded {
     fn default() -> Self {
         Self {
             ambient: [Spectrum::BLACK; LANES],
-            samples: LightSamples::NONE,
+            samples: LightSamples::default(),
             lights: Vec::new(),
             branches: [BranchRays::NONE; 2],
             front: 0,

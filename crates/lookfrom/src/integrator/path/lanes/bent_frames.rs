@@ -4,12 +4,13 @@ use glam::DVec3;
 use lookfrom_simd::{Kernel, Simd, f32x8, mask32x8, prelude::*};
 
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, LANES, load, row, set_row, shade_together};
+use crate::core::lanes::{Columns, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::material::{Bending, frame_about};
 
 /// The directions from which bent frames are made, and the normals of normal maps. Masks have bit i for lane i.
+#[derive(Default)]
 pub(super) struct BentFrames {
     pub(super) ns: Columns<3>,
     pub(super) dpdu: Columns<3>,
@@ -22,16 +23,6 @@ pub(super) struct BentFrames {
 }
 
 impl BentFrames {
-    /// None yet.
-    pub(super) const NONE: Self = Self {
-        ns: [[0.0; LANES]; 3],
-        dpdu: [[0.0; LANES]; 3],
-        dpdv: [[0.0; LANES]; 3],
-        local: [[0.0; LANES]; 3],
-        mapped: 0,
-        bent: 0,
-    };
-
     /// The geometry of a lane, whose frame is bent alone.
     #[inline]
     pub(super) fn geometry(&self, surfaces: &VertexColumns, lane: usize, front: bool) -> ShadingGeometry {

@@ -10,17 +10,18 @@ use crate::core::math::power_heuristic;
 use crate::core::points::Exits;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::integrator::SampleStream;
+use crate::integrator::path::Path;
 use crate::integrator::path::{LightSampling, SAFE_BOUNCES, SURVIVAL, dimension};
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::wavefront::{LightSamples, Modes, Receivers};
-use crate::integrator::{Path, SampleStream};
 use crate::light::IncompletePdf;
-use crate::shading::bsdf::lanes::{Kind, LaneBsdf, RowBsdf};
+use crate::shading::bsdf::lanes::{LaneBsdf, RowBsdf};
 use crate::world::World;
 
 /// The samples of eight paths. Masks have bit i for lane i.
+#[derive(Default)]
 pub(super) struct Scattered {
-    pub(super) kind: Kind,
     /// Lanes whose BSDF has a density, for which a light was sampled.
     pub(super) has_density: u32,
     pub(super) lights: LightSamples,
@@ -34,6 +35,8 @@ pub(super) struct Scattered {
     pub(super) wi: Columns<3>,
     pub(super) f: Columns<4>,
     pub(super) pdf: [f32; LANES],
+    /// Whether that is only proportional to the density.
+    pub(super) pdf_is_proportional: bool,
     /// The density to compare with that of light sampling.
     pub(super) mis_pdf: [f32; LANES],
     pub(super) eta: [f32; LANES],
@@ -55,36 +58,8 @@ pub(super) struct Scattered {
     pub(super) n: Columns<3>,
 }
 
-impl Scattered {
-    /// The samples of no path.
-    pub(super) const NONE: Self = Self {
-        kind: Kind::PLAIN,
-        has_density: 0,
-        lights: LightSamples::NONE,
-        connections: Connections::NONE,
-        is_valid: 0,
-        is_specular: 0,
-        is_diffuse: 0,
-        is_transmission: 0,
-        wi: [[0.0; LANES]; 3],
-        f: [[0.0; LANES]; 4],
-        pdf: [0.0; LANES],
-        mis_pdf: [0.0; LANES],
-        eta: [0.0; LANES],
-        cos: [0.0; LANES],
-        origin: [[0.0; LANES]; 3],
-        beta: [[0.0; LANES]; 4],
-        next_beta: [[0.0; LANES]; 4],
-        eta_scale: [0.0; LANES],
-        survival: [0.0; LANES],
-        survives: 0,
-        goes_on: 0,
-        point: [[0.0; LANES]; 3],
-        n: [[0.0; LANES]; 3],
-    };
-}
-
 /// Light samples of eight lanes, weighted, as if nothing were in between.
+#[derive(Default)]
 pub(super) struct Connections {
     /// The BSDF for the direction to the light, times the cosine.
     pub(super) f: Columns<4>,
@@ -103,22 +78,6 @@ pub(super) struct Connections {
     pub(super) origin: Columns<3>,
     pub(super) way: Columns<3>,
     pub(super) t_max: [f32; LANES],
-}
-
-impl Connections {
-    /// The light samples of no lane.
-    const NONE: Self = Self {
-        f: [[0.0; LANES]; 4],
-        diffuse: [[0.0; LANES]; 4],
-        bsdf_pdf: [0.0; LANES],
-        weight: [0.0; LANES],
-        contribution: [[0.0; LANES]; 4],
-        is_sampled: 0,
-        is_lit: 0,
-        origin: [[0.0; LANES]; 3],
-        way: [[0.0; LANES]; 3],
-        t_max: [0.0; LANES],
-    };
 }
 
 /// Paths at surfaces whose BSDFs are of one class.
@@ -147,7 +106,6 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         let exits = surfaces.exits();
 
         // Sample one light.
-        scattered.kind = kind;
         scattered.has_density = match task.light_sampling {
             LightSampling::None => 0,
             _ => width.bits(bsdf.has_density()),
@@ -183,7 +141,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         let beta = beta * sample.f * (cos / sample.pdf);
         let eta_scale = width.f32s(
             #[inline(always)]
-            |lane| paths[lane].previous.eta_scale,
+            |lane| paths[lane].state.eta_scale,
         ) * Float::select(sample.is_transmission, sample.eta * sample.eta, one);
 
         // End paths of small throughput by Russian roulette.
@@ -204,6 +162,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         scattered.wi = store(wi);
         scattered.f = store_spectrum(sample.f);
         scattered.pdf = sample.pdf.column();
+        scattered.pdf_is_proportional = kind.pdf_is_proportional;
         scattered.mis_pdf = Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).column();
         scattered.eta = sample.eta.column();
         scattered.cos = cos.column();

@@ -11,9 +11,10 @@ use super::vertices::VertexColumns;
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, shade_together, store};
 use crate::core::points::{Lift, StoredPlacement};
 use crate::core::vector::Vector;
+use crate::integrator::path::{Departure, HitBatch, Path, StepOutput};
 use crate::integrator::path::{PathTracer, dimension};
-use crate::integrator::wavefront::{Boundary, Departure, Eight, HitBatch};
-use crate::integrator::{Event, Integrator, Path, Probe, SampleStream, StepOutput};
+use crate::integrator::wavefront::{Boundary, Eight};
+use crate::integrator::{Event, Integrator, Probe, SampleStream};
 use crate::primitive::{Mesh, points_on_meshes};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext, frame_about};
@@ -24,7 +25,7 @@ impl<'a> HitBatch<'a> {
     #[inline]
     pub(in crate::integrator) fn is_in_vacuum(&self, index: usize) -> bool {
         let path = &self.paths[index];
-        path.interior.is_empty() && !path.previous.is_catcher
+        path.interior.is_empty() && !path.state.is_catcher
     }
 
     /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there.
@@ -60,7 +61,7 @@ impl MeshHit<'_> {
     /// Whether the path passes the surface where it hit the back of it.
     #[inline]
     fn passes_back_faces(&self) -> bool {
-        self.mesh.binding.single_sided && !self.path.previous.blurred
+        self.mesh.binding.single_sided && !self.path.blurred
     }
 }
 
@@ -83,7 +84,7 @@ impl PathTracer {
         let varies = hits.iter().any(|hit| hit.material.varies);
         // Camera rays' surfaces, which AOVs need.
         let are_first = match output.queues.first_surfaces.are_wanted() {
-            true => bitmask(&by_lane!(lane => hits[lane].path.address == Path::ROOT)),
+            true => bitmask(&by_lane!(lane => hits[lane].path.is_root())),
             false => 0,
         };
         MeshKernel { hits: &hits, varies, are_first: are_first != 0, points: mesh_points }.set_points();
@@ -147,7 +148,7 @@ impl PathTracer {
             } else {
                 material.row(&world.textures, point, context)
             };
-            if self.regularize && path.previous.blurred {
+            if self.regularize && path.blurred {
                 row.iter_mut().for_each(B::regularize);
             }
             rows[lane] = row;
@@ -200,6 +201,7 @@ fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
 }
 
 /// The points of eight hits, in the frames of materials without bump mapping.
+#[derive(Default)]
 pub(super) struct MeshPoints {
     surfaces: VertexColumns,
     uv: Columns<2>,
@@ -209,17 +211,6 @@ pub(super) struct MeshPoints {
     smooth: u32,
     /// The frames of materials that bend them.
     bent: BentFrames,
-}
-
-impl MeshPoints {
-    /// None yet.
-    pub(super) const NONE: Self = Self {
-        surfaces: VertexColumns::NONE,
-        uv: [[0.0; LANES]; 2],
-        front: 0,
-        smooth: 0,
-        bent: BentFrames::NONE,
-    };
 }
 
 /// Finds the points of hits.

@@ -3,9 +3,10 @@
 use glam::Vec3;
 
 use crate::core::lanes::by_lane;
+use crate::integrator::Probe;
 use crate::integrator::path::PathTracer;
-use crate::integrator::wavefront::{Eight, HitBatch};
-use crate::integrator::{Path, Probe, StepOutput};
+use crate::integrator::path::{HitBatch, Path, StepOutput};
+use crate::integrator::wavefront::Eight;
 use crate::light::Light;
 
 impl PathTracer {
@@ -27,7 +28,7 @@ impl PathTracer {
         for &index in &world.environments {
             let Light::Environment(environment) = &world.lights[index as usize] else { continue };
             // Some skies do not illuminate: they are only visible to the camera, in mirrors and through glass.
-            let is_lit = |path: &Path| environment.illuminates || !path.previous.blurred;
+            let is_lit = |path: &Path| environment.illuminates || !path.blurred;
             let mut lanes = 0;
             for (lane, path) in paths.iter().enumerate() {
                 lanes |= u32::from(is_lit(path)) << lane & sees_sky;
@@ -35,20 +36,21 @@ impl PathTracer {
             let Some(sky) = environment.map_in_lanes() else {
                 for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
                     let radiance = world.sky_of(index, &path.ray, &output.mode(path));
-                    let pdf = || world.light_pdf(index, &path.light_context(), directions[lane], None);
+                    let pdf = || world.light_pdf(index, &path.state.light_context(), directions[lane], None);
                     self.add_found(path, index, radiance, pdf, output);
                 }
                 continue;
             };
             let mut with_density = 0;
             for (lane, path) in paths.iter().enumerate() {
-                let is_weighted = P::LISTENS || !path.previous.pdf.is_infinite();
+                let is_weighted = P::LISTENS || !path.state.pdf.is_infinite();
                 with_density |= u32::from(is_weighted && environment.illuminates) << lane & lanes;
             }
             let modes = by_lane!(lane => &output.queues.modes[paths[lane].slot as usize]);
             let seen = sky.seen(&world.textures, &directions, &modes, with_density);
             for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
-                let pdf = || world.light_choice.probability(&path.light_context(), index) * seen.pdf[lane];
+                let pdf =
+                    || world.light_choice.probability(&path.state.light_context(), index) * seen.pdf[lane];
                 self.add_found(path, index, seen.li[lane], pdf, output);
             }
         }

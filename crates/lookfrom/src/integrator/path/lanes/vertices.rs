@@ -10,7 +10,7 @@ use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
 
 /// Eight vertices in memory, by component.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct VertexColumns {
     position: Columns<3, f64>,
     error: Columns<3, f64>,
@@ -25,17 +25,6 @@ pub(super) struct VertexColumns {
 }
 
 impl VertexColumns {
-    /// None yet.
-    pub(super) const NONE: Self = Self {
-        position: [[0.0; LANES]; 3],
-        error: [[0.0; LANES]; 3],
-        ng: [[0.0; LANES]; 3],
-        frame: [[[0.0; LANES]; 3]; 3],
-        wo: [[0.0; LANES]; 3],
-        lift: [[[0.0; LANES]; 3]; 2],
-        lifted: 0,
-    };
-
     /// Replaces all of them.
     #[inline(always)]
     pub(super) fn set<S: Simd>(
@@ -64,7 +53,7 @@ impl VertexColumns {
 
     /// The surfaces of vertices, from the first lane on.
     pub(super) fn of_vertices(vertices: &[&Vertex]) -> Self {
-        let mut columns = Self::NONE;
+        let mut columns = Self::default();
         for (lane, vertex) in vertices.iter().enumerate().take(LANES) {
             let surface = &vertex.surface;
             set_row(&mut columns.position, lane, surface.point.position);
