@@ -111,11 +111,12 @@ impl Steps {
         let paths = by_lane!(lane => &paths[indices[lane] as usize]);
         let rays = by_lane!(lane => &paths[lane].ray);
         let eight = Eight { paths, plain: PlainHits { rays, hits, are_on_spheres }, materials };
-        let mut left = eight.left(world, chosen.paths.len(), modes, first_surfaces);
-        let (groups, first) = (&mut self.groups, left.as_mut().map(|left| &mut *left.first));
+        let mut target = eight.aov_target(world, chosen.paths.len(), first_surfaces);
+        let (groups, first) = (&mut self.groups, target.as_deref_mut());
         shade_together(PlainKernel { world, eight: &eight, streams, modes, wanted, groups, first });
-        if let Some(left) = left {
-            left.set_other_albedos(world, &eight);
+        if let Some(target) = target {
+            eight.set_other_albedos(world, modes, target);
+            first_surfaces.leave_block();
         }
     }
 
