@@ -1,10 +1,12 @@
 //! Foundations: spectra and colour, sampling, noise, vectors in lanes.
 
+pub(crate) mod accumulator;
 pub(crate) mod clock;
 pub mod color;
 pub mod distribution;
 pub(crate) mod elementary;
 pub mod filter;
+pub(crate) mod fixed_point;
 pub(crate) mod hash;
 pub(crate) mod lanes;
 pub mod math;

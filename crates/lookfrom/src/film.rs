@@ -3,16 +3,14 @@
 //! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
-//! denoiser, are in [`aov`], those of eight pixels side by side in `first_hits`; variances in the sensor's channels in
-//! `channels`; noise estimates in `noise`; firefly suppression in `fireflies`; which sums it has, in `layout`, which
-//! samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
+//! denoiser, are in [`crate::aov`]; noise estimates in `noise`; firefly suppression in `fireflies`; which sums it has, in
+//! `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in
+//! [`crate::post::develop`].
 //!
-//! In a tile, which a thread fills, a pixel takes 112 bytes, and those of [`aov`] and `channels` where they are enabled. The
-//! film keeps them packed, in `plane`: in about half of that.
+//! In a tile, which a thread fills, a pixel takes 112 bytes, as many for variances in the sensor's channels, and those of AOVs, where they are
+//! enabled. The film keeps them packed, in `plane`: in about half of that.
 
 pub mod allocation;
-pub mod aov;
-mod channels;
 mod fireflies;
 mod first_hits;
 mod layout;
@@ -25,15 +23,11 @@ mod stored;
 mod sums;
 mod tile;
 
-use self::aov::{AovSums, LayerSums};
-pub use self::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
-use self::channels::ChannelSums;
 pub use self::fireflies::Firefly;
-pub(crate) use self::first_hits::{AovColumns, FirstHitSums};
 pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
 use self::light_paths::LightPathSums;
-use self::pixel::{Pixel, TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square, unbiased_variance};
+use self::pixel::{Pixel, unbiased_variance};
 use self::plane::Plane;
 pub(crate) use self::stored::StoredRows;
 use self::stored::{Sums, for_each_plane};
@@ -46,14 +40,14 @@ use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
+use crate::aov::{AovSums, LayerSums};
+pub use crate::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
+pub use crate::core::fixed_point::BRIGHTEST;
+use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64};
 pub use crate::core::sampler::SampleId;
 
 /// Maximum number of pixels of a picture: 2³⁰.
 pub const MOST_PIXELS: u64 = lookfrom_scene::settings::MOST_PIXELS;
-
-/// Light is clamped to this, 2⁴⁰, in either direction. So the sums hold at least 2²³ samples of the brightest, and far
-/// more of any other.
-pub const BRIGHTEST: f32 = 1_099_511_627_776.0;
 
 /// The film: sums of a picture's samples, pixel by pixel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +58,8 @@ pub struct Film {
     layout: Layout,
     pixels: Plane<Pixel>,
     layers: Plane<LayerSums>,
-    channels: Plane<ChannelSums>,
+    /// Variances in the sensor's channels, where they are not X, Y and Z: for the AOVs, as in pbrt-v4's `gbuffer` film.
+    channels: Plane<Pixel>,
     features: Plane<AovSums>,
     /// For each layer of light-path expressions.
     light_paths: Vec<Plane<LightPathSums>>,
@@ -334,7 +329,8 @@ impl Film {
     /// where the film has no memory for it (no AOVs, or a sensor that measures X, Y and Z), and outside of
     /// [`Film::area`].
     pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
-        self.sums_of(&self.channels, x, y).map(|sums| sums.variance())
+        self.sums_of(&self.channels, x, y)
+            .map(|sums| sums.variance_of(|mean| mean).map(|variance| variance as f32))
     }
 
     /// The mean AOVs of a pixel: the albedo over all samples (a miss is black), all others over the samples with a hit.

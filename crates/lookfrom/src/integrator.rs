@@ -7,8 +7,7 @@
 
 mod background;
 mod event;
-mod first_hit;
-mod first_surface;
+mod false_color;
 mod light_paths;
 mod occlusion;
 mod path;
@@ -24,6 +23,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::Background;
 
+use crate::aov::FirstSurfaces;
 use crate::core::hash;
 use crate::core::sampler::PixelSampler;
 use crate::core::spectrum::Spectrum;
@@ -35,9 +35,7 @@ use crate::world::World;
 
 pub use background::Alpha;
 pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
-pub use first_hit::FirstHit;
-pub(crate) use first_surface::FirstSurfaceColumns;
-pub use first_surface::{FirstSurface, FirstSurfaces};
+pub use false_color::FalseColor;
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
@@ -271,7 +269,7 @@ impl Queues {
         self.alpha.resize(count, Alpha::Opaque);
         self.shadows.clear();
         self.layers.clear();
-        self.first_surfaces.start(false);
+        self.first_surfaces.start(count);
         self.last_scatterings.clear();
     }
 
@@ -366,7 +364,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     ) {
         let first_surfaces = &mut self.queues.first_surfaces;
         if first_surfaces.are_wanted() && path.is_root() && world.opacity(surface) == 1.0 {
-            first_surfaces.push(path.slot, &FirstSurface::of(world, surface, albedo()));
+            first_surfaces.leave(world, path.slot, surface, albedo());
         }
     }
 

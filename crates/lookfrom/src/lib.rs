@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+pub mod aov;
 pub mod core;
 pub mod film;
 pub mod inspect;

@@ -4,11 +4,10 @@
 //! any machine, with any number of threads. Everything else ([`Renderer::render`], the inspector, a session) only
 //! chooses the tiles and samples to render.
 
-mod camera_space;
+mod aovs;
 mod camera_warnings;
 mod cost;
 mod driver;
-mod first_hit;
 mod footprint;
 mod interior;
 mod progress;
@@ -26,12 +25,13 @@ use lookfrom_scene::settings::{
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
+use crate::aov::{AovAccumulator, RayHit};
 use crate::core::color::{Sensor, Wavelengths};
 use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
-use crate::film::{FEATURE_SAMPLES, FilmTile, FirstHitSums, SampleSums};
+use crate::film::{FEATURE_SAMPLES, FilmTile, SampleSums};
 use crate::integrator::{
     BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, Probe, Queues, Scratch, StepOutput,
     resolve_shadows,
@@ -43,7 +43,6 @@ use crate::world::World;
 
 pub(crate) use camera_warnings::Subject;
 pub use cost::Cost;
-use first_hit::FirstHits;
 use start::Start;
 use transport::Transport;
 
@@ -137,12 +136,10 @@ struct Batch {
     rays: Vec<Ray>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
-    /// Only where AOVs or the denoiser need them.
-    first_hits: FirstHits,
-    first_hit_sums: FirstHitSums,
     /// The samples' light in RGB, by slot.
     light: Vec<[f32; 3]>,
     sums: SampleSums,
+    aov_sums: AovAccumulator,
 }
 
 impl Renderer {
@@ -297,7 +294,7 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
-        let Batch { start, queues, paths, rays, origin_primitives, hits, first_hits, .. } = batch;
+        let Batch { start, queues, paths, rays, origin_primitives, hits, .. } = batch;
         let mut both = paths.take::<[Vec<Path<I::State>>; 2]>();
         let [mut under_way, next] = std::mem::take(&mut *both);
         let light_paths = self.light_paths.as_deref();
@@ -315,7 +312,6 @@ impl Renderer {
         output.queues.start(ids.len(), start.modes());
         let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
         output.queues.layers.resize(layers, Spectrum::BLACK);
-        output.queues.first_surfaces.start(first_hits.are_wanted());
         let modes = &output.queues.modes;
         output.paths.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             ray: *ray,
@@ -340,15 +336,16 @@ impl Renderer {
             hits.resize(under_way.len(), Hit::MISS);
             if are_from_camera {
                 self.world.bvh.closest_hits(&start.rays, hits);
+                output.queues.first_surfaces.note_outermost(hits);
             } else {
                 rays.clear();
                 rays.extend(under_way.iter().map(|path| path.ray));
                 origin_primitives.clear();
                 origin_primitives.extend(under_way.iter().map(|path| path.origin_primitive));
                 self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+                output.queues.first_surfaces.note_behind(straight(&under_way, hits));
             }
             are_from_camera = false;
-            first_hits.note(&under_way, hits);
 
             // Step: from each hit to contributions, shadow rays and further paths.
             integrator.step_all(&self.world, &streams, &under_way, hits, &mut output);
@@ -394,9 +391,10 @@ impl Renderer {
                 .flat_map(|pixel| (0..together).map(move |k| SampleId { pixel, sample: samples.start + k })),
         );
         for sample in samples.step_by(together as usize) {
-            batch.first_hits.start(tile.wants_first_hit(sample));
+            let space = tile.wants_first_hit(sample).then(|| self.camera_space());
+            batch.queues.first_surfaces.set_space(space);
             rays += self.integrator.trace(self, &ids, batch);
-            self.add_first_hits(&ids, batch, tile);
+            self.add_aovs(&ids, batch, tile);
             if tile.is_of_light() {
                 let mut light = std::mem::take(&mut batch.light);
                 self.light(batch, &mut light);
@@ -418,10 +416,16 @@ impl Renderer {
             ids.iter_mut().for_each(|id| id.sample += together);
         }
         tile.add_sums(&ids, &mut batch.sums);
-        tile.add_first_hit_sums(&ids, &mut batch.first_hit_sums);
+        tile.add_first_hit_sums(&ids, &mut batch.aov_sums);
         batch.ids = ids;
         Ok(rays)
     }
+}
+
+/// The paths that come straight from the camera, and their hits, by slot.
+fn straight<S>(paths: &[Path<S>], hits: &[Hit]) -> impl Iterator<Item = (u32, RayHit)> {
+    let straight = paths.iter().zip(hits).filter(|(path, _)| path.depth == 0);
+    straight.map(|(path, hit)| (path.slot, RayHit { ray: path.ray, hit: *hit }))
 }
 
 /// The number of samples of each pixel that make a batch together: several where there are few pixels. A batch is of samples

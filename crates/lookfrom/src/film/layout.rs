@@ -4,11 +4,10 @@ use std::fmt;
 
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
 
-use super::aov::{AovSums, LayerSums};
-use super::channels::ChannelSums;
 use super::light_paths::LightPathSums;
 use super::pixel::Pixel;
-use super::stored::Sums;
+use super::stored::{Stored, Sums, channels_of};
+use crate::aov::{AovSums, LayerSums};
 
 /// The kinds of sums that a film or tile has besides light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +30,13 @@ const FEATURES: &str = "film.feature";
 
 fn light_path(index: usize) -> String {
     format!("film.light_path.{index}")
+}
+
+/// The names of the channels of the sensor's sums, a [`Pixel`] each.
+fn sensor_channels() -> Vec<String> {
+    let sums = channels_of(SENSOR, &["sum.0", "sum.1", "sum.2"], <[i128; 3]>::WORDS);
+    let squares = channels_of(SENSOR, &["square.0", "square.1", "square.2"], <[u128; 3]>::WORDS);
+    [sums, squares, channels_of(SENSOR, &["samples"], u64::WORDS)].concat()
 }
 
 impl Layout {
@@ -71,7 +77,7 @@ impl Layout {
         let mut add = |has: bool, channels: Vec<String>| names.extend(channels.into_iter().filter(|_| has));
         add(self.alpha, i128::channels(ALPHA));
         add(self.alpha_squares(), u128::channels(ALPHA));
-        add(self.sensor, ChannelSums::channels(SENSOR));
+        add(self.sensor, sensor_channels());
         add(self.aovs, LayerSums::channels(AOVS));
         add(self.features, AovSums::channels(FEATURES));
         (0..self.light_paths).for_each(|index| add(true, LightPathSums::channels(&light_path(index))));

@@ -3,9 +3,9 @@
 //! Fixed-point numbers as those of all light ([`super::Pixel`]): a layer that has every way is the picture. A pixel takes
 //! 48 bytes for each layer.
 
-use super::fixed_point;
 use super::pixel::{mean, merge_sums};
 use super::stored::{Stored, Sums, channels_of, store_fields};
+use crate::core::fixed_point::fixed_point;
 
 /// The sums of a layer over the samples of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,12 +1,9 @@
-//! The sums of a pixel in fixed point.
+//! The sums of a pixel in fixed point: of light, or of what a sensor measures.
 
 use super::{BRIGHTEST, xyz};
+use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square};
 
-pub(super) const TWO_TO_47: f64 = 140_737_488_355_328.0;
-pub(super) const TWO_TO_48: f64 = 281_474_976_710_656.0;
-pub(super) const TWO_TO_63: f64 = 9_223_372_036_854_775_808.0;
-pub(super) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
-
+/// Sums of three numbers over the samples of a pixel, and of the squares of these numbers or of three others that they give.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Pixel {
     /// Multiples of 2⁻⁶⁴. Additions wrap, which keeps them independent of their order even where they overflow.
@@ -17,6 +14,18 @@ pub(super) struct Pixel {
 }
 
 impl Pixel {
+    /// Adds the finite numbers of one sample, and the squares of those that `squared` makes of them.
+    pub(super) fn add(&mut self, sample: [f32; 3], squared: impl FnOnce([f64; 3]) -> [f64; 3]) {
+        for (sum, value) in self.sums.iter_mut().zip(sample) {
+            *sum = sum.wrapping_add(fixed_point(value));
+        }
+        let cut = sample.map(|value| f64::from(value.clamp(-BRIGHTEST, BRIGHTEST)));
+        for (sum, value) in self.squares.iter_mut().zip(squared(cut)) {
+            *sum = sum.saturating_add(fixed_point_square(value));
+        }
+        self.samples = self.samples.saturating_add(1);
+    }
+
     pub(super) fn merge(&mut self, add: &Self) {
         merge_sums(&mut self.sums, &add.sums);
         for (sum, add) in self.squares.iter_mut().zip(add.squares) {
@@ -29,14 +38,19 @@ impl Pixel {
         mean(&self.sums, self.samples)
     }
 
-    /// The variance of one sample, in X, Y and Z: the mean of the squares less the square of the mean, times n / (n −
-    /// 1).
+    /// The variance of one sample of light, in X, Y and Z.
     pub(super) fn variance(&self) -> [f64; 3] {
+        self.variance_of(xyz)
+    }
+
+    /// The variance of one sample in the numbers that were squared: the mean of the squares less the square of the mean, times n / (n −
+    /// 1). Infinite with fewer than two.
+    pub(super) fn variance_of(&self, squared: impl FnOnce([f64; 3]) -> [f64; 3]) -> [f64; 3] {
         if self.samples < 2 {
             return [f64::INFINITY; 3];
         }
         let n = self.samples as f64;
-        let mean = xyz(self.sums.map(|sum| sum as f64 / (n * TWO_TO_64)));
+        let mean = squared(self.sums.map(|sum| sum as f64 / (n * TWO_TO_64)));
         std::array::from_fn(|channel| {
             unbiased_variance(n, mean[channel], self.squares[channel] as f64 / (n * TWO_TO_48))
         })
@@ -61,25 +75,4 @@ pub(super) fn mean(sums: &[i128; 3], samples: u64) -> [f32; 3] {
 pub(super) fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 {
     // For equal samples rounding leaves a small value of either sign.
     (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
-}
-
-/// The square of a finite number, rounded to f64, as a multiple of 2⁻⁴⁸; saturates.
-pub(super) fn fixed_point_square(value: f64) -> u128 {
-    let square = value * value * TWO_TO_48;
-    // The cast saturates; 63 bits nearly always suffice, and take a fraction of the time.
-    if square < TWO_TO_63 { u128::from(square as i64 as u64) } else { square as u128 }
-}
-
-/// A finite number as a multiple of 2⁻⁶⁴, truncated towards zero.
-pub(super) fn fixed_point(light: f32) -> i128 {
-    // An f32 in f64 can be multiplied by a power of two exactly. From 2⁻²⁴ on it is a whole multiple of 2⁻⁴⁷: then,
-    // which is nearly always, 64 bits suffice, and take a fraction of the time.
-    let light = f64::from(light.clamp(-BRIGHTEST, BRIGHTEST));
-    let upper = light * TWO_TO_47;
-    let cut = upper as i64;
-    if upper.abs() < TWO_TO_63 && cut as f64 == upper {
-        i128::from(cut) << 17
-    } else {
-        (light * TWO_TO_64) as i128
-    }
 }

@@ -266,8 +266,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::super::Pixel;
-    use super::super::aov::LayerSums;
     use super::*;
+    use crate::aov::LayerSums;
 
     /// Numbers of any magnitude and number of zeros at their ends.
     fn number() -> impl Strategy<Value = i128> {

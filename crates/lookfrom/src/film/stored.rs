@@ -9,6 +9,7 @@ use lookfrom_scene::settings::PixelBounds;
 
 use super::plane::SIDE;
 use super::{Film, FilmTile, Pixel};
+use crate::aov::{AovSums, LayerSums};
 
 /// A number, or several, that are stored as words, the lowest first.
 pub(super) trait Stored: Sized {
@@ -152,6 +153,22 @@ store_fields!(Pixel {
     sums: [i128; 3] = ["sum.R", "sum.G", "sum.B"],
     squares: [u128; 3] = ["square.X", "square.Y", "square.Z"],
     samples: u64 = ["samples"],
+});
+
+store_fields!(AovSums {
+    albedo: [i64; 3] = ["albedo.R", "albedo.G", "albedo.B"],
+    ns: [i64; 3] = ["ns.X", "ns.Y", "ns.Z"],
+    samples: u64 = ["samples"],
+    hits: u64 = ["hits"],
+    first: u32 = ["first"],
+    ng: [u32; 3] = ["first_ng.X", "first_ng.Y", "first_ng.Z"],
+    position: [u32; 3] = ["first_p.X", "first_p.Y", "first_p.Z"],
+});
+
+store_fields!(LayerSums {
+    shared: AovSums,
+    ng: [i64; 3] = ["ng.X", "ng.Y", "ng.Z"],
+    places: [i128; 5] = ["p.X", "p.Y", "p.Z", "u", "v"],
 });
 
 /// Evaluates an expression for each kind of sums that films or tiles may have: with all of that kind, of each of these films,

@@ -5,13 +5,13 @@ use std::ops::Range;
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
-use super::aov::{AovSums, LayerSums};
-use super::channels::ChannelSums;
 use super::layout::Layout;
 use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
-use super::pixel::{Pixel, fixed_point, fixed_point_square};
-use super::{Aovs, BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
+use super::pixel::Pixel;
+use super::{BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
+use crate::aov::{AovSums, Aovs, LayerSums};
+use crate::core::fixed_point::{fixed_point, fixed_point_square};
 
 /// The light of a rectangle of a film, for one thread to fill.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,8 +21,8 @@ pub struct FilmTile {
     pub(super) pixels: Vec<Pixel>,
     /// One per pixel, or none.
     pub(super) layers: Vec<LayerSums>,
-    /// One per pixel, or none.
-    pub(super) channels: Vec<ChannelSums>,
+    /// Sums of the sensor's channels and of their squares: one per pixel, or none.
+    pub(super) channels: Vec<Pixel>,
     /// One per pixel, or none.
     pub(super) features: Vec<AovSums>,
     /// For each layer of light-path expressions, one per pixel.
@@ -136,15 +136,7 @@ impl FilmTile {
             self.drop_samples(1, Some(SampleId { pixel: [x, y], sample }));
             return;
         }
-        let pixel = &mut self.pixels[index];
-        for (sum, light) in pixel.sums.iter_mut().zip(rgb) {
-            *sum = sum.wrapping_add(fixed_point(light));
-        }
-        let cut = rgb.map(|light| f64::from(light.clamp(-BRIGHTEST, BRIGHTEST)));
-        for (sum, value) in pixel.squares.iter_mut().zip(xyz(cut)) {
-            *sum = sum.saturating_add(fixed_point_square(value));
-        }
-        pixel.samples = pixel.samples.saturating_add(1);
+        self.pixels[index].add(rgb, xyz);
         if let Some(sum) = self.alphas.get_mut(index) {
             *sum = sum.wrapping_add(fixed_point(alpha));
             if let Some(squares) = self.alpha_squares.get_mut(index) {
@@ -160,15 +152,16 @@ impl FilmTile {
     /// # Panics
     /// If the pixel is outside of the tile.
     pub fn add_first_hit(&mut self, x: u32, y: u32, sample: u32, met: Option<&Aovs>) {
+        self.merge_aovs([x, y], &LayerSums::of_sample(sample, met), sample < FEATURE_SAMPLES);
+    }
+
+    /// Adds sums to the AOVs of a pixel, and if they count for the denoiser to its features, where there is memory for them.
+    #[inline]
+    pub(super) fn merge_aovs(&mut self, [x, y]: [u32; 2], sums: &LayerSums, are_features: bool) {
         let index = self.index_inside(x, y);
-        if let Some(sums) = self.layers.get_mut(index) {
-            sums.add(sample, met);
-        }
-        if sample < FEATURE_SAMPLES
-            && let Some(sums) = self.features.get_mut(index)
-        {
-            sums.add(sample, met);
-        }
+        self.layers.get_mut(index).into_iter().for_each(|layer| layer.merge(sums));
+        let features = self.features.get_mut(index).filter(|_| are_features);
+        features.into_iter().for_each(|features| features.merge(&sums.shared));
     }
 
     /// Adds the sensor's channels of one sample, where there is memory for them and all are finite.
@@ -177,9 +170,8 @@ impl FilmTile {
     /// If the pixel is outside of the tile.
     pub fn add_channels(&mut self, x: u32, y: u32, channels: [f32; 3]) {
         let index = self.index_inside(x, y);
-        if let Some(sums) = self.channels.get_mut(index) {
-            sums.add(channels);
-        }
+        let sums = self.channels.get_mut(index).filter(|_| channels.iter().all(|value| value.is_finite()));
+        sums.into_iter().for_each(|sums| sums.add(channels, |channels| channels));
     }
 
     /// Records that the tile has these samples of all its pixels, those that were dropped included. Films of recorded

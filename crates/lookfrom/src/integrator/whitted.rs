@@ -145,11 +145,12 @@ fn shade_bare_hits<P: Probe>(
     let eight = &BareEight::of(batch, eight, are_on_spheres);
     let wanted = wanted(tree, output);
     let Queues { modes, first_surfaces, .. } = &mut output.queues;
-    let mut left = eight.left(world, count, modes, first_surfaces);
-    let first = left.as_mut().map(|left| &mut *left.first);
+    let mut target = eight.aov_target(world, count, first_surfaces);
+    let first = target.as_deref_mut();
     shade_together(BareKernel { world, eight, streams: batch.streams, modes, wanted, shaded, first });
-    if let Some(left) = left {
-        left.set_other_albedos(world, eight);
+    if let Some(target) = target {
+        eight.set_other_albedos(world, modes, target);
+        first_surfaces.leave_block();
     }
     for lane in 0..count {
         let (path, hit) = (eight.paths[lane], eight.bare.hits[lane]);

@@ -7,7 +7,7 @@ use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 
 use super::{Batch, Rays, Renderer, SampleId};
 use crate::integrator::{
-    AmbientOcclusion, Event, FirstHit, Integrator, LightSampling, PathTracer, Raycast, Whitted,
+    AmbientOcclusion, Event, FalseColor, Integrator, LightSampling, PathTracer, Raycast, Whitted,
 };
 use crate::view::camera::Camera;
 
@@ -75,9 +75,9 @@ pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3
         Kind::AmbientOcclusion { cosine } => {
             Arc::new(AmbientOcclusion { cosine, distance: occlusion_distance })
         }
-        Kind::Normals => Arc::new(FirstHit::Normals),
-        Kind::Depth => Arc::new(FirstHit::Depth { eye, forward: camera.w().normalize() }),
-        Kind::Uv => Arc::new(FirstHit::Uv),
-        Kind::Id => Arc::new(FirstHit::Id),
+        Kind::Normals => Arc::new(FalseColor::Normals),
+        Kind::Depth => Arc::new(FalseColor::Depth { eye, forward: camera.w().normalize() }),
+        Kind::Uv => Arc::new(FalseColor::Uv),
+        Kind::Id => Arc::new(FalseColor::Id),
     }
 }

@@ -5,10 +5,10 @@ use lookfrom_bvh::{Hit, Point};
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::bare_hits::{self, BareHits};
+use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
-use crate::integrator::FirstSurfaceColumns;
 use crate::primitive::points_on_meshes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;

@@ -23,15 +23,13 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("spectrum", ""),
     ("statistics", ""),
     ("lanes", "spectrum vector"),
+    ("fixed_point", ""),
+    ("accumulator", "lanes"),
     ("points", "lanes vector"),
     ("warp", "elementary vector"),
     ("color", "math spectrum"),
     ("sampler", "hash lanes"),
     ("bsdf", "elementary hash lanes math optics sampler spectrum vector warp"),
-    ("film", "hash lanes parallel sampler spectrum"),
-    ("denoise", "film parallel"),
-    ("develop", "film"),
-    ("exposure", "film math"),
     ("noise", "hash"),
     ("filter", "sampler"),
     ("distribution", "sampler lanes"),
@@ -52,15 +50,20 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "bsdf distribution footprint interior_stack light material math points primitive spectrum \
          interaction texture warp",
     ),
+    ("aov", "accumulator fixed_point interaction lanes material sampler vector world"),
+    ("film", "accumulator aov fixed_point hash lanes parallel sampler spectrum"),
+    ("denoise", "film parallel"),
+    ("develop", "film"),
+    ("exposure", "film math"),
     ("view", "camera"),
     (
         "integrator",
-        "bsdf hash interior_stack lanes light material math optics points sampler primitive spectrum \
+        "aov bsdf hash interior_stack lanes light material math optics points sampler primitive spectrum \
          interaction texture vector warp world",
     ),
     (
         "render",
-        "interior_stack camera clock color film filter footprint integrator lanes light material math \
+        "aov interior_stack camera clock color film filter footprint integrator lanes light material math \
          parallel sampler spectrum interaction texture vector view warp world",
     ),
     (

@@ -165,7 +165,7 @@ impl PathTracer {
             });
         }
         if active & are_first != 0 {
-            let eight = output.queues.first_surfaces.next();
+            let eight = output.queues.first_surfaces.block();
             surfaces.leave(eight);
             (eight.lanes, eight.ns, eight.uv) = (active & are_first, bent.ns, *uv);
             for lane in LaneMask(eight.lanes) {
@@ -178,6 +178,7 @@ impl PathTracer {
                 }
                 eight.slots[lane] = hit.path.slot;
             }
+            output.queues.first_surfaces.leave_block();
         }
         let Some(first) = &rows[0] else { return };
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));

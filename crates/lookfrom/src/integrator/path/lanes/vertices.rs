@@ -2,11 +2,11 @@
 
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
+use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::Width;
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
-use crate::integrator::FirstSurfaceColumns;
 use crate::integrator::path::Vertex;
 
 /// Eight vertices in memory, by component.

@@ -12,7 +12,7 @@ use crate::world::World;
 /// The quantity of the first hit that is shown in place of light; black where nothing is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum FirstHit {
+pub enum FalseColor {
     /// The shading normal in the world: `½ + ½ n` in red, green, blue.
     Normals,
     /// The distance from the camera along the view axis, in the scene's units, in all three channels.
@@ -28,7 +28,7 @@ pub enum FirstHit {
     Id,
 }
 
-impl Integrator for FirstHit {
+impl Integrator for FalseColor {
     const IS_LIGHT: bool = false;
 
     type State = ();
@@ -70,7 +70,7 @@ impl Integrator for FirstHit {
     }
 }
 
-impl FirstHit {
+impl FalseColor {
     fn color(self, surface: &SurfaceInteraction) -> [f32; 3] {
         match self {
             Self::Normals => (0.5 + 0.5 * surface.ns).to_array(),

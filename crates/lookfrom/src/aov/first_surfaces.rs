@@ -1,0 +1,184 @@
+//! The first surfaces of a batch of camera rays: those that steps leave, and those that are found again after it.
+//!
+//! No probe is needed, so that rendering is not slowed down: steps leave the surfaces that they have at hand; first hits
+//! are noted besides as they are traced, and evaluated after the batch where no step has left a surface. Where a ray
+//! passes a surface as if it were not there, the hit behind it counts; but where chance decides that, by an alpha between
+//! 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise that light does not have.
+
+use glam::Vec3;
+use lookfrom_bvh::{Hit, Ray};
+use lookfrom_simd::LaneMask;
+
+use super::{AovColumns, Aovs, CameraSpace, FirstSurfaceColumns};
+use crate::core::lanes::LANES;
+use crate::shading::interaction::SurfaceInteraction;
+use crate::world::World;
+
+/// Number of surfaces of fractional alpha that are looked through.
+const MOST_LAYERS: usize = 16;
+
+/// The part of a pixel, left behind surfaces that cover nearly all of it, below which nothing is looked at.
+const LEAST_PART: f32 = 1.0 / 256.0;
+
+/// The first surfaces of a batch, by slot, in memory that is reused.
+#[derive(Debug, Default)]
+pub struct FirstSurfaces {
+    /// The space of AOVs; `None` where none are wanted.
+    space: Option<CameraSpace>,
+    /// By slot.
+    aovs: Vec<AovColumns>,
+    /// The surfaces that a step is about to leave.
+    block: FirstSurfaceColumns,
+    /// The hits of the camera's rays, by slot.
+    outermost: Vec<Hit>,
+    /// Further hits of rays that have passed surfaces, with their slots, in the order in which they were found.
+    behind: Vec<(u32, RayHit)>,
+    /// Whether rays may pass surfaces yet.
+    go_on: bool,
+}
+
+/// A ray and what it has hit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayHit {
+    pub(crate) ray: Ray,
+    pub(crate) hit: Hit,
+}
+
+impl FirstSurfaces {
+    /// Sets the space of the AOVs of batches to come; `None` where none are wanted.
+    pub(crate) fn set_space(&mut self, space: Option<CameraSpace>) {
+        self.space = space;
+    }
+
+    /// Whether steps are to leave surfaces.
+    #[inline]
+    pub(crate) fn are_wanted(&self) -> bool {
+        self.space.is_some()
+    }
+
+    /// Removes all, for a batch of `count` camera rays.
+    pub(crate) fn start(&mut self, count: usize) {
+        if self.are_wanted() {
+            self.aovs.resize(count.div_ceil(LANES), AovColumns::default());
+            self.aovs.iter_mut().for_each(|eight| eight.hits = 0);
+        }
+        self.outermost.clear();
+        self.behind.clear();
+        self.go_on = true;
+    }
+
+    /// Notes the hits of the camera's rays, by slot.
+    pub(crate) fn note_outermost(&mut self, hits: &[Hit]) {
+        if self.are_wanted() {
+            self.outermost.extend_from_slice(hits);
+        }
+    }
+
+    /// Notes the hits of those that have passed the surfaces so far, with their slots.
+    pub(crate) fn note_behind(&mut self, hits: impl Iterator<Item = (u32, RayHit)>) {
+        if self.are_wanted() && self.go_on {
+            let count = self.behind.len();
+            self.behind.extend(hits);
+            self.go_on = self.behind.len() > count;
+        }
+    }
+
+    /// Eight surfaces, to be replaced by a step and left by [`Self::leave_block`].
+    #[inline]
+    pub(crate) fn block(&mut self) -> &mut FirstSurfaceColumns {
+        &mut self.block
+    }
+
+    /// Leaves the surfaces of [`Self::block`].
+    pub(crate) fn leave_block(&mut self) {
+        if let Some(space) = &self.space {
+            space.set_aovs(&self.block, &mut self.aovs);
+        }
+    }
+
+    /// Leaves the surface of a slot; with its albedo, where that is known.
+    pub(crate) fn leave(
+        &mut self,
+        world: &World,
+        slot: u32,
+        surface: &SurfaceInteraction,
+        albedo: Option<[f32; 3]>,
+    ) {
+        if let Some(space) = &self.space {
+            let slot = slot as usize;
+            self.aovs[slot / LANES].set(slot % LANES, &space.aovs(world, surface, albedo));
+        }
+    }
+
+    /// The AOVs by slot, at the end of a batch of camera rays, where they are wanted. Of few hits no step has left a surface, as of those
+    /// that light may pass as if they were not there.
+    pub(crate) fn aovs(&mut self, world: &World, rays: &[Ray]) -> Option<&[AovColumns]> {
+        let space = self.space?;
+        // Of the hits of a slot, the last one counts.
+        self.behind.sort_by_key(|&(slot, _)| slot);
+        for (block, hits) in self.outermost.chunks(LANES).enumerate() {
+            let left = !self.aovs[block].hits & ((1 << hits.len()) - 1);
+            for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit()) {
+                let slot = block * LANES + lane;
+                if let Some(aovs) = self.found_again(world, &space, slot, rays[slot]) {
+                    self.aovs[block].set(lane, &aovs);
+                }
+            }
+        }
+        Some(&self.aovs)
+    }
+
+    /// The AOVs of a slot by its noted hits; `None` for a miss.
+    pub(crate) fn found_again(
+        &self,
+        world: &World,
+        space: &CameraSpace,
+        slot: usize,
+        ray: Ray,
+    ) -> Option<Aovs> {
+        let outermost = RayHit { ray, hit: self.outermost[slot] };
+        let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
+        let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
+        let blended = if world.has_gaps { space.blended_aovs(world, outermost) } else { None };
+        blended.or_else(|| {
+            let RayHit { ray, hit } = behind.map_or(outermost, |(_, seen)| *seen);
+            hit.is_hit().then(|| space.aovs(world, &world.surface(&ray, &hit), None))
+        })
+    }
+}
+
+impl CameraSpace {
+    /// The mean albedo and shading normal of all surfaces along a camera ray by what each covers, and the place of the one
+    /// that covers most; `None` where none has an alpha between 0 and 1. What nothing covers is white, as a miss is.
+    fn blended_aovs(&self, world: &World, outermost: RayHit) -> Option<Aovs> {
+        let RayHit { mut ray, mut hit } = outermost;
+        let (mut left, mut is_blended) = (1.0, false);
+        let (mut albedo, mut ns) = (Vec3::ZERO, Vec3::ZERO);
+        let mut most: Option<(f32, Aovs)> = None;
+        for _ in 0..MOST_LAYERS {
+            if !hit.is_hit() {
+                break;
+            }
+            let surface = world.surface(&ray, &hit);
+            let opacity = world.opacity(&surface);
+            is_blended |= opacity > 0.0 && opacity < 1.0;
+            if opacity > 0.0 {
+                let aovs = self.aovs(world, &surface, None);
+                let part = left * opacity;
+                albedo += part * Vec3::from(aovs.albedo);
+                ns += part * Vec3::from(aovs.ns);
+                if most.is_none_or(|(greatest, _)| part > greatest) {
+                    most = Some((part, aovs));
+                }
+            }
+            left *= 1.0 - opacity;
+            if left < LEAST_PART {
+                break;
+            }
+            ray = Ray::new(surface.origin(Vec3::from(ray.direction)), ray.direction);
+            hit = world.bvh.query().origin(surface.origin_primitive).closest_hit(&ray);
+        }
+        let (_, aovs) = most.filter(|_| is_blended)?;
+        Some(Aovs { albedo: (albedo + left).to_array(), ns: ns.normalize_or_zero().to_array(), ..aovs })
+    }
+}

@@ -1,0 +1,99 @@
+//! AOVs of a picture: those of a batch, for the film.
+
+use super::{Batch, Renderer, SampleId};
+use crate::aov::CameraSpace;
+use crate::film::FilmTile;
+
+impl Renderer {
+    /// The space of AOVs.
+    pub(super) fn camera_space(&self) -> CameraSpace {
+        CameraSpace::new(self.view.camera.world_from_view(), self.world.origin)
+    }
+
+    /// Adds the AOVs of a sample of each pixel to a tile or to its sums, where they are wanted.
+    pub(super) fn add_aovs(&self, ids: &[SampleId], batch: &mut Batch, tile: &mut FilmTile) {
+        let Batch { aov_sums, queues, start, .. } = batch;
+        if let Some(aovs) = queues.first_surfaces.aovs(&self.world, &start.rays) {
+            tile.add_first_hits(ids, aovs, aov_sums);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path as FilePath;
+
+    use lookfrom_scene::LoadContext;
+    use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds};
+
+    use super::super::blocks;
+    use super::*;
+    use crate::film::Film;
+
+    /// Compares the AOVs of a scene's film with those of each sample's first hits, evaluated one by one.
+    fn test_scene(name: &str, integrator: Option<Integrator>, color: ColorMode) {
+        let path = FilePath::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+        let mut context = LoadContext::new(&lookfrom_scene::Disk);
+        let mut scene = lookfrom_scene::load::scene(&path.with_extension("toml"), &mut context).unwrap();
+        scene.render.integrator = integrator.unwrap_or(scene.render.integrator);
+        scene.render.color = color;
+        let image = &mut scene.image;
+        (image.width, image.height, image.crop) = (41, 27, None);
+        (image.layers, image.denoise) = (Layers::Geometry, true);
+        let image = image.clone();
+        let renderer = Renderer::of_scene(scene, &mut Vec::new()).unwrap();
+        let area = PixelBounds { x0: 0, y0: 0, x1: 41, y1: 27 };
+        let tile = FilmTile::for_image(area, &image).unwrap();
+        let (mut together, mut each) = (tile.clone(), tile);
+        renderer.render_tile(0..3, &mut together).unwrap();
+        let space = renderer.camera_space();
+        for sample in 0..3 {
+            let ids: Vec<SampleId> =
+                blocks(&[area]).into_iter().map(|pixel| SampleId { pixel, sample }).collect();
+            let mut batch = Batch::default();
+            batch.queues.first_surfaces.set_space(Some(space));
+            renderer.integrator.trace(&renderer, &ids, &mut batch);
+            let Batch { queues, start, .. } = &mut batch;
+            queues.first_surfaces.aovs(&renderer.world, &start.rays);
+            for (slot, id) in ids.iter().enumerate() {
+                let aovs = queues.first_surfaces.found_again(&renderer.world, &space, slot, start.rays[slot]);
+                each.add_first_hit(id.pixel[0], id.pixel[1], sample, aovs.as_ref());
+            }
+        }
+        let [together, each] = [together, each].map(|tile| {
+            let mut film = Film::for_image(&image).unwrap();
+            film.add_tile(&tile).unwrap();
+            film
+        });
+        for [x, y] in blocks(&[area]) {
+            let aovs = |film: &Film| (film.aovs(x, y), film.denoiser_features(x, y));
+            assert_eq!(aovs(&together), aovs(&each), "{name}, {integrator:?}, {color:?}, pixel {x} {y}");
+        }
+    }
+
+    #[test]
+    fn first_hits_of_eight_are_those_of_each() {
+        for name in
+            ["whitted1980", "many-lights", "materials", "textures", "instances", "cutouts", "still-life"]
+        {
+            test_scene(name, None, ColorMode::Rgb);
+        }
+    }
+
+    #[test]
+    fn those_of_whitteds_model_are_of_any_material_and_in_spectra() {
+        for name in ["materials", "textures", "cutouts", "still-life"] {
+            test_scene(name, Some(Integrator::Whitted), ColorMode::Rgb);
+        }
+        test_scene("textures", None, ColorMode::Spectral);
+        test_scene("textures", Some(Integrator::Path), ColorMode::Rgb);
+        test_scene("textures", Some(Integrator::Raycast), ColorMode::Rgb);
+    }
+
+    #[test]
+    fn false_colours_and_occlusion_leave_them_too() {
+        for integrator in [Integrator::Normals, Integrator::AmbientOcclusion { cosine: true }] {
+            test_scene("cutouts", Some(integrator), ColorMode::Rgb);
+        }
+    }
+}
