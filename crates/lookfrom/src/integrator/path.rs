@@ -11,7 +11,7 @@ use lookfrom_bvh::Hit;
 
 use lanes::Waiting;
 
-use crate::core::lanes::are_shaded_together;
+use crate::core::lanes::{LANES, are_shaded_together};
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{
@@ -192,10 +192,7 @@ impl PathTracer {
 
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
-            if !output.shows_background(&path) {
-                self.add_sky(world, &path, output);
-            }
-            return;
+            return self.escape(world, (&[&path; LANES], 1), output);
         }
         let surface = world.surface(&path.ray, hit);
 
@@ -243,19 +240,6 @@ impl PathTracer {
         if path.depth < self.depth && shading.bsdf.lobes() != Lobes::NONE {
             let vertex = Vertex { path, surface, shading, stream: *stream, is_catcher };
             waiting.push_vertex(self, world, vertex, output);
-        }
-    }
-
-    fn add_sky<P: Probe>(&self, world: &World, path: &Path, output: &mut StepOutput<'_, P>) {
-        let direction = Vec3::from_array(path.ray.direction).normalize();
-        for &index in &world.environments {
-            // Some skies do not illuminate: they are only visible to the camera, in mirrors and through glass.
-            if path.blurred && !world.lights[index as usize].illuminates() {
-                continue;
-            }
-            let radiance = world.sky_of(index, &path.ray, &output.mode(path));
-            let pdf = || world.light_pdf(index, &path.state.light_context(), direction, None);
-            self.add_found(path, index, radiance, pdf, output);
         }
     }
 

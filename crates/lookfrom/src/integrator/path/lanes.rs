@@ -97,7 +97,7 @@ impl Waiting {
         index: usize,
         output: &mut StepOutput<'_, P>,
     ) {
-        self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape(batch, eight, output));
+        self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape_together(batch, eight, output));
     }
 
     /// Adds a hit, and scatters the hits of its class where they fill the lanes.
@@ -143,7 +143,7 @@ impl Waiting {
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        self.bins.flush(1 << ESCAPED, |eight| tracer.escape(batch, eight, output));
+        self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
         for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
             let memory = &mut self.memory;
             self.bins.flush(1 << class as usize, |eight| {

@@ -1,27 +1,38 @@
-//! Paths that leave the scene, eight at a time: the light of the environments.
+//! Paths that leave the scene, up to eight at a time: the light of the environments.
 
 use glam::Vec3;
 
-use crate::core::lanes::by_lane;
+use crate::core::lanes::{LANES, are_shaded_together, by_lane};
 use crate::integrator::Probe;
 use crate::integrator::path::PathTracer;
 use crate::integrator::path::{HitBatch, Path, StepOutput};
 use crate::integrator::wavefront::Eight;
 use crate::light::Light;
+use crate::world::World;
 
 impl PathTracer {
     /// Adds the light of the environments to up to eight paths of a batch that hit nothing, in no medium.
-    pub(super) fn escape<P: Probe>(
+    pub(super) fn escape_together<P: Probe>(
         &self,
         batch: &HitBatch<'_>,
         eight: &Eight<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        let (world, indices) = (batch.world, eight.paths);
-        // Unused lanes repeat the last path.
+        let indices = eight.paths;
         let paths = by_lane!(lane => &batch.paths[indices[lane.min(indices.len() - 1)] as usize]);
+        self.escape(batch.world, (&paths, indices.len()), output);
+    }
+
+    /// Adds the light of the environments to a number of paths that leave the scene, attenuated on their way. Unused lanes repeat
+    /// the last path.
+    pub(in crate::integrator::path) fn escape<P: Probe>(
+        &self,
+        world: &World,
+        (paths, count): (&[&Path; LANES], usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
         let mut sees_sky = 0;
-        for (lane, path) in paths.iter().enumerate().take(indices.len()) {
+        for (lane, path) in paths.iter().enumerate().take(count) {
             sees_sky |= u32::from(!output.shows_background(path)) << lane;
         }
         let directions = by_lane!(lane => Vec3::from_array(paths[lane].ray.direction).normalize());
@@ -33,7 +44,7 @@ impl PathTracer {
             for (lane, path) in paths.iter().enumerate() {
                 lanes |= u32::from(is_lit(path)) << lane & sees_sky;
             }
-            let Some(sky) = environment.map_in_lanes() else {
+            let Some(sky) = environment.map_in_lanes().filter(|_| are_shaded_together()) else {
                 for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
                     let radiance = world.sky_of(index, &path.ray, &output.mode(path));
                     let pdf = || world.light_pdf(index, &path.state.light_context(), directions[lane], None);
