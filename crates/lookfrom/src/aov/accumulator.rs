@@ -8,7 +8,7 @@ use lookfrom_simd::{Float, LaneMask, Real, Simd, f32x8, f64x8, mask32x8, prelude
 use super::{AovColumns, AovSums, LayerSums};
 use crate::core::accumulator::{Accumulator, PixelBlock, PixelSamples, nearest_integers};
 use crate::core::fixed_point::TWO_TO_32;
-use crate::core::lanes::{Columns, LANES, load};
+use crate::core::lanes::{Columns, LANES, load, row};
 use crate::core::sampler::SampleId;
 
 /// Positions and texture coordinates from this magnitude on are multiples of 2⁻⁴⁷: 2⁻²⁴.
@@ -41,8 +41,10 @@ const SUMS: usize = 20;
 #[derive(Debug, Default)]
 pub(crate) struct AovAccumulator {
     sums: Accumulator<SUMS>,
-    /// For each block of eight pixels the lanes that have had a hit.
+    /// For each block of eight pixels the lanes that have had a hit which was not left out.
     seen: Vec<u32>,
+    /// The first of these hits, by pixel; the others are any.
+    firsts: Vec<AovSums>,
     /// Whether the sums count for the denoiser, too.
     pub(crate) are_features: bool,
 }
@@ -54,57 +56,54 @@ impl AovAccumulator {
         self.sums.samples()
     }
 
-    /// Adds the first hits of a sample of each pixel: as far as the denoiser needs them, or also for layers. The sums of those that are
-    /// left out, and of what only the first hit of a pixel has, are passed to `merge` with their indices.
+    /// Adds the first hits of a sample of each pixel: as far as the denoiser needs them, or also for layers. `merge` is called with
+    /// those that are left out.
     pub(crate) fn add(
         &mut self,
         ids: &[SampleId],
         columns: &[AovColumns],
         has_layers: bool,
-        mut merge: impl FnMut(SampleId, &LayerSums),
+        mut merge: impl FnMut(&SampleId, &LayerSums),
     ) {
-        for &index in self.sums.add(columns.len(), &AovSamples { columns, has_layers }) {
-            let (id, aovs) = (ids[index], columns[index / LANES].of(index % LANES));
-            merge(id, &LayerSums::of_hit(id.sample, &aovs));
-        }
         self.seen.resize(columns.len(), 0);
-        for (block, (seen, columns)) in self.seen.iter_mut().zip(columns).enumerate() {
-            for lane in LaneMask(columns.hits & !*seen) {
-                let (id, aovs) = (ids[block * LANES + lane], columns.of(lane));
-                if aovs.is_finite() {
-                    *seen |= 1 << lane;
-                    merge(
-                        id,
-                        &LayerSums { shared: AovSums::of_first(id.sample, &aovs), ..Default::default() },
-                    );
-                }
+        self.firsts.resize(columns.len() * LANES, AovSums::default());
+        let left_out = self.sums.add(columns.len(), &AovSamples { columns, has_layers });
+        for (block, (columns, left_out)) in columns.iter().zip(left_out).enumerate() {
+            let new = columns.hits & !left_out & !self.seen[block];
+            if new | left_out == 0 {
+                continue;
+            }
+            self.seen[block] |= new;
+            for lane in LaneMask(new) {
+                let index = block * LANES + lane;
+                let (ng, position) = (row(&columns.ng, lane), row(&columns.position, lane));
+                self.firsts[index] = AovSums::of_first(ids[index].sample, ng, position);
+            }
+            for lane in LaneMask(*left_out) {
+                let id = &ids[block * LANES + lane];
+                merge(id, &LayerSums::of_hit(id.sample, &columns.of(lane)));
             }
         }
     }
 
-    /// Removes the sums of all pixels.
-    pub(crate) fn drain(&mut self) -> impl Iterator<Item = LayerSums> {
-        self.seen.clear();
-        let samples = self.sums.samples().into();
-        self.sums.drain().map(move |sums| {
+    /// Removes the sums of all pixels, after a call of `each` with the index of each and its sums.
+    pub(crate) fn drain(&mut self, mut each: impl FnMut(usize, &LayerSums)) {
+        let Self { sums, seen, firsts, .. } = self;
+        let samples = sums.samples().into();
+        sums.drain(|index, sums| {
             let sums = sums.map(u64::cast_signed);
             let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
             let place = |index: usize| {
                 let [upper, lower] = [0, 1].map(|half| i128::from(sums[PLACES + 2 * index + half]));
                 (upper << 41) + (lower << 17)
             };
-            LayerSums {
-                shared: AovSums {
-                    albedo: three(ALBEDO),
-                    ns: three(NS),
-                    samples,
-                    hits: sums[HITS].cast_unsigned(),
-                    ..AovSums::default()
-                },
-                ng: three(NG),
-                places: [0, 1, 2, 3, 4].map(place),
-            }
-        })
+            let is_seen = seen[index / LANES] >> (index % LANES) & 1 != 0;
+            let first = if is_seen { firsts[index] } else { AovSums::default() };
+            let hits = sums[HITS].cast_unsigned();
+            let shared = AovSums { albedo: three(ALBEDO), ns: three(NS), samples, hits, ..first };
+            each(index, &LayerSums { shared, ng: three(NG), places: [0, 1, 2, 3, 4].map(place) });
+        });
+        seen.clear();
     }
 }
 

@@ -44,11 +44,7 @@ impl CameraSpace {
     /// Sets the AOVs of a block of surfaces, by slot.
     #[inline(never)]
     pub(super) fn set_aovs(&self, surfaces: &FirstSurfaceColumns, aovs: &mut [AovColumns]) {
-        let columns = dispatch(level(), AovKernel { space: self, surfaces });
-        for lane in LaneMask(columns.hits) {
-            let slot = surfaces.slots[lane] as usize;
-            aovs[slot / LANES].set(slot % LANES, &columns.of(lane));
-        }
+        dispatch(level(), AovKernel { space: self, surfaces, aovs });
     }
 
     #[inline(always)]
@@ -84,14 +80,16 @@ fn mirrored<R: Real>(v: Vector<R::Double>) -> Vector<R> {
 struct AovKernel<'a> {
     space: &'a CameraSpace,
     surfaces: &'a FirstSurfaceColumns,
+    /// By slot.
+    aovs: &'a mut [AovColumns],
 }
 
 impl Kernel for AovKernel<'_> {
-    type Output = AovColumns;
+    type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> AovColumns {
-        let Self { space, surfaces } = self;
+    fn run<S: Simd>(self, simd: S) {
+        let Self { space, surfaces, aovs } = self;
         let wo = load(simd, &surfaces.wo);
         let ng = store(space.normal(load(simd, &surfaces.ng), wo));
         // Most surfaces are not smoothed.
@@ -99,13 +97,17 @@ impl Kernel for AovKernel<'_> {
             true => ng,
             false => store(space.normal(load(simd, &surfaces.ns), wo)),
         };
-        AovColumns {
+        let columns = AovColumns {
             albedo: surfaces.albedo,
             ng,
             ns,
             position: store::<f32x8<S>>(space.position(load_f64(simd, &surfaces.position))),
             uv: surfaces.uv,
             hits: surfaces.lanes,
+        };
+        for lane in LaneMask(surfaces.lanes) {
+            let slot = surfaces.slots[lane] as usize;
+            aovs[slot / LANES].set(slot % LANES, &columns.of(lane));
         }
     }
 }

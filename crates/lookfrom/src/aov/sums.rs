@@ -78,9 +78,9 @@ fn merge_narrow(sums: &mut [i64; 3], others: [i64; 3]) {
 }
 
 impl AovSums {
-    /// The geometric normal and position of a finite hit, if it is that of the first sample with one, and no sums.
-    pub(super) fn of_first(sample: u32, aovs: &Aovs) -> Self {
-        let [ng, position] = [aovs.ng, aovs.position].map(|numbers| numbers.map(f32::to_bits));
+    /// No sums, but what only the first sample with a hit has.
+    pub(super) fn of_first(sample: u32, ng: [f32; 3], position: [f32; 3]) -> Self {
+        let [ng, position] = [ng, position].map(|numbers| numbers.map(f32::to_bits));
         Self { first: sample, ng, position, ..Self::default() }
     }
 
@@ -120,7 +120,7 @@ impl LayerSums {
             return Self::default();
         }
         let Aovs { albedo, ng, ns, position: [x, y, z], uv: [u, v] } = *aovs;
-        let first = AovSums::of_first(sample, aovs);
+        let first = AovSums::of_first(sample, ng, aovs.position);
         Self {
             shared: AovSums { albedo: narrow(albedo, 0.0), ns: narrow(ns, -1.0), hits: 1, ..first },
             ng: narrow(ng, -1.0),

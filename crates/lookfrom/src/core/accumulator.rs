@@ -4,9 +4,9 @@
 //! fit into 64 bits. Other samples are left out, to be added one by one. Sums of integers do not depend on how they are grouped, so the
 //! film is the same.
 
-use lookfrom_simd::{Kernel, LaneMask, Simd, dispatch, f64x8, level, prelude::*, u64x8};
+use lookfrom_simd::{Kernel, Simd, dispatch, f64x8, level, prelude::*, u64x8};
 
-use crate::core::lanes::{Columns, LANES, row};
+use crate::core::lanes::{Columns, LANES};
 
 /// Maximum number of samples of a pixel that are summed: less than 2⁶⁴ / 2⁵¹.
 pub(crate) const MOST_SAMPLES: u32 = 4096;
@@ -44,17 +44,17 @@ pub(crate) trait PixelSamples<const N: usize> {
 #[derive(Debug, Default)]
 pub(crate) struct Accumulator<const N: usize> {
     blocks: Vec<PixelBlock<N>>,
+    /// For each block the lanes that were left out last.
+    left_out: Vec<u32>,
     /// Number of samples that were added to each pixel.
     samples: u32,
-    /// Indices of the samples that were left out last.
-    left_out: Vec<usize>,
 }
 
 impl<const N: usize> Accumulator<N> {
-    /// Adds a sample of each pixel, always of the same ones until [`Accumulator::drain`]. The indices of those that were left out.
-    pub(crate) fn add(&mut self, blocks: usize, samples: &impl PixelSamples<N>) -> &[usize] {
+    /// Adds a sample of each pixel, always of the same ones until [`Accumulator::drain`]. For each block the lanes that were left out.
+    pub(crate) fn add(&mut self, blocks: usize, samples: &impl PixelSamples<N>) -> &[u32] {
         self.blocks.resize(blocks, PixelBlock([[0; LANES]; N]));
-        self.left_out.clear();
+        self.left_out.resize(blocks, 0);
         dispatch(level(), AddKernel { samples, blocks: &mut self.blocks, left_out: &mut self.left_out });
         self.samples += 1;
         &self.left_out
@@ -65,10 +65,17 @@ impl<const N: usize> Accumulator<N> {
         self.samples
     }
 
-    /// Removes the sums of all pixels.
-    pub(crate) fn drain(&mut self) -> impl Iterator<Item = [u64; N]> {
+    /// Removes the sums of all pixels, after a call of `each` with the index of each and its sums.
+    pub(crate) fn drain(&mut self, mut each: impl FnMut(usize, [u64; N])) {
+        for (block, PixelBlock(sums)) in self.blocks.iter().enumerate() {
+            for lane in 0..LANES {
+                let mut pixel = [0; N];
+                pixel.iter_mut().zip(sums).for_each(|(to, sums)| *to = sums[lane]);
+                each(block * LANES + lane, pixel);
+            }
+        }
+        self.blocks.clear();
         self.samples = 0;
-        self.blocks.drain(..).flat_map(|PixelBlock(sums)| (0..LANES).map(move |lane| row(&sums, lane)))
     }
 }
 
@@ -76,7 +83,7 @@ impl<const N: usize> Accumulator<N> {
 struct AddKernel<'a, T, const N: usize> {
     samples: &'a T,
     blocks: &'a mut [PixelBlock<N>],
-    left_out: &'a mut Vec<usize>,
+    left_out: &'a mut [u32],
 }
 
 impl<T: PixelSamples<N>, const N: usize> Kernel for AddKernel<'_, T, N> {
@@ -85,11 +92,8 @@ impl<T: PixelSamples<N>, const N: usize> Kernel for AddKernel<'_, T, N> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { samples, blocks, left_out } = self;
-        for (block, sums) in blocks.iter_mut().enumerate() {
-            let lanes = samples.add_to(simd, block, sums);
-            if lanes != 0 {
-                left_out.extend(LaneMask(lanes).map(|lane| block * LANES + lane));
-            }
+        for (block, (sums, left_out)) in blocks.iter_mut().zip(left_out).enumerate() {
+            *left_out = samples.add_to(simd, block, sums);
         }
     }
 }

@@ -20,9 +20,9 @@ impl FilmTile {
     /// Moves the sums of the pixels into the tile.
     pub(crate) fn add_first_hit_sums(&mut self, ids: &[SampleId], sums: &mut AovAccumulator) {
         let are_features = sums.are_features;
-        for (id, aovs) in ids.iter().zip(sums.drain()) {
-            self.merge_aovs(id.pixel, &aovs, are_features);
-        }
+        sums.drain(|index, aovs| {
+            ids.get(index).into_iter().for_each(|id| self.merge_aovs(id.pixel, aovs, are_features));
+        });
     }
 }
 

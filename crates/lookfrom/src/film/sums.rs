@@ -1,7 +1,7 @@
 //! Sums of light in 64 bits, eight pixels side by side: [`FilmTile::add`] for a sample of each pixel of a tile at once.
 
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
-use lookfrom_simd::{Float, Simd, f64x8, mask64x8, prelude::*};
+use lookfrom_simd::{Float, LaneMask, Simd, f64x8, mask64x8, prelude::*};
 
 use super::pixel::Pixel;
 use super::{FilmTile, SampleId};
@@ -24,9 +24,12 @@ impl FilmTile {
 
     /// Adds a sample of each pixel, to the tile or to `sums`; always the same pixels until [`FilmTile::add_sums`].
     pub(crate) fn add_samples(&mut self, ids: &[SampleId], light: &[[f32; 3]], sums: &mut SampleSums) {
-        for &index in sums.add(light.len().div_ceil(LANES), &LightSamples(light)) {
-            let SampleId { pixel: [x, y], sample } = ids[index];
-            self.add(x, y, sample, light[index]);
+        let left_out = sums.add(light.len().div_ceil(LANES), &LightSamples(light));
+        for (block, lanes) in left_out.iter().enumerate() {
+            for index in LaneMask(*lanes).map(|lane| block * LANES + lane) {
+                let SampleId { pixel: [x, y], sample } = ids[index];
+                self.add(x, y, sample, light[index]);
+            }
         }
         if sums.samples() == MOST_SAMPLES {
             self.add_sums(ids, sums);
@@ -35,11 +38,12 @@ impl FilmTile {
 
     /// Moves the sums of the pixels into the tile.
     pub(crate) fn add_sums(&mut self, ids: &[SampleId], sums: &mut SampleSums) {
-        for (id, [r, g, b, x, y, z, samples]) in ids.iter().zip(sums.drain()) {
-            let place = self.index_inside(id.pixel[0], id.pixel[1]);
+        sums.drain(|index, [r, g, b, x, y, z, samples]| {
+            let Some(SampleId { pixel: [column, row], .. }) = ids.get(index) else { return };
+            let place = self.index_inside(*column, *row);
             let sums = [r, g, b].map(|sum| i128::from(sum.cast_signed()) << 17);
             self.pixels[place].merge(&Pixel { sums, squares: [x, y, z].map(u128::from), samples });
-        }
+        });
     }
 }
 
