@@ -9,6 +9,7 @@
 mod bent_frames;
 mod kernel;
 mod mesh_hits;
+mod mesh_points;
 mod skies;
 mod vertices;
 
@@ -17,7 +18,7 @@ use lookfrom_bvh::Ray;
 use lookfrom_simd::LaneMask;
 
 use kernel::{ScatterKernel, Scattered, Task};
-use mesh_hits::MeshPoints;
+use mesh_points::MeshPoints;
 use vertices::VertexColumns;
 
 use super::{Departure, HitBatch, Path, StepOutput};

@@ -2,23 +2,22 @@
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive};
-use lookfrom_simd::{Float, Kernel, LaneMask, Simd, f32x8, prelude::*};
+use lookfrom_simd::LaneMask;
 
 use super::Memory;
-use super::bent_frames::BentFrames;
 use super::kernel::ScatterKernel;
-use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, LANES, bitmask, by_lane, gather, row, set_row, shade_together, store};
-use crate::core::points::{Lift, StoredPlacement};
-use crate::core::vector::Vector;
-use crate::integrator::path::{Departure, HitBatch, Path, StepOutput};
-use crate::integrator::path::{PathTracer, dimension};
+use super::mesh_points::{MeshKernel, MeshPoints};
+use crate::aov::FirstSurfaceColumns;
+use crate::core::lanes::{LANES, bitmask, by_lane, row, set_row};
+use crate::core::points::StoredPlacement;
+use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput, dimension};
 use crate::integrator::wavefront::{Boundary, Eight};
 use crate::integrator::{Event, Integrator, Probe, SampleStream};
-use crate::primitive::{Mesh, points_on_meshes};
+use crate::primitive::Mesh;
 use crate::shading::bsdf::BsdfClass;
-use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext, frame_about};
-use crate::shading::texture::TexturePoint;
+use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext};
+use crate::shading::texture::{LookUps, TexturePoint};
+use crate::world::World;
 
 impl<'a> HitBatch<'a> {
     /// Whether a path travels in no medium and comes from no shadow catcher.
@@ -48,13 +47,13 @@ impl<'a> HitBatch<'a> {
 
 /// A path that met a mesh.
 #[derive(Clone, Copy)]
-struct MeshHit<'a> {
-    path: &'a Path,
-    hit: &'a Hit,
-    mesh: &'a Mesh,
-    material: &'a Material,
+pub(super) struct MeshHit<'a> {
+    pub(super) path: &'a Path,
+    pub(super) hit: &'a Hit,
+    pub(super) mesh: &'a Mesh,
+    pub(super) material: &'a Material,
     /// The placement of the instance that the mesh is in.
-    placement: Option<StoredPlacement<'a>>,
+    pub(super) placement: Option<StoredPlacement<'a>>,
 }
 
 impl MeshHit<'_> {
@@ -63,6 +62,15 @@ impl MeshHit<'_> {
     fn passes_back_faces(&self) -> bool {
         self.mesh.binding.single_sided && !self.path.blurred
     }
+}
+
+/// Eight hits on meshes of one class, and the points there. Unused lanes repeat the last hit.
+pub(super) struct MeshHits<'a> {
+    pub(super) hits: [MeshHit<'a>; LANES],
+    /// Whether any material varies.
+    pub(super) vary: bool,
+    /// Lanes of camera rays whose surfaces AOVs need.
+    pub(super) are_first: u32,
 }
 
 impl PathTracer {
@@ -74,24 +82,57 @@ impl PathTracer {
         memory: &mut Memory,
         output: &mut StepOutput<'_, P>,
     ) {
-        let indices = eight.paths;
-        // Unused lanes repeat the last hit.
-        let hits = by_lane!(lane => match batch.mesh_hit(indices[lane.min(indices.len() - 1)]) {
-            Some(hit) => hit,
-            None => return,
-        });
-        let Memory { points: mesh_points, scattered } = memory;
-        let varies = hits.iter().any(|hit| hit.material.varies);
-        // Camera rays' surfaces, which AOVs need.
-        let are_first = match output.queues.first_surfaces.are_wanted() {
-            true => bitmask(&by_lane!(lane => hits[lane].path.is_root())),
-            false => 0,
-        };
-        MeshKernel { hits: &hits, varies, are_first: are_first != 0, points: mesh_points }.set_points();
-        let MeshPoints { surfaces, uv, front, smooth, bent } = mesh_points;
-        let (front, smooth) = (*front, *smooth);
+        let world = batch.world;
+        let Memory { points, scattered } = memory;
+        let wants_first = output.queues.first_surfaces.are_wanted();
+        let Some(mesh_hits) = MeshHits::of(batch, eight.paths, wants_first) else { return };
+        let hits = &mesh_hits.hits;
 
-        // Paths from the camera pass the back faces of single-sided meshes.
+        // Find the points; paths from the camera pass the back faces of single-sided meshes.
+        MeshKernel { mesh_hits: &mesh_hits, points }.set_points();
+        let active = self.pass_back_faces(batch, eight.paths, (hits, points.front), output);
+        if active == 0 {
+            return;
+        }
+
+        // Evaluate the materials, and bend the frames.
+        let mut look_ups = None;
+        let varying = mesh_hits.texture_points(world, points, &mut look_ups);
+        let varying = varying.as_ref();
+        let rows = self.rows::<B, P>(batch, hits, varying, points, output);
+        points.bent.bend(&mut points.surfaces, points.front);
+        if P::LISTENS {
+            tell_of_shading(world, (hits, active), &rows, points, output);
+        }
+        if active & mesh_hits.are_first != 0 {
+            let first = output.queues.first_surfaces.block();
+            mesh_hits.leave(world, active, varying, points, first);
+            output.queues.first_surfaces.leave_block();
+        }
+
+        // Scatter.
+        let Some(first) = &rows[0] else { return };
+        let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
+        let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
+        let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
+        ScatterKernel { world, surfaces: &points.surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+        let departure = |lane: usize| {
+            let MeshHit { path, hit, .. } = hits[lane];
+            let origin_primitive = OriginPrimitive::of(hit);
+            (Departure { path, origin_primitive, boundary: Boundary::None }, false)
+        };
+        self.go_on(world, departure, active, scattered, output);
+    }
+
+    /// Takes paths that pass the surface, because they hit the back of it, through it one by one. Returns the lanes of the others.
+    #[inline(always)]
+    fn pass_back_faces<P: Probe>(
+        &self,
+        batch: &HitBatch<'_>,
+        indices: &[u32],
+        (hits, front): (&[MeshHit<'_>; LANES], u32),
+        output: &mut StepOutput<'_, P>,
+    ) -> u32 {
         let mut active = (1 << indices.len()) - 1;
         for (lane, index) in indices.iter().enumerate() {
             if hits[lane].passes_back_faces() && front & 1 << lane == 0 {
@@ -100,32 +141,25 @@ impl PathTracer {
                 active &= !(1 << lane);
             }
         }
-        if active == 0 {
-            return;
-        }
+        active
+    }
 
-        // Evaluate the materials. Most are the same everywhere.
+    /// The rows of the materials' BSDFs. Frames that are bent alone are replaced; those that are bent together are noted.
+    #[inline(always)]
+    fn rows<B: MaterialRow, P: Probe>(
+        &self,
+        batch: &HitBatch<'_>,
+        hits: &[MeshHit<'_>; LANES],
+        varying: Option<&[TexturePoint<'_>; LANES]>,
+        points: &mut MeshPoints,
+        output: &mut StepOutput<'_, P>,
+    ) -> [Option<B>; LANES] {
         let world = batch.world;
-        let pictures = by_lane!(lane => &hits[lane].material.pictures);
-        let mut varying = None;
-        let look_ups;
-        if varies {
-            let points = varying.insert([TexturePoint::NOWHERE; LANES]);
-            for (lane, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
-                let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
-                points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
-            }
-            look_ups = world.textures.look_up_lanes(&pictures, points);
-            if let Some(look_ups) = &look_ups {
-                for (lane, point) in points.iter_mut().enumerate() {
-                    point.looked_up = Some(look_ups.of(pictures[lane], lane));
-                }
-            }
-        }
+        let &mut MeshPoints { ref mut surfaces, front, smooth, ref mut bent, .. } = points;
         let mut rows = [None; LANES];
         for (lane, hit) in hits.iter().enumerate() {
             let MeshHit { path, material, .. } = hit;
-            let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
+            let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
             let mut throughput = path.beta;
             let context = ShadingContext {
                 mode: &mut output.queues.modes[path.slot as usize],
@@ -153,45 +187,91 @@ impl PathTracer {
             }
             rows[lane] = row;
         }
-        bent.bend(surfaces, front);
-        for lane in LaneMask(active).filter(|_| P::LISTENS) {
-            let (MeshHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
-            let surface = world.surface(&path.ray, hit);
-            output.probe.notice(|| Event::Shaded {
-                address: path.address,
-                shading: Box::new(Shading::in_frame(&surface, surfaces.axes(lane), row.bsdf())),
-                surface: Box::new(surface),
-                beta: path.beta,
-            });
-        }
-        if active & are_first != 0 {
-            let eight = output.queues.first_surfaces.block();
-            surfaces.leave(eight);
-            (eight.lanes, eight.ns, eight.uv) = (active & are_first, bent.ns, *uv);
-            for lane in LaneMask(eight.lanes) {
-                let hit = &hits[lane];
-                let point = varying.as_ref().map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
-                let albedo = material::albedo(&world.materials, &world.textures, hit.material, point);
-                set_row(&mut eight.albedo, lane, albedo);
-                if hit.material.has_bumps() {
-                    set_row(&mut eight.ns, lane, surfaces.ns(lane));
-                }
-                eight.slots[lane] = hit.path.slot;
-            }
-            output.queues.first_surfaces.leave_block();
-        }
-        let Some(first) = &rows[0] else { return };
-        let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
+        rows
+    }
+}
 
-        let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
-        let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
-        ScatterKernel { world, surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
-        let departure = |lane: usize| {
-            let MeshHit { path, hit, .. } = hits[lane];
-            let origin_primitive = OriginPrimitive::of(hit);
-            (Departure { path, origin_primitive, boundary: Boundary::None }, false)
-        };
-        self.go_on(world, departure, active, scattered, output);
+impl<'a> MeshHits<'a> {
+    #[inline(always)]
+    fn of(batch: &HitBatch<'a>, indices: &[u32], wants_first: bool) -> Option<Self> {
+        let hits = by_lane!(lane => batch.mesh_hit(indices[lane.min(indices.len() - 1)])?);
+        let vary = hits.iter().any(|hit| hit.material.varies);
+        let are_first = if wants_first { bitmask(&by_lane!(lane => hits[lane].path.is_root())) } else { 0 };
+        Some(Self { hits, vary, are_first })
+    }
+
+    /// The texture points of materials that vary, with what their pictures are there, if any does.
+    #[inline(always)]
+    fn texture_points<'b>(
+        &self,
+        world: &'b World,
+        MeshPoints { surfaces, uv, .. }: &MeshPoints,
+        look_ups: &'b mut Option<LookUps>,
+    ) -> Option<[TexturePoint<'b>; LANES]>
+    where
+        'a: 'b,
+    {
+        if !self.vary {
+            return None;
+        }
+        let mut points = [TexturePoint::NOWHERE; LANES];
+        for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
+            let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
+            points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
+        }
+        let pictures = by_lane!(lane => &self.hits[lane].material.pictures);
+        *look_ups = world.textures.look_up_lanes(&pictures, &points);
+        if let Some(look_ups) = look_ups {
+            for (lane, point) in points.iter_mut().enumerate() {
+                point.looked_up = Some(look_ups.of(pictures[lane], lane));
+            }
+        }
+        Some(points)
+    }
+
+    /// Leaves the surfaces of active camera rays to AOVs.
+    #[inline(never)]
+    fn leave(
+        &self,
+        world: &World,
+        active: u32,
+        varying: Option<&[TexturePoint<'_>; LANES]>,
+        MeshPoints { surfaces, uv, bent, .. }: &MeshPoints,
+        first: &mut FirstSurfaceColumns,
+    ) {
+        surfaces.leave(first);
+        (first.lanes, first.ns, first.uv) = (active & self.are_first, bent.ns, *uv);
+        for lane in LaneMask(first.lanes) {
+            let hit = &self.hits[lane];
+            let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
+            let albedo = material::albedo(&world.materials, &world.textures, hit.material, point);
+            set_row(&mut first.albedo, lane, albedo);
+            if hit.material.has_bumps() {
+                set_row(&mut first.ns, lane, surfaces.ns(lane));
+            }
+            first.slots[lane] = hit.path.slot;
+        }
+    }
+}
+
+/// Tells a probe of the surfaces and their BSDFs, in the frames of the lanes.
+#[cold]
+fn tell_of_shading<B: MaterialRow, P: Probe>(
+    world: &World,
+    (hits, active): (&[MeshHit<'_>; LANES], u32),
+    rows: &[Option<B>; LANES],
+    points: &MeshPoints,
+    output: &mut StepOutput<'_, P>,
+) {
+    for lane in LaneMask(active) {
+        let (MeshHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
+        let surface = world.surface(&path.ray, hit);
+        output.probe.notice(|| Event::Shaded {
+            address: path.address,
+            shading: Box::new(Shading::in_frame(&surface, points.surfaces.axes(lane), row.bsdf())),
+            surface: Box::new(surface),
+            beta: path.beta,
+        });
     }
 }
 
@@ -199,70 +279,4 @@ impl PathTracer {
 #[inline]
 fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
     if B::TAKES_SEED { stream.two(dimension::WALK)[0] } else { 0.0 }
-}
-
-/// The points of eight hits, in the frames of materials without bump mapping.
-#[derive(Default)]
-pub(super) struct MeshPoints {
-    surfaces: VertexColumns,
-    uv: Columns<2>,
-    /// Bit i for lane i: whether the ray hit the outside.
-    front: u32,
-    /// Whether the shading normal is another than the geometric one.
-    smooth: u32,
-    /// The frames of materials that bend them.
-    bent: BentFrames,
-}
-
-/// Finds the points of hits.
-struct MeshKernel<'a> {
-    hits: &'a [MeshHit<'a>; LANES],
-    /// Whether any material varies.
-    varies: bool,
-    /// Whether AOVs need the surfaces.
-    are_first: bool,
-    points: &'a mut MeshPoints,
-}
-
-impl MeshKernel<'_> {
-    #[inline(never)]
-    fn set_points(self) {
-        shade_together(self);
-    }
-}
-
-impl Kernel for MeshKernel<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { hits, varies, are_first, points } = self;
-        let at = points_on_meshes(
-            simd,
-            &by_lane!(lane => hits[lane].mesh),
-            &by_lane!(lane => hits[lane].hit),
-            &by_lane!(lane => hits[lane].placement),
-            varies || are_first,
-        );
-        let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
-        let wide_wo = -direction.widen().normalize();
-        let wo = Vector::narrow(wide_wo);
-        let [ng, ns]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.ng), Vector::narrow(at.ns)];
-        let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));
-        let dpdu = Vector::narrow(at.shading_dpdu);
-        let (s, t) = frame_about(n, dpdu);
-        let is_flat = Float::eq(ns.x, ng.x) & Float::eq(ns.y, ng.y) & Float::eq(ns.z, ng.z);
-        points.smooth = !is_flat.to_bitmask() as u32;
-        let is_front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0));
-        points.front = is_front.to_bitmask() as u32;
-        let lift = Vector::<f32x8<S>>::narrow(at.lift);
-        points.surfaces.set(at.points, at.ng, [s, t, n], wo);
-        points.surfaces.set_lifts(Lift { way: lift, ns }, points.front);
-        points.uv = [at.uv[0].into(), at.uv[1].into()];
-        if are_first || hits.iter().any(|hit| hit.material.bends_frames()) {
-            let dpdv: Vector<f32x8<S>> = Vector::narrow(at.shading_dpdv);
-            (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
-            points.bent.dpdv = store(dpdv);
-        }
-    }
 }

@@ -1,0 +1,75 @@
+//! The points of hits on meshes, side by side.
+
+use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*};
+
+use super::bent_frames::BentFrames;
+use super::mesh_hits::MeshHits;
+use super::vertices::VertexColumns;
+use crate::core::lanes::{Columns, by_lane, gather, shade_together, store};
+use crate::core::points::Lift;
+use crate::core::vector::Vector;
+use crate::primitive::points_on_meshes;
+use crate::shading::material::frame_about;
+
+/// The points of eight hits, in the frames of materials without bump mapping.
+#[derive(Default)]
+pub(super) struct MeshPoints {
+    pub(super) surfaces: VertexColumns,
+    pub(super) uv: Columns<2>,
+    /// Bit i for lane i: whether the ray hit the outside.
+    pub(super) front: u32,
+    /// Whether the shading normal is another than the geometric one.
+    pub(super) smooth: u32,
+    /// The frames of materials that bend them.
+    pub(super) bent: BentFrames,
+}
+
+/// Finds the points of hits.
+pub(super) struct MeshKernel<'a> {
+    pub(super) mesh_hits: &'a MeshHits<'a>,
+    pub(super) points: &'a mut MeshPoints,
+}
+
+impl MeshKernel<'_> {
+    #[inline(never)]
+    pub(super) fn set_points(self) {
+        shade_together(self);
+    }
+}
+
+impl Kernel for MeshKernel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { mesh_hits: MeshHits { hits, vary, are_first }, points } = self;
+        let are_first = *are_first != 0;
+        let at = points_on_meshes(
+            simd,
+            &by_lane!(lane => hits[lane].mesh),
+            &by_lane!(lane => hits[lane].hit),
+            &by_lane!(lane => hits[lane].placement),
+            *vary || are_first,
+        );
+        let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
+        let wide_wo = -direction.widen().normalize();
+        let wo = Vector::narrow(wide_wo);
+        let [ng, ns]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.ng), Vector::narrow(at.ns)];
+        let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));
+        let dpdu = Vector::narrow(at.shading_dpdu);
+        let (s, t) = frame_about(n, dpdu);
+        let is_flat = Float::eq(ns.x, ng.x) & Float::eq(ns.y, ng.y) & Float::eq(ns.z, ng.z);
+        points.smooth = !is_flat.to_bitmask() as u32;
+        let is_front = at.ng.dot(wide_wo).gt(wide_wo.x.like(0.0));
+        points.front = is_front.to_bitmask() as u32;
+        let lift = Vector::<f32x8<S>>::narrow(at.lift);
+        points.surfaces.set(at.points, at.ng, [s, t, n], wo);
+        points.surfaces.set_lifts(Lift { way: lift, ns }, points.front);
+        points.uv = [at.uv[0].into(), at.uv[1].into()];
+        if are_first || hits.iter().any(|hit| hit.material.bends_frames()) {
+            let dpdv: Vector<f32x8<S>> = Vector::narrow(at.shading_dpdv);
+            (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
+            points.bent.dpdv = store(dpdv);
+        }
+    }
+}
