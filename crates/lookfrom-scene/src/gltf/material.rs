@@ -14,7 +14,7 @@ use super::texture::{Meaning, Textures, Use};
 use crate::error::Result;
 use crate::files::LoadContext;
 use crate::material::{
-    Anisotropy, BumpMapping, Color, Material, MaterialKind, NormalTexture, Principled, Scalar,
+    Anisotropy, BumpMapping, Color, Ior, Material, MaterialKind, NormalTexture, Principled, Scalar,
 };
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
@@ -249,7 +249,8 @@ impl Reader<'_, '_, '_> {
             let place = "/extensions/KHR_materials_iridescence/iridescenceTexture";
             let (info, factor) = (own.iridescence_texture.as_ref(), unit(own.iridescence_factor, 0.0));
             look.iridescence = self.number(factor, info, place, Channel::Red)?;
-            look.iridescence_ior = own.iridescence_ior.map_or(1.3, |ior| ior.clamp(1.0, 10.0) as f32);
+            look.iridescence_ior =
+                own.iridescence_ior.map_or(Principled::FILM_IOR, |ior| ior.clamp(1.0, 10.0) as f32);
             look.iridescence_thickness = self.film_thickness(own)?;
         }
         if let Some(own) = &extensions.anisotropy {
@@ -267,7 +268,7 @@ impl Reader<'_, '_, '_> {
     /// Thin-film thickness, interpolated between minimum and maximum by the texture's green channel; without a texture, the
     /// maximum.
     fn film_thickness(&mut self, own: &json::Iridescence) -> Result<Scalar> {
-        let most = positive(own.iridescence_thickness_maximum.unwrap_or(400.0));
+        let most = positive(own.iridescence_thickness_maximum.unwrap_or(Principled::FILM_THICKNESS.into()));
         let least = positive(own.iridescence_thickness_minimum.unwrap_or(100.0));
         let place = "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture";
         match self.number(1.0, own.iridescence_thickness_texture.as_ref(), place, Channel::Green)? {
@@ -293,13 +294,14 @@ impl Reader<'_, '_, '_> {
     }
 
     fn ior(&mut self, ior: Option<f64>) -> f32 {
-        match ior.unwrap_or(1.5) {
+        match ior.unwrap_or(Ior::GLASS.into()) {
             0.0 => 0.0,
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
                 let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.context.warn(&at, format!("the index of refraction {ior} is invalid; 1.5 is used"));
-                1.5
+                self.context
+                    .warn(&at, format!("the index of refraction {ior} is invalid; {} is used", Ior::GLASS));
+                Ior::GLASS
             }
         }
     }

@@ -25,7 +25,7 @@ use super::mtl::{self, Map, MtlMaterial, shown_name};
 use super::physical;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
-use crate::material::{BumpMapping, Color, Material, MaterialKind, Scalar, Whitted};
+use crate::material::{BumpMapping, Color, Ior, Material, MaterialKind, Scalar, Whitted};
 use crate::model::surface::{base_name, beside, push_texture, push_vertex_colors};
 use crate::model::tally::Tally;
 use crate::packed;
@@ -280,7 +280,7 @@ fn whitted(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> 
         transmission: Color::Value(filter.map(|value| value.min(1.0) * passing)),
         ior: match (written.ior, illumination) {
             (Some(ior), 4..=9) if ior > 0.0 => ior,
-            (_, 4 | 5 | 6 | 7 | 9) => 1.5,
+            (_, 4 | 5 | 6 | 7 | 9) => Ior::GLASS,
             _ => 1.0,
         },
         ..Whitted::default()

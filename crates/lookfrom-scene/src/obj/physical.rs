@@ -17,7 +17,7 @@
 use super::look::{Surface, diffuse, own_opacity, shininess};
 use super::maps::Maps;
 use super::mtl::{Map, MtlMaterial};
-use crate::material::{Anisotropy, Color, Principled, Scalar};
+use crate::material::{Anisotropy, Color, Ior, Principled, Scalar};
 use crate::model::surface::add_texture;
 use crate::texture::TextureKind;
 
@@ -45,7 +45,7 @@ pub(super) fn principled(written: &MtlMaterial, surface: Surface, maps: &mut Map
         base_color,
         metallic,
         roughness,
-        ior: written.ior.filter(|&ior| ior > 1.0).unwrap_or(1.5),
+        ior: written.ior.filter(|&ior| ior > 1.0).unwrap_or(Ior::GLASS),
         transmission: Scalar::Value(if is_glass { 1.0 } else { 0.0 }),
         is_solid: is_glass,
         sheen_color: match sheen {

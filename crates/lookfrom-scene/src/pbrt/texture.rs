@@ -143,7 +143,9 @@ impl Reader<'_, '_> {
         is_float: bool,
         kind_place: &Place,
     ) -> Result<TextureKind> {
-        let octaves = |p: &Parameters| p.integer("octaves", 8, 1, 16).map(|octaves| octaves as u32);
+        let octaves = |p: &Parameters| {
+            p.integer("octaves", TextureKind::OCTAVES as i32, 1, 16).map(|octaves| octaves as u32)
+        };
         Ok(match kind {
             "constant" => uniform(self.part(p, "value", 1.0, is_float)?),
             "scale" => TextureKind::Scale {
@@ -153,7 +155,7 @@ impl Reader<'_, '_> {
             "mix" => TextureKind::Mix {
                 low: self.part(p, "tex1", 0.0, is_float)?,
                 high: self.part(p, "tex2", 1.0, is_float)?,
-                amount: self.scalar(p, "amount", 0.5)?,
+                amount: self.scalar(p, "amount", TextureKind::MIX_AMOUNT)?,
             },
             "directionmix" => {
                 let direction = p.vector("dir", Kind::Vector3, DVec3::Y)?;
@@ -190,18 +192,18 @@ impl Reader<'_, '_> {
             "imagemap" => self.imagemap(p, is_float)?,
             "fbm" if is_float => TextureKind::Fbm {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 mapping: self.in_space(p)?,
             },
             "wrinkled" if is_float => TextureKind::Wrinkled {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 mapping: self.in_space(p)?,
             },
             "windy" if is_float => TextureKind::Windy { mapping: self.in_space(p)? },
             "marble" if !is_float => TextureKind::PbrtMarble {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 scale: p.float("scale", 1.0)?,
                 variation: p.float("variation", 0.2)?,
                 mapping: self.in_space(p)?,
