@@ -1,7 +1,7 @@
 //! The `Material` and `MakeNamedMaterial` directives.
 
 use super::lexer::Lexer;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use super::spectra::Meaning::{Reflectance, Unbounded};
 use super::text::Place;
 use super::{NamedMaterial, Reader};
@@ -149,7 +149,8 @@ impl Reader<'_, '_> {
             let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
             self.context.warn(&p.place.location(), message);
         }
-        let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
+        let place =
+            p.find("normalmap", &[ParameterType::String])?.map_or(&p.place, |parameter| &parameter.place);
         let image: ImageId = self.picture(name, "linear", place)?;
         Ok(BumpMapping::NormalMap(image))
     }
@@ -190,7 +191,7 @@ impl Reader<'_, '_> {
 
     fn index_of_refraction(&mut self, p: &Parameters, name: &'static str, default: f32) -> Result<Ior> {
         // pbrt prefers the spectrum if both are given.
-        if p.of_kind(name, Kind::Spectrum)?.is_none() {
+        if p.of_kind(name, ParameterType::Spectrum)?.is_none() {
             let value = p.float_or_none(name)?.unwrap_or(default);
             if !(value > 0.0) {
                 return Err(p.refuse(name, &format!("an index of refraction greater than 0, found {value}")));
@@ -220,7 +221,7 @@ impl Reader<'_, '_> {
     /// A mix of two materials that are already defined.
     fn mix(&mut self, p: &Parameters) -> Result<MaterialKind> {
         let amount = self.scalar(p, "amount", MaterialKind::MIX_AMOUNT)?;
-        let parameter = p.find("materials", &[Kind::String])?;
+        let parameter = p.find("materials", &[ParameterType::String])?;
         let Some(parameter) = parameter else {
             let error = p.place.invalid(format!("{} has no \"string materials\"", p.title));
             return Err(error

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lexer::Lexer;
-use super::params::{Kind, Parameter, Parameters};
+use super::params::{Parameter, ParameterType, Parameters};
 use super::picture::encoding_of;
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
@@ -158,7 +158,7 @@ impl Reader<'_, '_> {
                 amount: self.scalar(p, "amount", TextureKind::MIX_AMOUNT)?,
             },
             "directionmix" => {
-                let direction = p.vector("dir", Kind::Vector3, DVec3::Y)?;
+                let direction = p.vector("dir", ParameterType::Vector3, DVec3::Y)?;
                 let direction = self.state.matrix.transform_vector3(direction).try_normalize();
                 let direction = direction.ok_or_else(|| p.refuse("dir", "a vector other than 0"))?;
                 TextureKind::DirectionMix {
@@ -225,7 +225,7 @@ impl Reader<'_, '_> {
     }
 
     fn imagemap(&mut self, p: &Parameters, is_float: bool) -> Result<TextureKind> {
-        let parameter = p.find("filename", &[Kind::String])?;
+        let parameter = p.find("filename", &[ParameterType::String])?;
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
         let Some(name) = p.string("filename")? else {
             return Err(place
@@ -287,8 +287,8 @@ impl Reader<'_, '_> {
             _ => Mapping::Planar {
                 texture_from_world: self.texture_from_world(p)?,
                 axes: [
-                    p.vector("v1", Kind::Vector3, DVec3::X)?.as_vec3(),
-                    p.vector("v2", Kind::Vector3, DVec3::Y)?.as_vec3(),
+                    p.vector("v1", ParameterType::Vector3, DVec3::X)?.as_vec3(),
+                    p.vector("v2", ParameterType::Vector3, DVec3::Y)?.as_vec3(),
                 ],
                 offset,
             },
