@@ -44,7 +44,7 @@ pub(crate) enum Flaw {
 }
 
 /// A part of the surface of a solid, before booleans.
-pub(crate) struct Surface<'a> {
+pub(crate) struct OperandSurface<'a> {
     /// The number by which a result knows it.
     pub(crate) number: u32,
     pub(crate) mesh: &'a Mesh,
@@ -60,7 +60,7 @@ impl Solid {
     /// The solid that surfaces bound together, whichever side their front is on. What crosses itself (if it may), as the
     /// triangles of a letter may by a hair, is the union of what it surrounds. Vertices at the same place, as `f32`, are one: there
     /// faces of different operands that are meant to be flush are.
-    pub(crate) fn new(surfaces: &[Surface<'_>], may_cross: bool) -> std::result::Result<Self, Flaw> {
+    pub(crate) fn new(surfaces: &[OperandSurface<'_>], may_cross: bool) -> std::result::Result<Self, Flaw> {
         let mut soup = Soup::default();
         for surface in surfaces {
             soup.add(surface)?;
@@ -189,8 +189,8 @@ struct Soup {
 }
 
 impl Soup {
-    fn add(&mut self, surface: &Surface<'_>) -> std::result::Result<(), Flaw> {
-        let Surface { number, mesh, matrix } = surface;
+    fn add(&mut self, surface: &OperandSurface<'_>) -> std::result::Result<(), Flaw> {
+        let OperandSurface { number, mesh, matrix } = surface;
         let of_normals = DMat3::from_mat4(*matrix).inverse().transpose();
         let is_mirrored = matrix.determinant() < 0.0;
         let first = self.places.len() as u32;

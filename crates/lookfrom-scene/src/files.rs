@@ -233,6 +233,11 @@ pub struct ImportOptions {
     pub subdivision: u32,
 }
 
+impl ImportOptions {
+    /// The warning about a time without an animation.
+    pub(crate) const AT_REST: &str = "a time is given, but the file has no animations: it is at rest";
+}
+
 /// The selection of one of a file's cameras.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::model::{number, scan, text};
-use crate::{gltf, packed, pbrt, stl};
+use crate::{packed, stl};
 
 /// A format of scenes or models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,8 +30,8 @@ struct Row {
 /// All formats; where the content decides, the first that it suits.
 const FORMATS: &[Row] = &[
     Row { format: Format::Toml, extensions: &["toml"], may_be_packed: false, sniff: |_| false },
-    Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: pbrt::is_pbrt },
-    Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: gltf::is_gltf },
+    Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
+    Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: is_gltf },
     Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
     Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
     Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
@@ -69,6 +69,25 @@ impl Format {
     pub(crate) fn may_be_packed(self) -> bool {
         FORMATS.iter().any(|row| row.format == self && row.may_be_packed)
     }
+}
+
+/// Whether a text is a scene of pbrt: one of its first words is a directive that such files begin with.
+fn is_pbrt(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let lines = head.split(|&byte| byte == b'\n' || byte == b'\r');
+    lines.map(<[u8]>::trim_ascii).filter(|line| !line.is_empty() && line[0] != b'#').take(100).any(|line| {
+        let word = line.split(|byte| byte.is_ascii_whitespace() || *byte == b'"').next().unwrap_or_default();
+        matches!(word, b"WorldBegin" | b"LookAt" | b"Integrator" | b"PixelFilter" | b"AttributeBegin")
+    })
+}
+
+/// Whether a file's content is that of a glTF file: the signature of a GLB container, or JSON with an `asset`.
+fn is_gltf(content: &[u8]) -> bool {
+    let text = content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content).trim_ascii_start();
+    // `asset` may come later in the file; then only the file's extension identifies it.
+    let beginning = &text[..text.len().min(1 << 16)];
+    content.starts_with(b"glTF")
+        || (text.starts_with(b"{") && beginning.windows(7).any(|word| word == b"\"asset\""))
 }
 
 fn is_ply(bytes: &[u8]) -> bool {

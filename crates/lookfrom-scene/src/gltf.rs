@@ -32,16 +32,15 @@ use std::path::Path;
 
 use self::build::Model;
 use self::file::Document;
-pub(crate) use self::pose::AT_REST;
 use crate::budget::Reserved;
-use crate::error::Result;
+use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::load;
 use crate::scene::Scene;
-use crate::studio;
+use crate::{studio, subdivision};
 
 /// Reads a glTF file (`.gltf` or `.glb`) as a scene: path traced, with the Khronos PBR Neutral tone mapper, seen by the
-/// file's camera where it has one. [`LoadContext::import`] selects the scene, camera, animation and variant.
+/// file's camera where it has one. [`LoadContext::import`] selects the scene, camera, animation, variant and subdivision.
 ///
 /// # Errors
 /// `Io` and `Limit` if the file cannot be read, `Syntax` if it is not glTF, `Unsupported` if it is not version 2,
@@ -77,15 +76,6 @@ pub(crate) fn model(
     Ok(document_model(content, path, context, scene)?.into_parts())
 }
 
-/// Whether a file's content is that of a glTF file: the signature of a GLB container, or JSON with an `asset`.
-pub(crate) fn is_gltf(content: &[u8]) -> bool {
-    let text = content.strip_prefix("\u{feff}".as_bytes()).unwrap_or(content).trim_ascii_start();
-    // `asset` may come later in the file; then only the file's extension identifies it.
-    let beginning = &text[..text.len().min(1 << 16)];
-    content.starts_with(file::MAGIC)
-        || (text.starts_with(b"{") && beginning.windows(7).any(|word| word == b"\"asset\""))
-}
-
 fn document_model(
     content: Reserved<Vec<u8>>,
     path: &Path,
@@ -94,5 +84,11 @@ fn document_model(
 ) -> Result<Model> {
     let document = Document::open(content, path, context)?;
     extension::warn(&document, context);
-    build::model(&document, context, scene)
+    let first = scene.meshes.len();
+    let model = build::model(&document, context, scene)?;
+    if let levels @ 1.. = context.import.subdivision {
+        let at = Location::file(path);
+        subdivision::subdivide_meshes(&mut scene.meshes[first..], levels, &at, context)?;
+    }
+    Ok(model)
 }

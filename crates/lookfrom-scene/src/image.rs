@@ -1,10 +1,12 @@
 //! Decoded images; their readers, writers and comparison.
 
 mod animation;
+#[cfg(feature = "images")]
 mod basis;
 pub mod compare;
 mod encoding;
 pub mod flip;
+#[cfg(feature = "images")]
 mod ktx2;
 mod metadata;
 mod openexr;

@@ -3,6 +3,9 @@
 //! A [`scene::Scene`] is a scene as it was written. It keeps names and locations, is validated as far as a file can be
 //! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
+// What several readers share is there whichever of them are.
+#![cfg_attr(not(all(feature = "gltf", feature = "images", feature = "pbrt")), allow(dead_code))]
+
 pub mod atmosphere;
 mod boolean;
 pub mod budget;
@@ -18,6 +21,7 @@ pub mod error;
 pub mod excerpt;
 pub mod files;
 mod format;
+#[cfg(feature = "gltf")]
 pub mod gltf;
 pub mod ies;
 pub mod image;
@@ -31,6 +35,7 @@ pub mod model;
 pub mod obj;
 mod packed;
 mod parallel;
+#[cfg(feature = "pbrt")]
 pub mod pbrt;
 pub mod plural;
 pub mod ply;

@@ -6,14 +6,18 @@ use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{CameraChoice, LoadContext};
 use crate::format::Format;
+#[cfg(feature = "gltf")]
+use crate::gltf;
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
+#[cfg(feature = "pbrt")]
+use crate::pbrt;
 use crate::remedy::Remedy;
 use crate::scene::{MaterialId, Scene, SourceFormat};
-use crate::shape::{Mesh, Part, Shape};
+use crate::shape::{Part, Shape};
 use crate::source::Source;
 use crate::warning::Warning;
-use crate::{duplicates, gltf, model, pbrt, studio, subdivision, toml};
+use crate::{duplicates, model, studio, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -51,13 +55,17 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let source = Source::open(path, context)?;
     match source.format {
         Some(Format::Toml) => toml::from_bytes(&source.bytes, path, context),
+        #[cfg(feature = "pbrt")]
         Some(Format::Pbrt) => pbrt::from_bytes(source.bytes, path, context),
+        #[cfg(not(feature = "pbrt"))]
+        Some(Format::Pbrt) => Err(left_out(path, "scenes of pbrt", "pbrt")),
+        #[cfg(feature = "gltf")]
         Some(Format::Gltf) => {
             let scene = gltf::from_bytes(source.bytes, path, context)?;
-            let mut scene = Scene { source_format: SourceFormat::Gltf, ..scene };
-            subdivide(&mut scene.meshes, path, context)?;
-            Ok(scene)
+            Ok(Scene { source_format: SourceFormat::Gltf, ..scene })
         }
+        #[cfg(not(feature = "gltf"))]
+        Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
         Some(Format::Obj | Format::Ply | Format::Stl) => scene_of_model(&source, context),
         None if is_stream(path, context) => toml::from_bytes(&source.bytes, path, context),
         None => Err(unknown_format(path)),
@@ -120,12 +128,10 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     }
     let source = Source::open(path, context)?;
     match source.format {
-        Some(Format::Gltf) => {
-            let first = scene.meshes.len();
-            let model = gltf::model(source.bytes, path, context, scene)?;
-            subdivide(&mut scene.meshes[first..], path, context)?;
-            Ok(model)
-        }
+        #[cfg(feature = "gltf")]
+        Some(Format::Gltf) => gltf::model(source.bytes, path, context, scene),
+        #[cfg(not(feature = "gltf"))]
+        Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
         Some(Format::Obj | Format::Ply | Format::Stl) => {
             Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
         }
@@ -143,12 +149,12 @@ fn unsupported(path: &Path, message: &str) -> Error {
         .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
 }
 
-/// Subdivides meshes as [`LoadContext::import`] says.
-fn subdivide(meshes: &mut [Mesh], path: &Path, context: &mut LoadContext<'_>) -> Result<()> {
-    match context.import.subdivision {
-        0 => Ok(()),
-        levels => subdivision::subdivide_meshes(meshes, levels, &Location::file(path), context),
-    }
+/// The refusal of a format whose reader was not compiled.
+#[cfg(not(all(feature = "gltf", feature = "pbrt")))]
+fn left_out(path: &Path, format: &str, feature: &str) -> Error {
+    let message = format!("this build has no reader for {format}");
+    Error::new(ErrorKind::Unsupported, &Location::file(path), message)
+        .hint(format!("build with the feature `{feature}`"))
 }
 
 /// Converts parts to shapes with the transforms of the file.

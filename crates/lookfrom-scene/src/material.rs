@@ -180,6 +180,11 @@ pub enum MaterialKind {
 }
 
 impl MaterialKind {
+    /// Reflectance, and transmittance, of a diffuse sheet where a file does not set it: pbrt-v4's.
+    pub const DIFFUSE_SHEET: f32 = 0.25;
+    /// Probability of the second material of a mix where a file does not set it.
+    pub const MIX_AMOUNT: f32 = 0.5;
+
     /// Its colours.
     pub fn colors(&self) -> Vec<Color> {
         let of_metal = |metal: &Metal| match *metal {
@@ -309,6 +314,13 @@ pub struct Principled {
     pub iridescence_thickness: Scalar,
 }
 
+impl Principled {
+    /// Index of refraction of a thin film where a file does not set one (`KHR_materials_iridescence`).
+    pub const FILM_IOR: f32 = 1.3;
+    /// Thickness of a thin film in nm where a file does not set one (`KHR_materials_iridescence`).
+    pub const FILM_THICKNESS: f32 = 400.0;
+}
+
 impl Default for Principled {
     /// glTF's default material.
     fn default() -> Self {
@@ -317,7 +329,7 @@ impl Default for Principled {
             metallic: Scalar::Value(1.0),
             roughness: Scalar::Value(1.0),
             anisotropy: None,
-            ior: 1.5,
+            ior: Ior::GLASS,
             dispersion: 0.0,
             specular: Scalar::Value(1.0),
             specular_color: Color::gray(1.0),
@@ -332,8 +344,8 @@ impl Default for Principled {
             sheen_color: Color::BLACK,
             sheen_roughness: Scalar::Value(0.0),
             iridescence: Scalar::Value(0.0),
-            iridescence_ior: 1.3,
-            iridescence_thickness: Scalar::Value(400.0),
+            iridescence_ior: Self::FILM_IOR,
+            iridescence_thickness: Scalar::Value(Self::FILM_THICKNESS),
         }
     }
 }
@@ -371,6 +383,17 @@ pub enum Ior {
     Value(f32),
     /// By wavelength, which disperses light.
     Curve(CurveId),
+}
+
+impl Ior {
+    /// That of common glass: what a dielectric has where a file does not say, in pbrt-v4, in glTF (`KHR_materials_ior`) and here.
+    pub const GLASS: f32 = 1.5;
+}
+
+impl Default for Ior {
+    fn default() -> Self {
+        Self::Value(Self::GLASS)
+    }
 }
 
 /// Roughness of a microfacet surface (Trowbridge & Reitz 1975), along u and v.
@@ -424,6 +447,24 @@ impl Coat {
     /// Maximum number of bounces where a file does not set one and pbrt's picture does not decide: so many that Russian
     /// roulette alone ends walks.
     pub const MAX_DEPTH: u32 = 1000;
+    /// Thickness where a file does not set one: pbrt-v4's.
+    pub const THICKNESS: f32 = 0.01;
+}
+
+impl Default for Coat {
+    /// Smooth and clear glass, as pbrt-v4's; its walks are ours.
+    fn default() -> Self {
+        Self {
+            eta: Ior::default(),
+            roughness: Roughness::SMOOTH,
+            thickness: Scalar::Value(Self::THICKNESS),
+            albedo: Color::BLACK,
+            g: Scalar::Value(0.0),
+            max_depth: Self::MAX_DEPTH,
+            samples: 1,
+            estimate: CoatEstimate::Unbiased,
+        }
+    }
 }
 
 /// The estimate of what a coat and its base reflect.
@@ -470,7 +511,7 @@ impl Default for Whitted {
             shininess: 50.0,
             mirror: Color::BLACK,
             transmission: Color::BLACK,
-            ior: 1.5,
+            ior: Ior::GLASS,
             fresnel: false,
             absorption: [0.0; 3],
         }

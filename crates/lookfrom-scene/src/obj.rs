@@ -21,8 +21,8 @@ use crate::files::LoadContext;
 use crate::material::{Color, Whitted};
 use crate::model::surface::{push_material, unit_of_uv};
 use crate::model::{lines, points, text};
-use build::Form;
-use look::Surface;
+use build::Elements;
+use look::MeshTraits;
 
 use crate::packed;
 use crate::scene::{MeshId, Scene};
@@ -66,40 +66,41 @@ pub fn from_bytes(
     let (colored, place) = (!statements.colors.is_empty(), statements.place);
     let first = scene.meshes.len();
     let meshes = build::meshes(statements, &file, context)?;
-    let mut looks = look::Looks::read(&meshes.libraries, path, context);
+    let mut libraries = look::MaterialLibraries::read(&meshes.libraries, path, context);
     let mut parts = Vec::new();
-    for piece in meshes.pieces {
-        let surface = match &piece.form {
-            Form::Mesh(mesh) => Surface { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
-            Form::Lines(..) => Surface { is_colored: false, unit_of_uv: None },
+    for group in meshes.groups {
+        let traits = match &group.elements {
+            Elements::Mesh(mesh) => MeshTraits { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
+            Elements::Lines(..) => MeshTraits { is_colored: false, unit_of_uv: None },
         };
-        let look = looks.look(piece.material.as_deref(), surface, &file, context, scene);
-        let name = piece.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(piece.object);
+        let binding = libraries.binding(group.material.as_deref(), traits, &file, context, scene);
+        let name = group.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(group.object);
         let part = |geometry, material| Part {
             material,
-            emission: look.emission,
-            alpha: look.alpha,
+            emission: binding.emission,
+            alpha: binding.alpha,
             ..Part::new(name.clone(), geometry)
         };
-        match piece.form {
-            Form::Mesh(mesh) => {
+        match group.elements {
+            Elements::Mesh(mesh) => {
                 let id = MeshId(scene.meshes.len() as u32);
                 scene.meshes.push(mesh);
-                parts.push(part(Geometry::Mesh(id), look.material));
+                parts.push(part(Geometry::Mesh(id), binding.material));
             }
-            Form::Lines(ends, colors) => {
-                for (color, wires) in lines::wires(&ends, if look.material.is_some() { &[] } else { &colors })
+            Elements::Lines(ends, colors) => {
+                for (color, wires) in
+                    lines::wires(&ends, if binding.material.is_some() { &[] } else { &colors })
                 {
                     let material = color.map(|color| {
                         let whitted = Whitted { diffuse: Color::Value(color), ..Whitted::default() };
                         push_material(scene, "lines", &file, whitted)
                     });
-                    parts.push(part(wires, look.material.or(material)));
+                    parts.push(part(wires, binding.material.or(material)));
                 }
             }
         }
     }
-    looks.warn(&file, context);
+    libraries.warn(&file, context);
     place.put(&mut parts, &scene.meshes[first..], 0, &file, context);
     Ok(parts)
 }

@@ -103,16 +103,6 @@ pub(crate) fn from_bytes(
     Ok(scene)
 }
 
-/// Whether a text is a scene of pbrt: one of its first words is a directive that such files begin with.
-pub(crate) fn is_pbrt(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(1 << 16)];
-    let lines = head.split(|&byte| byte == b'\n' || byte == b'\r');
-    lines.map(<[u8]>::trim_ascii).filter(|line| !line.is_empty() && line[0] != b'#').take(100).any(|line| {
-        let word = line.split(|byte| byte.is_ascii_whitespace() || *byte == b'"').next().unwrap_or_default();
-        matches!(word, b"WorldBegin" | b"LookAt" | b"Integrator" | b"PixelFilter" | b"AttributeBegin")
-    })
-}
-
 /// The state of reading a scene.
 struct Reader<'s, 'f> {
     context: &'s mut LoadContext<'f>,

@@ -240,10 +240,10 @@ impl Cage {
         let moved = |(at, around): (&DVec3, &Around)| {
             let n = f64::from(around.faces);
             match around.kind() {
-                Kind::Fixed => *at,
-                Kind::Crease => *at * 0.75 + around.on_creases / 8.0,
+                VertexRule::Fixed => *at,
+                VertexRule::Crease => *at * 0.75 + around.on_creases / 8.0,
                 // The mean of the edges' midpoints is half of the vertex and half of the mean of its neighbours.
-                Kind::Smooth => {
+                VertexRule::Smooth => {
                     (around.centers / n + around.ends / f64::from(around.edges) + *at * (n - 2.0)) / n
                 }
             }
@@ -268,18 +268,18 @@ struct Around {
 
 /// How a vertex moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum VertexRule {
     Fixed,
     Crease,
     Smooth,
 }
 
 impl Around {
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> VertexRule {
         match (self.creases, self.faces) {
-            (0 | 1, 1..) => Kind::Smooth,
-            (2, 2..) => Kind::Crease,
-            _ => Kind::Fixed,
+            (0 | 1, 1..) => VertexRule::Smooth,
+            (2, 2..) => VertexRule::Crease,
+            _ => VertexRule::Fixed,
         }
     }
 }

@@ -28,7 +28,7 @@ const SMOOTH: f64 = 0.82;
 
 /// How text is set.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Layout {
+pub(crate) struct TextLayout {
     /// The em.
     pub(crate) size: f64,
     /// Depth of the solid; 0 is a sheet.
@@ -55,7 +55,7 @@ pub(crate) struct Solid {
 
 /// The solid of a text: its baseline is on the x axis, that of further lines below, and its front faces +z, at `depth`. `None` if the
 /// bytes are no font.
-pub(crate) fn solid(font: &[u8], text: &str, layout: Layout) -> Option<Solid> {
+pub(crate) fn solid(font: &[u8], text: &str, layout: TextLayout) -> Option<Solid> {
     let face = Face::parse(font, 0).ok()?;
     let to_em = 1.0 / f64::from(face.units_per_em());
     let line_height = f64::from(face.height()) + f64::from(face.line_gap());
@@ -143,8 +143,8 @@ impl Flat {
     }
 
     /// Adds the glyph's solid at a place of its origin.
-    fn draw_out(&self, origin: DVec2, layout: Layout, mesh: &mut Mesh) {
-        let Layout { size, depth, .. } = layout;
+    fn draw_out(&self, origin: DVec2, layout: TextLayout, mesh: &mut Mesh) {
+        let TextLayout { size, depth, .. } = layout;
         let push = |mesh: &mut Mesh, point: DVec2, z: f64, normal: DVec3| {
             let at = point * size + origin;
             mesh.positions.push(at.extend(z).as_vec3());

@@ -187,6 +187,13 @@ pub enum Channel {
 }
 
 impl TextureKind {
+    /// Octaves of pbrt's noises where a file does not set them.
+    pub const OCTAVES: u32 = 8;
+    /// Persistence of pbrt's noises where a file does not set it.
+    pub const ROUGHNESS: f32 = 0.5;
+    /// Interpolation parameter of a mix where a file does not set it.
+    pub const MIX_AMOUNT: f32 = 0.5;
+
     /// The colours between which the texture's values lie; empty for textures that only combine others.
     pub fn colors(&self) -> Vec<Color> {
         match self {

@@ -60,7 +60,6 @@ use self::variables::Variables;
 use self::vocabulary::TOP;
 use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
-use crate::gltf::AT_REST;
 use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
@@ -310,7 +309,9 @@ impl Reader<'_, '_> {
         if choice.animation.is_none() && choice.at == self.time {
             // The time is that of the scene, in which not everything moves.
             let of_model = self.context.warnings.split_off(told);
-            self.context.warnings.extend(of_model.into_iter().filter(|warning| warning.message != AT_REST));
+            self.context
+                .warnings
+                .extend(of_model.into_iter().filter(|warning| warning.message != ImportOptions::AT_REST));
         }
         let model = model.map_err(|error| value.blame(error))?;
         self.models.push(((path, choice.clone()), model.clone()));

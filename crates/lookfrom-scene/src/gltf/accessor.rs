@@ -120,7 +120,7 @@ fn shape_of(kind: &str) -> Option<(usize, usize)> {
 
 /// The layout of an element's components in its bytes.
 #[derive(Clone, Copy)]
-struct Layout {
+struct ElementLayout {
     component: ComponentType,
     normalized: bool,
     /// Components per column.
@@ -131,7 +131,7 @@ struct Layout {
     size: usize,
 }
 
-impl Layout {
+impl ElementLayout {
     fn new(component: ComponentType, normalized: bool, numbers: usize, rows: usize) -> Self {
         let column = match numbers / rows {
             1 => rows * component.size(),
@@ -235,7 +235,7 @@ impl Document {
                 crate::plural::counted(numbers, "number")
             )));
         }
-        let layout = Layout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
+        let layout = ElementLayout::new(component, accessor.normalized.unwrap_or(false), numbers, rows);
         let count = accessor.count.index();
         self.count(count as u64, asked)?;
         let memory = (count as u64).saturating_mul(size_of::<[V; N]>() as u64);
@@ -304,7 +304,7 @@ impl Document {
     /// `count` elements of a buffer view, from `offset` on.
     fn gather<V: Value, const N: usize>(
         &self,
-        layout: Layout,
+        layout: ElementLayout,
         view: Whole,
         offset: Option<Whole>,
         count: usize,
@@ -363,7 +363,7 @@ impl Document {
                 ),
             ));
         }
-        let layout = Layout::new(component, false, 1, 1);
+        let layout = ElementLayout::new(component, false, 1, 1);
         let indices: Vec<[u32; 1]> =
             self.gather(layout, sparse.indices.buffer_view, sparse.indices.byte_offset, replaced, asked)?;
         let indices = indices.into_flattened();

@@ -11,7 +11,7 @@ use super::contents::contents;
 use super::file::Document;
 use super::json::{Instancing, Primitive, Whole};
 use super::light;
-use super::material::{Brought, Colors, Look, Looks};
+use super::material::{Colors, MaterialBinding, MaterialBindings, VertexColors};
 use super::mesh;
 use super::morph::morph;
 use super::node::{Tree, placed};
@@ -99,8 +99,8 @@ pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &
     };
     let mut builder = Builder {
         document,
-        looks: Looks::new(document),
-        pieces: BTreeMap::new(),
+        bindings: MaterialBindings::new(document),
+        primitives: BTreeMap::new(),
         weights,
         variant,
         model: Model {
@@ -115,8 +115,8 @@ pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &
         scene,
     };
     builder.nodes(&tree)?;
-    let Builder { looks, model, .. } = builder;
-    looks.decode(context, scene);
+    let Builder { bindings, model, .. } = builder;
+    bindings.decode(context, scene);
     if model.shapes.is_empty() && model.instances.is_empty() {
         context
             .warn(&document.at(""), "there is nothing to see: the scene has no triangles, lines or points");
@@ -126,10 +126,10 @@ pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &
 
 /// A primitive of a mesh, with its material.
 #[derive(Clone)]
-struct Piece {
+struct ConvertedPrimitive {
     pointer: Location,
     geometry: Geometry,
-    look: Look,
+    binding: MaterialBinding,
     /// The world transform of a skinned mesh, which replaces that of its node.
     world_from_skinned: Option<DMat4>,
 }
@@ -137,7 +137,7 @@ struct Piece {
 /// A mesh and its deformation: `node` is set where a node's own skin or morph weights deform it, and `None` for the
 /// mesh that all other nodes share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Form {
+struct MeshVariant {
     mesh: usize,
     node: Option<usize>,
 }
@@ -146,9 +146,9 @@ struct Builder<'b, 'd, 'f> {
     document: &'d Document,
     context: &'b mut LoadContext<'f>,
     scene: &'b mut Scene,
-    looks: Looks<'d>,
+    bindings: MaterialBindings<'d>,
     /// The primitives of each mesh used so far.
-    pieces: BTreeMap<Form, Vec<Piece>>,
+    primitives: BTreeMap<MeshVariant, Vec<ConvertedPrimitive>>,
     /// Morph weights of nodes that override those of the mesh.
     weights: BTreeMap<usize, Vec<f64>>,
     variant: Option<usize>,
@@ -158,26 +158,26 @@ struct Builder<'b, 'd, 'f> {
 impl Builder<'_, '_, '_> {
     fn nodes(&mut self, tree: &Tree) -> Result<()> {
         let nodes = &self.document.root.nodes;
-        let mut uses: BTreeMap<Form, usize> = BTreeMap::new();
+        let mut uses: BTreeMap<MeshVariant, usize> = BTreeMap::new();
         for &node in &tree.shown {
-            if let Some(form) = self.form(node) {
-                *uses.entry(form).or_default() += 1;
+            if let Some(mesh_variant) = self.mesh_variant(node) {
+                *uses.entry(mesh_variant).or_default() += 1;
             }
         }
         let mut skins: BTreeMap<usize, Skin> = BTreeMap::new();
-        let mut objects: BTreeMap<Form, ObjectId> = BTreeMap::new();
+        let mut objects: BTreeMap<MeshVariant, ObjectId> = BTreeMap::new();
         if nodes.is_empty() && self.document.root.scenes.is_empty() {
             // A library of meshes: all are placed at the origin.
             for mesh in 0..self.document.root.meshes.len() {
-                let pieces = self.mesh(Form { mesh, node: None }, None, "/meshes")?;
+                let primitives = self.mesh(MeshVariant { mesh, node: None }, None, "/meshes")?;
                 let name = self.document.root.meshes[mesh].name.clone();
-                for piece in &pieces {
-                    self.shape(piece, &name, DMat4::IDENTITY)?;
+                for converted in &primitives {
+                    self.shape(converted, &name, DMat4::IDENTITY)?;
                 }
             }
         }
         for &node in &tree.shown {
-            let Some(form) = self.form(node) else { continue };
+            let Some(mesh_variant) = self.mesh_variant(node) else { continue };
             let skin = match nodes[node].skin.as_deref().copied() {
                 Some(index) => {
                     if let Entry::Vacant(place) = skins.entry(index.index()) {
@@ -187,12 +187,15 @@ impl Builder<'_, '_, '_> {
                 }
                 None => None,
             };
-            let pieces = self.mesh(form, skin, &format!("/nodes/{node}/mesh"))?;
+            let primitives = self.mesh(mesh_variant, skin, &format!("/nodes/{node}/mesh"))?;
             let world_from_node = tree.world_from_node(node);
-            let name = nodes[node].name.clone().or_else(|| self.document.root.meshes[form.mesh].name.clone());
+            let name = nodes[node]
+                .name
+                .clone()
+                .or_else(|| self.document.root.meshes[mesh_variant.mesh].name.clone());
             if let Some(instancing) = nodes[node].instancing() {
                 let places = self.places(instancing, node)?;
-                let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
+                let object = *objects.entry(mesh_variant).or_insert_with(|| self.object(&name, &primitives));
                 let world_from_node = if skin.is_some() { DMat4::IDENTITY } else { world_from_node };
                 let at = self.document.at(&format!("/nodes/{node}"));
                 let memory = (places.len() * size_of::<Instance>()) as u64;
@@ -202,26 +205,26 @@ impl Builder<'_, '_, '_> {
                 }
                 continue;
             }
-            let repeated = triangles(&pieces, self.scene).saturating_mul(uses[&form] - 1);
+            let repeated = triangles(&primitives, self.scene).saturating_mul(uses[&mesh_variant] - 1);
             // Instances cannot be light sources.
-            let shines = pieces.iter().any(|piece| piece.look.emission.is_some());
+            let shines = primitives.iter().any(|converted| converted.binding.emission.is_some());
             if repeated > MOST_REPEATED_TRIANGLES && !shines {
-                let object = *objects.entry(form).or_insert_with(|| self.object(&name, &pieces));
+                let object = *objects.entry(mesh_variant).or_insert_with(|| self.object(&name, &primitives));
                 // One location for all, which may be millions: that of the mesh.
                 let at = self.model.objects[object.index()].at.clone();
                 self.context.keep(size_of::<Instance>() as u64, "an instance", &at)?;
                 self.instance(at, object, world_from_node);
                 continue;
             }
-            for piece in &pieces {
-                self.shape(piece, &name, piece.world_from_skinned.unwrap_or(world_from_node))?;
+            for converted in &primitives {
+                self.shape(converted, &name, converted.world_from_skinned.unwrap_or(world_from_node))?;
             }
         }
         Ok(())
     }
 
     /// The mesh of a node, by itself where morph weights or a skin deform it.
-    fn form(&self, node: usize) -> Option<Form> {
+    fn mesh_variant(&self, node: usize) -> Option<MeshVariant> {
         let root = &self.document.root;
         let index = root.nodes[node].mesh?.index();
         let has_targets = || {
@@ -229,36 +232,45 @@ impl Builder<'_, '_, '_> {
             primitives.iter().any(|primitive| !primitive.targets.is_empty())
         };
         let is_own = root.nodes[node].skin.is_some() || (self.weights.contains_key(&node) && has_targets());
-        Some(Form { mesh: index, node: is_own.then_some(node) })
+        Some(MeshVariant { mesh: index, node: is_own.then_some(node) })
     }
 
-    /// The primitives of a mesh; each form of it is built once.
-    fn mesh(&mut self, form: Form, skin: Option<&Skin>, asked: &str) -> Result<Vec<Piece>> {
-        let mesh =
-            self.document.one_of(&self.document.root.meshes, Whole(form.mesh as u64), "mesh", asked)?;
-        if let Some(pieces) = self.pieces.get(&form) {
-            return Ok(pieces.clone());
+    /// The primitives of a mesh; each variant of it is built once.
+    fn mesh(
+        &mut self,
+        mesh_variant: MeshVariant,
+        skin: Option<&Skin>,
+        asked: &str,
+    ) -> Result<Vec<ConvertedPrimitive>> {
+        let mesh = self.document.one_of(
+            &self.document.root.meshes,
+            Whole(mesh_variant.mesh as u64),
+            "mesh",
+            asked,
+        )?;
+        if let Some(primitives) = self.primitives.get(&mesh_variant) {
+            return Ok(primitives.clone());
         }
-        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", form.mesh));
-        let weights = form.node.and_then(|node| self.weights.get(&node).cloned());
+        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh {}", mesh_variant.mesh));
+        let weights = mesh_variant.node.and_then(|node| self.weights.get(&node).cloned());
         let weights = weights.or_else(|| mesh.weights.clone()).unwrap_or_default();
-        let mut pieces = Vec::new();
+        let mut primitives = Vec::new();
         for (place, primitive) in mesh.primitives.iter().enumerate() {
-            let pointer = format!("/meshes/{}/primitives/{place}", form.mesh);
-            pieces.extend(self.piece(primitive, &weights, skin, &name, &pointer)?);
+            let pointer = format!("/meshes/{}/primitives/{place}", mesh_variant.mesh);
+            primitives.extend(self.converted(primitive, &weights, skin, &name, &pointer)?);
         }
-        self.pieces.insert(form, pieces.clone());
-        Ok(pieces)
+        self.primitives.insert(mesh_variant, primitives.clone());
+        Ok(primitives)
     }
 
-    fn piece(
+    fn converted(
         &mut self,
         primitive: &Primitive,
         weights: &[f64],
         skin: Option<&Skin>,
         name: &str,
         pointer: &str,
-    ) -> Result<Vec<Piece>> {
+    ) -> Result<Vec<ConvertedPrimitive>> {
         let document = self.document;
         let at = document.at(pointer);
         let Some((mut vertices, mut memory)) = mesh::vertices(document, primitive, pointer, self.context)?
@@ -274,12 +286,13 @@ impl Builder<'_, '_, '_> {
             world_from_skinned = is_bent.then_some(skin.world_from_skinned);
         }
         let is_surface = mesh::is_surface(primitive);
-        let brought = vertices.brought();
+        let vertex_colors = vertices.vertex_colors();
         let (material, asked) = self.material(primitive, pointer);
         if is_surface {
-            vertices.grain = self.looks.look(material, &asked, brought, self.context, self.scene)?.grain;
+            vertices.grain =
+                self.bindings.of_primitive(material, &asked, vertex_colors, self.context, self.scene)?.grain;
         }
-        let mut pieces = Vec::new();
+        let mut primitives = Vec::new();
         let before = self.scene.meshes.len();
         memory.join(self.context.budget.reserve(mesh::memory(&vertices, primitive), "a primitive", &at)?);
         let geometries =
@@ -290,11 +303,18 @@ impl Builder<'_, '_, '_> {
         self.context.keep(meshes + others, "a primitive", &at)?;
         for (color, geometry) in geometries {
             let colors = color.map_or(Colors::None, |color| Colors::One(color.map(f32::to_bits)));
-            let brought = if is_surface { brought } else { Brought { colors, opacities: false } };
-            let look = self.looks.look(material, &asked, brought, self.context, self.scene)?;
-            pieces.push(Piece { pointer: document.at(pointer), geometry, look, world_from_skinned });
+            let vertex_colors =
+                if is_surface { vertex_colors } else { VertexColors { colors, opacities: false } };
+            let binding =
+                self.bindings.of_primitive(material, &asked, vertex_colors, self.context, self.scene)?;
+            primitives.push(ConvertedPrimitive {
+                pointer: document.at(pointer),
+                geometry,
+                binding,
+                world_from_skinned,
+            });
         }
-        Ok(pieces)
+        Ok(primitives)
     }
 
     /// The material of a primitive in the selected variant, and the JSON pointer of its reference.
@@ -309,30 +329,36 @@ impl Builder<'_, '_, '_> {
         (primitive.material, format!("{pointer}/material"))
     }
 
-    fn shape(&mut self, piece: &Piece, name: &Option<String>, world_from_object: DMat4) -> Result<()> {
-        let mut shape = shape(piece, name);
+    fn shape(
+        &mut self,
+        converted: &ConvertedPrimitive,
+        name: &Option<String>,
+        world_from_object: DMat4,
+    ) -> Result<()> {
+        let mut shape = shape(converted, name);
         if is_invertible(&world_from_object) {
             shape.world_from_object = world_from_object;
         } else {
             // Scaled by 0 along one axis, a mesh is flat, but still visible.
-            let Geometry::Mesh(id) = piece.geometry else { return Ok(()) };
+            let Geometry::Mesh(id) = converted.geometry else { return Ok(()) };
             let flat = mesh::flattened(&self.scene.meshes[id.index()], &world_from_object);
             if flat.triangles.is_empty() {
                 return Ok(());
             }
-            self.context.keep(flat.bytes(), "a flat copy of a mesh", &piece.pointer)?;
+            self.context.keep(flat.bytes(), "a flat copy of a mesh", &converted.pointer)?;
             shape.geometry = Geometry::Mesh(MeshId(self.scene.meshes.len() as u32));
             self.scene.meshes.push(flat);
         }
-        self.context.keep(size_of::<Shape>() as u64, "a shape", &piece.pointer)?;
+        self.context.keep(size_of::<Shape>() as u64, "a shape", &converted.pointer)?;
         self.model.shapes.push(shape);
         Ok(())
     }
 
-    fn object(&mut self, name: &Option<String>, pieces: &[Piece]) -> ObjectId {
+    fn object(&mut self, name: &Option<String>, primitives: &[ConvertedPrimitive]) -> ObjectId {
         let id = ObjectId(self.model.objects.len() as u32);
-        let at = pieces.first().map_or_else(|| self.document.at(""), |piece| piece.pointer.clone());
-        let shapes = pieces.iter().map(|piece| shape(piece, name)).collect();
+        let at =
+            primitives.first().map_or_else(|| self.document.at(""), |converted| converted.pointer.clone());
+        let shapes = primitives.iter().map(|converted| shape(converted, name)).collect();
         self.model.objects.push(Object { name: name.clone().unwrap_or_default(), at, shapes });
         id
     }
@@ -383,27 +409,27 @@ impl Builder<'_, '_, '_> {
     }
 }
 
-fn shape(piece: &Piece, name: &Option<String>) -> Shape {
+fn shape(converted: &ConvertedPrimitive, name: &Option<String>) -> Shape {
     // Points and lines have no back side.
-    let single_sided = piece.look.single_sided && matches!(piece.geometry, Geometry::Mesh(_));
+    let single_sided = converted.binding.single_sided && matches!(converted.geometry, Geometry::Mesh(_));
     Shape {
         name: name.clone(),
-        emission: piece.look.emission,
-        alpha: piece.look.alpha,
+        emission: converted.binding.emission,
+        alpha: converted.binding.alpha,
         single_sided,
-        world_from_object: piece.world_from_skinned.unwrap_or(DMat4::IDENTITY),
-        ..Shape::new(piece.pointer.clone(), piece.geometry.clone(), piece.look.material)
+        world_from_object: converted.world_from_skinned.unwrap_or(DMat4::IDENTITY),
+        ..Shape::new(converted.pointer.clone(), converted.geometry.clone(), converted.binding.material)
     }
 }
 
-fn triangles(pieces: &[Piece], scene: &Scene) -> usize {
-    let of = |piece: &Piece| match &piece.geometry {
+fn triangles(primitives: &[ConvertedPrimitive], scene: &Scene) -> usize {
+    let of = |converted: &ConvertedPrimitive| match &converted.geometry {
         Geometry::Mesh(id) => scene.meshes[id.index()].triangles.len(),
         Geometry::Spheres(spheres) => spheres.len(),
         Geometry::Curves(strands) => strands.len(),
         _ => 0,
     };
-    pieces.iter().map(of).sum()
+    primitives.iter().map(of).sum()
 }
 
 /// Whether a matrix can be inverted.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::draco::{self, Compressed, Decoded};
 use super::json::{self, Root, Whole};
-use super::meshopt::{self, Layout};
+use super::meshopt::{self, CompressedView};
 use super::uri::{self, Uri};
 use crate::budget::{Budget, Reservation, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -210,7 +210,7 @@ impl Document {
 
     fn unpack(&self, bytes: &[u8], packed: &json::Meshopt, place: &str) -> Result<Vec<u8>> {
         let at = self.at(place);
-        let layout = Layout::new(packed, &at)?;
+        let layout = CompressedView::new(packed, &at)?;
         // Elements can have hundreds of bytes, and a damaged file many views, so bytes count as well.
         self.count(layout.count.saturating_mul(layout.stride / 4), place)?;
         self.hold(layout.count.saturating_mul(layout.stride), "a compressed buffer view", place)?;

@@ -14,7 +14,7 @@ use super::texture::{Meaning, Textures, Use};
 use crate::error::Result;
 use crate::files::LoadContext;
 use crate::material::{
-    Anisotropy, BumpMapping, Color, Material, MaterialKind, NormalTexture, Principled, Scalar,
+    Anisotropy, BumpMapping, Color, Ior, Material, MaterialKind, NormalTexture, Principled, Scalar,
 };
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
@@ -22,7 +22,7 @@ use crate::texture::{Channel, TextureKind};
 
 /// The material of a primitive, and the properties that a shape keeps beside its material.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct MaterialBinding {
     pub(super) material: MaterialId,
     pub(super) emission: Option<Emission>,
     pub(super) alpha: Option<Scalar>,
@@ -34,7 +34,7 @@ pub(super) struct Look {
 
 /// The vertex attributes of a primitive that its material can use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Brought {
+pub(super) struct VertexColors {
     pub(super) colors: Colors,
     pub(super) opacities: bool,
 }
@@ -51,13 +51,13 @@ pub(super) enum Colors {
 }
 
 /// The materials converted so far.
-pub(super) struct Looks<'d> {
+pub(super) struct MaterialBindings<'d> {
     document: &'d Document,
     textures: Textures<'d>,
-    known: BTreeMap<(Option<usize>, Brought), Look>,
+    known: BTreeMap<(Option<usize>, VertexColors), MaterialBinding>,
 }
 
-impl<'d> Looks<'d> {
+impl<'d> MaterialBindings<'d> {
     pub(super) fn new(document: &'d Document) -> Self {
         Self { document, textures: Textures::new(document), known: BTreeMap::new() }
     }
@@ -71,15 +71,15 @@ impl<'d> Looks<'d> {
     ///
     /// # Errors
     /// If the material, or one of its textures, does not exist.
-    pub(super) fn look(
+    pub(super) fn of_primitive(
         &mut self,
         material: Option<Whole>,
         asked: &str,
-        brought: Brought,
+        vertex_colors: VertexColors,
         context: &mut LoadContext<'_>,
         scene: &mut Scene,
-    ) -> Result<Look> {
-        let key = (material.map(Whole::index), brought);
+    ) -> Result<MaterialBinding> {
+        let key = (material.map(Whole::index), vertex_colors);
         if let Some(look) = self.known.get(&key) {
             return Ok(*look);
         }
@@ -93,9 +93,9 @@ impl<'d> Looks<'d> {
         };
         let mut reader =
             Reader { document: self.document, textures: &mut self.textures, context, scene, pointer };
-        let look = reader.look(entry, brought)?;
-        self.known.insert(key, look);
-        Ok(look)
+        let binding = reader.binding(entry, vertex_colors)?;
+        self.known.insert(key, binding);
+        Ok(binding)
     }
 }
 
@@ -110,9 +110,9 @@ struct Reader<'r, 'd, 'f> {
 }
 
 impl Reader<'_, '_, '_> {
-    fn look(&mut self, entry: &json::Material, brought: Brought) -> Result<Look> {
+    fn binding(&mut self, entry: &json::Material, vertex_colors: VertexColors) -> Result<MaterialBinding> {
         let (base_color, base_alpha) = self.base(entry)?;
-        let own = match brought.colors {
+        let own = match vertex_colors.colors {
             Colors::None => None,
             Colors::OfVertices => {
                 let own = TextureKind::VertexColor { tint: [1.0; 3] };
@@ -139,10 +139,10 @@ impl Reader<'_, '_, '_> {
         material.bump_mapping = bump_mapping.map_or(BumpMapping::None, BumpMapping::NormalTexture);
         self.scene.materials.push(material);
         let is_double_sided = entry.double_sided.unwrap_or(false);
-        Ok(Look {
+        Ok(MaterialBinding {
             material: MaterialId(self.scene.materials.len() as u32 - 1),
             emission: self.emission(entry, is_double_sided)?,
-            alpha: self.alpha(entry, base_alpha, brought)?,
+            alpha: self.alpha(entry, base_alpha, vertex_colors)?,
             single_sided: !is_double_sided,
             grain,
         })
@@ -249,7 +249,8 @@ impl Reader<'_, '_, '_> {
             let place = "/extensions/KHR_materials_iridescence/iridescenceTexture";
             let (info, factor) = (own.iridescence_texture.as_ref(), unit(own.iridescence_factor, 0.0));
             look.iridescence = self.number(factor, info, place, Channel::Red)?;
-            look.iridescence_ior = own.iridescence_ior.map_or(1.3, |ior| ior.clamp(1.0, 10.0) as f32);
+            look.iridescence_ior =
+                own.iridescence_ior.map_or(Principled::FILM_IOR, |ior| ior.clamp(1.0, 10.0) as f32);
             look.iridescence_thickness = self.film_thickness(own)?;
         }
         if let Some(own) = &extensions.anisotropy {
@@ -267,7 +268,7 @@ impl Reader<'_, '_, '_> {
     /// Thin-film thickness, interpolated between minimum and maximum by the texture's green channel; without a texture, the
     /// maximum.
     fn film_thickness(&mut self, own: &json::Iridescence) -> Result<Scalar> {
-        let most = positive(own.iridescence_thickness_maximum.unwrap_or(400.0));
+        let most = positive(own.iridescence_thickness_maximum.unwrap_or(Principled::FILM_THICKNESS.into()));
         let least = positive(own.iridescence_thickness_minimum.unwrap_or(100.0));
         let place = "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture";
         match self.number(1.0, own.iridescence_thickness_texture.as_ref(), place, Channel::Green)? {
@@ -293,13 +294,14 @@ impl Reader<'_, '_, '_> {
     }
 
     fn ior(&mut self, ior: Option<f64>) -> f32 {
-        match ior.unwrap_or(1.5) {
+        match ior.unwrap_or(Ior::GLASS.into()) {
             0.0 => 0.0,
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
                 let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.context.warn(&at, format!("the index of refraction {ior} is invalid; 1.5 is used"));
-                1.5
+                self.context
+                    .warn(&at, format!("the index of refraction {ior} is invalid; {} is used", Ior::GLASS));
+                Ior::GLASS
             }
         }
     }
@@ -345,7 +347,12 @@ impl Reader<'_, '_, '_> {
     }
 
     /// The alpha of the surface.
-    fn alpha(&mut self, entry: &json::Material, base: Scalar, brought: Brought) -> Result<Option<Scalar>> {
+    fn alpha(
+        &mut self,
+        entry: &json::Material,
+        base: Scalar,
+        vertex_colors: VertexColors,
+    ) -> Result<Option<Scalar>> {
         let mode = entry.alpha_mode.as_deref().unwrap_or("OPAQUE");
         if mode != "MASK" && mode != "BLEND" {
             if mode != "OPAQUE" {
@@ -354,7 +361,7 @@ impl Reader<'_, '_, '_> {
             }
             return Ok(None);
         }
-        let value = match (brought.opacities, base) {
+        let value = match (vertex_colors.opacities, base) {
             (true, base) => {
                 let own = self.textures.push(TextureKind::VertexAlpha, &self.pointer, self.scene);
                 let scaled = match base {

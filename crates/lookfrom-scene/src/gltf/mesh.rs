@@ -6,7 +6,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use super::file::Document;
 use super::json::{Primitive, Whole};
-use super::material::{Brought, Colors};
+use super::material::{Colors, VertexColors};
 use super::tangents;
 use crate::budget::Reservation;
 use crate::error::Result;
@@ -44,9 +44,9 @@ pub(crate) struct Vertices {
 
 impl Vertices {
     /// The vertex attributes that its material can use.
-    pub(super) fn brought(&self) -> Brought {
+    pub(super) fn vertex_colors(&self) -> VertexColors {
         let colors = if self.colors.is_empty() { Colors::None } else { Colors::OfVertices };
-        Brought { colors, opacities: self.opacities.iter().any(|&opacity| opacity != 1.0) }
+        VertexColors { colors, opacities: self.opacities.iter().any(|&opacity| opacity != 1.0) }
     }
 
     /// The mean colour of some vertices, where they have colours.

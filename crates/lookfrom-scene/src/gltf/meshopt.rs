@@ -40,7 +40,7 @@ pub(crate) enum Filter {
 
 /// The extension's properties of a buffer view.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Layout {
+pub(crate) struct CompressedView {
     /// Number of elements.
     pub(crate) count: u64,
     /// Bytes per element.
@@ -51,7 +51,7 @@ pub(crate) struct Layout {
     pub(crate) filter: Filter,
 }
 
-impl Layout {
+impl CompressedView {
     /// The layout of a buffer view's extension.
     ///
     /// # Errors
@@ -89,8 +89,13 @@ const LEFT_OVER: &str = "the compressed stream has bytes left over";
 /// # Errors
 /// `Invalid` for a layout that the extension does not allow, `Syntax` for a stream that is not of its mode, too short or
 /// too long, `Limit` for more elements than [`Limits::elements`].
-pub(crate) fn decode(bytes: &[u8], layout: &Layout, at: &Location, limits: &Limits) -> Result<Vec<u8>> {
-    let &Layout { count, stride, mode, filter } = layout;
+pub(crate) fn decode(
+    bytes: &[u8],
+    layout: &CompressedView,
+    at: &Location,
+    limits: &Limits,
+) -> Result<Vec<u8>> {
+    let &CompressedView { count, stride, mode, filter } = layout;
     // The largest stride that the extension allows, times any count within the limits, does not overflow.
     let is_allowed = match mode {
         Mode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),

@@ -13,7 +13,7 @@ use super::json::{AnimationSampler, Node, Whole};
 use super::node::{affine, placed};
 use super::track::{Interpolation, Track};
 use crate::error::Result;
-use crate::files::LoadContext;
+use crate::files::{ImportOptions, LoadContext};
 
 /// The pose of all nodes.
 pub(crate) struct Pose {
@@ -66,9 +66,6 @@ pub(crate) fn pose(document: &Document, context: &mut LoadContext<'_>) -> Result
     Ok(pose)
 }
 
-/// The warning about a time without an animation.
-pub(crate) const AT_REST: &str = "a time is given, but the file has no animations: it is at rest";
-
 /// The index of the requested animation.
 fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<usize>> {
     let animations = &document.root.animations;
@@ -79,7 +76,7 @@ fn chosen(document: &Document, context: &mut LoadContext<'_>) -> Result<Option<u
         }
         None if context.import.at.is_none() => Ok(None),
         None if animations.is_empty() => {
-            context.warn(&document.at(""), AT_REST);
+            context.warn(&document.at(""), ImportOptions::AT_REST);
             Ok(None)
         }
         None => Ok(Some(0)),

@@ -30,13 +30,13 @@ pub(super) fn tangents(
     triangles: &[[u32; 3]],
 ) -> Vec<[Vec4; 3]> {
     let mut surface =
-        Surface { positions, normals, uvs, triangles, tangents: vec![[Vec4::W; 3]; triangles.len()] };
+        TriangleMesh { positions, normals, uvs, triangles, tangents: vec![[Vec4::W; 3]; triangles.len()] };
     // The error type has no values.
     let Ok(()) = generate_tangents(&mut surface) else { return surface.tangents };
     surface.tangents
 }
 
-struct Surface<'a> {
+struct TriangleMesh<'a> {
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     uvs: &'a [Vec2],
@@ -57,13 +57,13 @@ impl Ops for Portable {
     }
 }
 
-impl Surface<'_> {
+impl TriangleMesh<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
         self.triangles[face][corner] as usize
     }
 }
 
-impl Geometry<Portable> for Surface<'_> {
+impl Geometry<Portable> for TriangleMesh<'_> {
     fn num_faces(&self) -> usize {
         self.triangles.len()
     }

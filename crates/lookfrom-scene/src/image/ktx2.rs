@@ -12,9 +12,6 @@ use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 
-/// The first bytes of every file.
-pub(super) const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
-
 /// Length of the header before the list of levels, in bytes.
 const HEADER: usize = 80;
 
@@ -59,7 +56,7 @@ struct Header {
     unpacked: u64,
 }
 
-/// Decodes a file that starts with [`MAGIC`].
+/// Decodes a file that starts with [`KTX2_MAGIC`](super::read::KTX2_MAGIC).
 ///
 /// # Errors
 /// `Syntax` if it is damaged or cut off, `Unsupported` for other formats, `Limit` for more than [`crate::Limits::texels`] or there is memory for.

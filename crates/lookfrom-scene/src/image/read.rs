@@ -7,13 +7,30 @@ use std::path::Path;
 use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-use super::{Encoding, Image, ktx2, openexr, radiance};
+#[cfg(feature = "images")]
+use super::ktx2;
+use super::{Encoding, Image, openexr, radiance};
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
 /// The names of the readable formats, for messages.
-const KNOWN: &str = "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2";
+const KNOWN: &str = if cfg!(feature = "images") {
+    "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2"
+} else {
+    "PNG, JPEG, HDR, EXR, PFM, WebP, GIF"
+};
+
+/// The first bytes of every KTX 2 file.
+pub(super) const KTX2_MAGIC: &[u8] = b"\xabKTX 20\xbb\r\n\x1a\n";
+
+/// Whether these are a picture in a format whose reader was not compiled.
+fn is_left_out(bytes: &[u8]) -> bool {
+    let formats = [ImageFormat::Bmp, ImageFormat::Dds, ImageFormat::Pnm, ImageFormat::Tga, ImageFormat::Tiff];
+    let is_one = |format| formats.contains(&format);
+    !cfg!(feature = "images")
+        && (bytes.starts_with(KTX2_MAGIC) || ::image::guess_format(bytes).is_ok_and(is_one))
+}
 
 /// The hint for a damaged file.
 pub(super) const WHOLE: &str =
@@ -127,7 +144,8 @@ fn decode_as(
         .hint("leave `layer` out"));
     }
     // Formats that the crate `image` does not support are recognised by their first bytes.
-    if bytes.starts_with(&ktx2::MAGIC) {
+    #[cfg(feature = "images")]
+    if bytes.starts_with(KTX2_MAGIC) {
         let ktx2::Pixels { width, height, texels, memory } = ktx2::decode(bytes, &at, context)?;
         return Ok(kept(Image::from_bytes(name, width, height, texels, encoding), memory, context));
     }
@@ -213,7 +231,7 @@ pub fn read_opacity(
     let at = Location::file(path);
     let bytes = context.read(path)?;
     if bytes.starts_with(&openexr::MAGIC)
-        || bytes.starts_with(&ktx2::MAGIC)
+        || bytes.starts_with(KTX2_MAGIC)
         || is_pfm(&bytes)
         || radiance::is(&bytes)
     {
@@ -353,6 +371,12 @@ fn floats_of(picture: DynamicImage, memory: Reservation, encoding: Encoding<'_>)
 fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Error {
     match error {
         _ if bytes.is_empty() => Error::syntax(at, "the file is empty; expected a picture").hint(WHOLE),
+        _ if is_left_out(bytes) => Error::new(
+            ErrorKind::Unsupported,
+            at,
+            "this build has no reader for BMP, DDS, KTX2, PNM, TGA and TIFF",
+        )
+        .hint("build with the feature `images`, or save the picture as PNG, JPEG, WebP or EXR"),
         ImageError::Unsupported(_) => {
             Error::new(ErrorKind::Unsupported, at, format!("the picture format is not known: {error}"))
                 .hint(format!("save it as one of {KNOWN}"))

@@ -16,20 +16,20 @@ use crate::shape::Mesh;
 
 /// All meshes of a file.
 pub(super) struct Meshes {
-    pub(super) pieces: Vec<Piece>,
+    pub(super) groups: Vec<MeshGroup>,
     /// The locations and names of material libraries.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
 /// The faces or the lines of one material.
-pub(super) struct Piece {
+pub(super) struct MeshGroup {
     pub(super) material: Option<Vec<u8>>,
     pub(super) object: Option<String>,
-    pub(super) form: Form,
+    pub(super) elements: Elements,
 }
 
-/// The elements of a piece.
-pub(super) enum Form {
+/// The elements of a group.
+pub(super) enum Elements {
     Mesh(Mesh),
     /// The ends of lines, and the colour of each, where vertices have colours.
     Lines(Vec<[Vec3; 2]>, Vec<[f32; 3]>),
@@ -54,17 +54,18 @@ pub(super) fn meshes(
     let mut triangulator = Triangulator::new();
     make_values_finite(&mut statements, &mut tallies.values);
     smooth(&mut statements, &mut triangulator);
-    let mut pieces = Vec::new();
+    let mut groups = Vec::new();
     for group in std::mem::take(&mut statements.groups) {
-        let piece = |form| Piece { material: group.material.clone(), object: group.object.clone(), form };
+        let mesh_group =
+            |elements| MeshGroup { material: group.material.clone(), object: group.object.clone(), elements };
         let mut mesh = mesh(&group, &statements, &mut triangulator, &mut tallies);
         if !mesh.triangles.is_empty() {
             mesh.name = file.file.to_string();
-            pieces.push(piece(Form::Mesh(mesh)));
+            groups.push(mesh_group(Elements::Mesh(mesh)));
         }
         let (ends, colors) = lines(&group, &statements, &mut tallies.lines);
         if !ends.is_empty() {
-            pieces.push(piece(Form::Lines(ends, colors)));
+            groups.push(mesh_group(Elements::Lines(ends, colors)));
         }
     }
     tallies.lines.warn("line", "left out: a coordinate is infinite or not a number", file, context);
@@ -77,7 +78,7 @@ pub(super) fn meshes(
             "concave polygons with very many corners: some were triangulated as if they were convex",
         );
     }
-    Ok(Meshes { pieces, libraries: statements.libraries })
+    Ok(Meshes { groups, libraries: statements.libraries })
 }
 
 fn make_values_finite(statements: &mut Statements, tally: &mut Tally) {

@@ -25,7 +25,7 @@ use super::mtl::{self, Map, MtlMaterial, shown_name};
 use super::physical;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
-use crate::material::{BumpMapping, Color, Material, MaterialKind, Scalar, Whitted};
+use crate::material::{BumpMapping, Color, Ior, Material, MaterialKind, Scalar, Whitted};
 use crate::model::surface::{base_name, beside, push_texture, push_vertex_colors};
 use crate::model::tally::Tally;
 use crate::packed;
@@ -34,7 +34,7 @@ use crate::shape::Emission;
 use crate::texture::TextureKind;
 
 /// The material libraries of a file, and what is converted of them.
-pub(super) struct Looks {
+pub(super) struct MaterialLibraries {
     materials: Vec<(MtlMaterial, PathBuf)>,
     by_name: HashMap<Vec<u8>, usize>,
     images: Images,
@@ -45,7 +45,7 @@ pub(super) struct Looks {
 
 /// The material, emission and alpha of one part.
 #[derive(Default)]
-pub(super) struct Look {
+pub(super) struct MaterialBinding {
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
     pub(super) alpha: Option<Scalar>,
@@ -53,7 +53,7 @@ pub(super) struct Look {
 
 /// Properties of the geometry that its material depends on.
 #[derive(Clone, Copy)]
-pub(super) struct Surface {
+pub(super) struct MeshTraits {
     /// Whether vertices have colours.
     pub(super) is_colored: bool,
     /// The length of a unit of texture coordinates.
@@ -67,7 +67,7 @@ const LIBRARY_BYTES: u64 = 1 << 26;
 const BLACK: [f32; 3] = [0.0; 3];
 const WHITE: [f32; 3] = [1.0; 3];
 
-impl Looks {
+impl MaterialLibraries {
     /// Reads the material libraries of the file at `path`, with warnings for those that cannot be read.
     pub(super) fn read(
         libraries: &[(Location, Vec<u8>)],
@@ -129,14 +129,14 @@ impl Looks {
     }
 
     /// Converts the material with this name and adds it to the scene.
-    pub(super) fn look(
+    pub(super) fn binding(
         &mut self,
         name: Option<&[u8]>,
-        surface: Surface,
+        traits: MeshTraits,
         file: &Location,
         context: &mut LoadContext<'_>,
         scene: &mut Scene,
-    ) -> Look {
+    ) -> MaterialBinding {
         let index = name.and_then(|name| self.by_name.get(name).copied());
         if let (Some(name), None) = (name, index) {
             if self.missing.count() == 0 {
@@ -145,11 +145,11 @@ impl Looks {
             self.missing.add(0);
         }
         let Some(index) = index else {
-            let material = surface.is_colored.then(|| push_vertex_colors(scene, file));
-            return Look { material, ..Look::default() };
+            let material = traits.is_colored.then(|| push_vertex_colors(scene, file));
+            return MaterialBinding { material, ..MaterialBinding::default() };
         };
         let (written, library) = &self.materials[index];
-        translate(written, surface, Maps { images: &mut self.images, library, context, scene })
+        translate(written, traits, Maps { images: &mut self.images, library, context, scene })
     }
 
     /// Warns of materials that no library defines. Files without libraries use names freely.
@@ -163,12 +163,12 @@ impl Looks {
     }
 }
 
-fn translate(written: &MtlMaterial, surface: Surface, mut maps: Maps<'_, '_>) -> Look {
+fn translate(written: &MtlMaterial, traits: MeshTraits, mut maps: Maps<'_, '_>) -> MaterialBinding {
     let name = shown_name(&written.name);
     warn_of_gain(written, &name, &mut maps);
     let kind = match physical::is_physical(written) {
-        true => MaterialKind::Principled(Box::new(physical::principled(written, surface, &mut maps))),
-        false => MaterialKind::Whitted(whitted(written, surface, &mut maps)),
+        true => MaterialKind::Principled(Box::new(physical::principled(written, traits, &mut maps))),
+        false => MaterialKind::Whitted(whitted(written, traits, &mut maps)),
     };
     let is_physical = matches!(kind, MaterialKind::Principled(_));
     let ke = written.emission.unwrap_or(BLACK);
@@ -181,10 +181,10 @@ fn translate(written: &MtlMaterial, surface: Surface, mut maps: Maps<'_, '_>) ->
     let cut = written.opacity_map.as_ref();
     let cut = cut.and_then(|map| maps.opacity(map, written.diffuse_map.as_ref()));
     let alpha = if is_physical { physical::alpha(written, cut, &mut maps) } else { cut };
-    let bump_mapping = bump_mapping(written, surface, &mut maps);
+    let bump_mapping = bump_mapping(written, traits, &mut maps);
     let material = Material { bump_mapping, ..Material::new(name, written.at.clone(), kind) };
     maps.scene.materials.push(material);
-    Look { material: Some(MaterialId(maps.scene.materials.len() as u32 - 1)), emission, alpha }
+    MaterialBinding { material: Some(MaterialId(maps.scene.materials.len() as u32 - 1)), emission, alpha }
 }
 
 /// Warns of colours that are multiplied by more than 1. One without an image is checked when the scene is built.
@@ -217,13 +217,13 @@ fn color(constant: [f32; 3], map: Option<&Map>, scale: f32, maps: &mut Maps<'_, 
 /// The diffuse colour times `covering`, with the colours of the vertices where there is no map.
 pub(super) fn diffuse(
     written: &MtlMaterial,
-    surface: Surface,
+    traits: MeshTraits,
     covering: f32,
     maps: &mut Maps<'_, '_>,
 ) -> Color {
     let kd = diffuse_constant(written);
     let diffuse = color(kd, written.diffuse_map.as_ref(), covering, maps);
-    if let (true, Color::Value(_)) = (surface.is_colored && written.diffuse_map.is_none(), diffuse) {
+    if let (true, Color::Value(_)) = (traits.is_colored && written.diffuse_map.is_none(), diffuse) {
         let tint = if kd == BLACK { WHITE } else { kd }.map(|value| value * covering);
         let kind = TextureKind::VertexColor { tint };
         return push_texture(maps.scene, &shown_name(&written.name), &written.at, kind);
@@ -241,8 +241,8 @@ pub(super) fn shininess(written: &MtlMaterial, maps: &mut Maps<'_, '_>) -> f32 {
     written.shininess.unwrap_or(0.0) * mean.map_or(1.0, |mean| mean.max(0.0))
 }
 
-fn bump_mapping(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> BumpMapping {
-    let Some(unit_of_uv) = surface.unit_of_uv else { return BumpMapping::None };
+fn bump_mapping(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -> BumpMapping {
+    let Some(unit_of_uv) = traits.unit_of_uv else { return BumpMapping::None };
     let normals = written.normal_map.as_ref().and_then(|map| maps.normals(map));
     let heights = || written.bump_map.as_ref().and_then(|map| maps.heights(map, unit_of_uv));
     normals.or_else(heights).unwrap_or_default()
@@ -253,7 +253,7 @@ pub(super) fn own_opacity(written: &MtlMaterial) -> f32 {
     written.opacity.filter(|&d| d > 0.0 || written.opacity_map.is_none()).unwrap_or(1.0)
 }
 
-fn whitted(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> Whitted {
+fn whitted(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -> Whitted {
     let illumination = written.illumination.unwrap_or(2);
     let opacity = own_opacity(written);
     let kd = diffuse_constant(written);
@@ -263,7 +263,7 @@ fn whitted(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> 
     let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
     let covering = (1.0 - passing) * (1.0 - metallic);
 
-    let diffuse = diffuse(written, surface, covering, maps);
+    let diffuse = diffuse(written, traits, covering, maps);
     let ks = written.specular.unwrap_or(BLACK);
     let shininess = shininess(written, maps);
     let has_highlight = illumination >= 2 && shininess > 0.0;
@@ -280,7 +280,7 @@ fn whitted(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> 
         transmission: Color::Value(filter.map(|value| value.min(1.0) * passing)),
         ior: match (written.ior, illumination) {
             (Some(ior), 4..=9) if ior > 0.0 => ior,
-            (_, 4 | 5 | 6 | 7 | 9) => 1.5,
+            (_, 4 | 5 | 6 | 7 | 9) => Ior::GLASS,
             _ => 1.0,
         },
         ..Whitted::default()

@@ -14,10 +14,10 @@
 //! | `Pc`, `Pcr` | clear coat and its roughness |
 //! | `aniso`, `anisor` | anisotropy; 1 is a full turn |
 
-use super::look::{Surface, diffuse, own_opacity, shininess};
+use super::look::{MeshTraits, diffuse, own_opacity, shininess};
 use super::maps::Maps;
 use super::mtl::{Map, MtlMaterial};
-use crate::material::{Anisotropy, Color, Principled, Scalar};
+use crate::material::{Anisotropy, Color, Ior, Principled, Scalar};
 use crate::model::surface::add_texture;
 use crate::texture::TextureKind;
 
@@ -32,8 +32,8 @@ pub(super) fn is_physical(written: &MtlMaterial) -> bool {
 }
 
 /// The material without its alpha and emission.
-pub(super) fn principled(written: &MtlMaterial, surface: Surface, maps: &mut Maps<'_, '_>) -> Principled {
-    let base_color = diffuse(written, surface, 1.0, maps);
+pub(super) fn principled(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -> Principled {
+    let base_color = diffuse(written, traits, 1.0, maps);
     let metallic = number(written.metallic_map.as_ref(), unit(written.metallic), maps);
     let roughness = written.roughness.map_or_else(|| rough(shininess(written, maps)), |r| r.min(1.0));
     let roughness = number(written.roughness_map.as_ref(), roughness, maps);
@@ -45,7 +45,7 @@ pub(super) fn principled(written: &MtlMaterial, surface: Surface, maps: &mut Map
         base_color,
         metallic,
         roughness,
-        ior: written.ior.filter(|&ior| ior > 1.0).unwrap_or(1.5),
+        ior: written.ior.filter(|&ior| ior > 1.0).unwrap_or(Ior::GLASS),
         transmission: Scalar::Value(if is_glass { 1.0 } else { 0.0 }),
         is_solid: is_glass,
         sheen_color: match sheen {

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use super::realistic::Optics;
 use super::state::Entity;
 use crate::camera::{Camera, Lens, Projection, View, Window};
@@ -50,7 +50,7 @@ impl Reader<'_, '_> {
         let is_flat = matches!(projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
         let frame = parameters.positive("frameaspectratio", aspect as f32)?;
         let aspect = if parameters.has("frameaspectratio") { f64::from(frame) } else { aspect };
-        let given = parameters.floats("screenwindow", Kind::Float)?;
+        let given = parameters.floats("screenwindow", ParameterType::Float)?;
         let given = given.map(|numbers| {
             <[f32; 4]>::try_from(numbers)
                 .ok()

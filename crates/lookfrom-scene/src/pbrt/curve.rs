@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::Reader;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use crate::error::Result;
 use crate::shape::{Geometry, Profile, Shape, Strand};
 
@@ -14,7 +14,7 @@ enum Basis {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Form {
+enum CurveShape {
     Flat,
     Cylinder,
     Ribbon,
@@ -26,8 +26,9 @@ impl Reader<'_, '_> {
         let degree = p.integer("degree", 3, 2, 3)? as usize;
         let basis =
             p.choice("basis", Basis::Bezier, &[("bezier", Basis::Bezier), ("bspline", Basis::BSpline)])?;
-        let forms = [("flat", Form::Flat), ("cylinder", Form::Cylinder), ("ribbon", Form::Ribbon)];
-        let form = p.choice("type", Form::Flat, &forms)?;
+        let forms =
+            [("flat", CurveShape::Flat), ("cylinder", CurveShape::Cylinder), ("ribbon", CurveShape::Ribbon)];
+        let form = p.choice("type", CurveShape::Flat, &forms)?;
         let width = p.float("width", 1.0)?;
         let widths = [p.float("width0", width)?, p.float("width1", width)?];
         if !(widths[0].max(widths[1]) > 0.0) || widths[0].min(widths[1]) < 0.0 {
@@ -35,7 +36,7 @@ impl Reader<'_, '_> {
             return Err(p.refuse(name, "widths of at least 0, one of them greater than 0"));
         }
 
-        let points = p.vectors("P", Kind::Point3)?;
+        let points = p.vectors("P", ParameterType::Point3)?;
         let count = points.len();
         let segments = match basis {
             Basis::Bezier if count > degree && (count - 1).is_multiple_of(degree) => (count - 1) / degree,
@@ -48,8 +49,8 @@ impl Reader<'_, '_> {
                 return Err(p.refuse("P", &format!("at least {} control points, found {count}", degree + 1)));
             }
         };
-        let normals = p.vectors("N", Kind::Normal)?;
-        if form == Form::Ribbon && normals.len() != segments + 1 {
+        let normals = p.vectors("N", ParameterType::Normal)?;
+        if form == CurveShape::Ribbon && normals.len() != segments + 1 {
             let expected = format!(
                 "{} normals for {} of a ribbon",
                 segments + 1,
@@ -69,9 +70,9 @@ impl Reader<'_, '_> {
                 (Basis::BSpline, _) => cubic_b_spline(corners(&points[segment..])),
             };
             let profile = match form {
-                Form::Flat => Profile::Flat,
-                Form::Cylinder => Profile::Cylinder,
-                Form::Ribbon => Profile::Ribbon(
+                CurveShape::Flat => Profile::Flat,
+                CurveShape::Cylinder => Profile::Cylinder,
+                CurveShape::Ribbon => Profile::Ribbon(
                     [segment, segment + 1].map(|end| normals[end].try_normalize().unwrap_or(Vec3::Z)),
                 ),
             };

@@ -1,7 +1,7 @@
 //! The `Film` and `PixelFilter` directives: resolution, reconstruction filter and sensor.
 
 use super::Reader;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
 use crate::error::Result;
@@ -126,7 +126,7 @@ impl Reader<'_, '_> {
 /// The crop window, from pixels or from fractions of the image.
 fn crop(parameters: &Parameters, width: u32, height: u32) -> Result<Option<PixelBounds>> {
     let pixels = parameters.integers("pixelbounds")?;
-    let shares = parameters.floats("cropwindow", Kind::Float)?;
+    let shares = parameters.floats("cropwindow", ParameterType::Float)?;
     let crop = match (pixels, shares) {
         (&[x0, x1, y0, y1], _) => {
             let [x0, x1] = [x0, x1].map(|x| x.clamp(0, width as i32) as u32);

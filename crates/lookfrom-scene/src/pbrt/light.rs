@@ -8,7 +8,7 @@ use std::f32::consts::PI;
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use super::spectra::brightness;
 use super::text::Place;
 use super::{Reader, transform};
@@ -34,7 +34,8 @@ impl Reader<'_, '_> {
         let (kind, power) = match kind {
             "point" => {
                 let intensity = self.light_color(p, "I")?.unwrap_or(WHITE);
-                let position = matrix.transform_point3(p.vector("from", Kind::Point3, DVec3::ZERO)?);
+                let position =
+                    matrix.transform_point3(p.vector("from", ParameterType::Point3, DVec3::ZERO)?);
                 let kind = LightKind::Point { position, intensity, falloff: Falloff::Quadratic };
                 (kind, power(p, "power", intensity, PI)?)
             }
@@ -84,7 +85,7 @@ impl Reader<'_, '_> {
     fn infinite(&mut self, p: &Parameters, world_from_light: DMat4) -> Result<(LightKind, Power)> {
         let written = self.light_color(p, "L")?;
         // Portals are given in world space, whatever the transform.
-        let portal = p.vectors("portal", Kind::Point3)?;
+        let portal = p.vectors("portal", ParameterType::Point3)?;
         let portal = match portal[..] {
             [] => None,
             [a, b, c, d] => Some([a, b, c, d].map(Vec3::as_dvec3))
@@ -117,7 +118,7 @@ impl Reader<'_, '_> {
 
     /// The image of a light: environment maps have to be square.
     fn light_picture(&mut self, p: &Parameters, is_square: bool) -> Result<ImageId> {
-        let parameter = p.find("filename", &[Kind::String])?;
+        let parameter = p.find("filename", &[ParameterType::String])?;
         let Some(name) = p.string("filename")? else {
             return Err(p
                 .place
@@ -145,7 +146,7 @@ impl Reader<'_, '_> {
             return Err(Self::unknown(&p.place, "area light", kind, ["diffuse"]));
         }
         let color = self.light_color(p, "L")?;
-        let file = p.find("filename", &[Kind::String])?;
+        let file = p.find("filename", &[ParameterType::String])?;
         let radiance = match (p.string("filename")?, color) {
             (Some(_), Some(_)) => {
                 let error = p.refuse("L", "it without \"filename\"");
@@ -177,8 +178,8 @@ fn power(p: &Parameters, total: &'static str, color: Color, unit: f32) -> Result
 
 /// The position and direction of a light in world space.
 fn from_to(p: &Parameters, matrix: &DMat4) -> Result<(DVec3, DVec3)> {
-    let from = p.vector("from", Kind::Point3, DVec3::ZERO)?;
-    let to = p.vector("to", Kind::Point3, DVec3::Z)?;
+    let from = p.vector("from", ParameterType::Point3, DVec3::ZERO)?;
+    let to = p.vector("to", ParameterType::Point3, DVec3::Z)?;
     let direction = matrix.transform_vector3(to - from);
     if direction.try_normalize().is_none() {
         return Err(p.refuse("to", "another point than \"from\""));

@@ -11,7 +11,7 @@ use glam::Vec3;
 use crate::shape::Mesh;
 
 /// A mesh with adjacency. Edge `k` of a face goes from corner `k` to corner `k + 1`.
-struct Surface {
+struct ControlMesh {
     positions: Vec<Vec3>,
     faces: Vec<[u32; 3]>,
     /// Across each edge: a face, or none at the boundary.
@@ -26,13 +26,13 @@ struct Surface {
 /// # Errors
 /// A message if more than two faces meet at an edge, or surfaces only at a vertex, or if orientations differ.
 pub(super) fn subdivide(positions: &[Vec3], triangles: &[[u32; 3]], levels: u32) -> Result<Mesh, String> {
-    let mut surface = Surface::new(positions.to_vec(), triangles.to_vec())?;
+    let mut surface = ControlMesh::new(positions.to_vec(), triangles.to_vec())?;
     for _ in 0..levels {
         surface = surface.refined();
     }
     let vertices = 0..surface.positions.len();
     let limit = vertices.clone().map(|vertex| surface.limit(vertex, &surface.ring(vertex))).collect();
-    let moved = Surface { positions: limit, ..surface };
+    let moved = ControlMesh { positions: limit, ..surface };
     let normals = vertices.map(|vertex| moved.normal(vertex, &moved.ring(vertex))).collect();
     Ok(Mesh {
         name: "loopsubdiv".into(),
@@ -43,7 +43,7 @@ pub(super) fn subdivide(positions: &[Vec3], triangles: &[[u32; 3]], levels: u32)
     })
 }
 
-impl Surface {
+impl ControlMesh {
     fn new(positions: Vec<Vec3>, faces: Vec<[u32; 3]>) -> Result<Self, String> {
         if faces.iter().any(|[a, b, c]| a == b || b == c || c == a) {
             return Err("triangles with three different corners".to_owned());
@@ -279,9 +279,9 @@ mod tests {
     #[test]
     fn neighbours_are_those_of_a_search() {
         for (points, faces) in [tetrahedron(), grid(3)] {
-            let fine = Surface::new(points, faces).expect("a good mesh").refined().refined();
+            let fine = ControlMesh::new(points, faces).expect("a good mesh").refined().refined();
             let searched =
-                Surface::new(fine.positions.clone(), fine.faces.clone()).expect("still a good mesh");
+                ControlMesh::new(fine.positions.clone(), fine.faces.clone()).expect("still a good mesh");
             assert_eq!(fine.neighbours, searched.neighbours);
             assert_eq!(fine.is_border, searched.is_border);
         }

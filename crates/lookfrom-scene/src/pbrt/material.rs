@@ -1,15 +1,21 @@
 //! The `Material` and `MakeNamedMaterial` directives.
 
 use super::lexer::Lexer;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use super::spectra::Meaning::{Reflectance, Unbounded};
 use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness,
 };
 use crate::scene::{ImageId, MaterialId};
+
+/// pbrt's own bound of the bounces in a coat, on which its pictures depend.
+const COAT_DEPTH: u32 = 10;
+
+/// pbrt's own reflectance of a diffuse surface, or base.
+const REFLECTANCE: Color = Color::gray(0.5);
 
 const KINDS: &[&str] = &[
     "coatedconductor",
@@ -72,13 +78,12 @@ impl Reader<'_, '_> {
 
     fn look(&mut self, name: &str, kind: &str, parameters: &Parameters) -> Result<Material> {
         let p = parameters;
-        let gray = Color::gray(0.5);
         let kind = match kind {
             "diffuse" => {
-                MaterialKind::Diffuse { reflectance: self.color(p, "reflectance", gray, Reflectance)? }
+                MaterialKind::Diffuse { reflectance: self.color(p, "reflectance", REFLECTANCE, Reflectance)? }
             }
             "diffusetransmission" => {
-                let quarter = Color::gray(0.25);
+                let quarter = Color::gray(MaterialKind::DIFFUSE_SHEET);
                 MaterialKind::DiffuseTransmission {
                     reflectance: self.color(p, "reflectance", quarter, Reflectance)?,
                     transmittance: self.color(p, "transmittance", quarter, Reflectance)?,
@@ -91,15 +96,15 @@ impl Reader<'_, '_> {
                 energy: Energy::SingleScattering,
             },
             "dielectric" => MaterialKind::Dielectric {
-                eta: self.index_of_refraction(p, "eta", 1.5)?,
+                eta: self.index_of_refraction(p, "eta", Ior::GLASS)?,
                 roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
                 energy: Energy::SingleScattering,
             },
             "thindielectric" => {
-                MaterialKind::ThinDielectric { eta: self.index_of_refraction(p, "eta", 1.5)? }
+                MaterialKind::ThinDielectric { eta: self.index_of_refraction(p, "eta", Ior::GLASS)? }
             }
             "coateddiffuse" => MaterialKind::CoatedDiffuse {
-                reflectance: self.color(p, "reflectance", gray, Reflectance)?,
+                reflectance: self.color(p, "reflectance", REFLECTANCE, Reflectance)?,
                 coat: self.coat(p, "eta", ["uroughness", "vroughness", "roughness"])?,
             },
             "coatedconductor" => {
@@ -124,7 +129,7 @@ impl Reader<'_, '_> {
                 let message = "measured materials are not rendered yet: gray \"diffuse\" is used instead";
                 self.warn_once("measured", &p.place, message);
                 p.ignore(&["filename"]);
-                MaterialKind::Diffuse { reflectance: gray }
+                MaterialKind::Diffuse { reflectance: REFLECTANCE }
             }
             _ => return Err(Self::unknown(&p.place, "material", kind, KINDS.iter().copied())),
         };
@@ -144,7 +149,8 @@ impl Reader<'_, '_> {
             let message = "the material has a \"normalmap\" and a \"displacement\": only the first is used";
             self.context.warn(&p.place.location(), message);
         }
-        let place = p.find("normalmap", &[Kind::String])?.map_or(&p.place, |parameter| &parameter.place);
+        let place =
+            p.find("normalmap", &[ParameterType::String])?.map_or(&p.place, |parameter| &parameter.place);
         let image: ImageId = self.picture(name, "linear", place)?;
         Ok(BumpMapping::NormalMap(image))
     }
@@ -185,7 +191,7 @@ impl Reader<'_, '_> {
 
     fn index_of_refraction(&mut self, p: &Parameters, name: &'static str, default: f32) -> Result<Ior> {
         // pbrt prefers the spectrum if both are given.
-        if p.of_kind(name, Kind::Spectrum)?.is_none() {
+        if p.of_kind(name, ParameterType::Spectrum)?.is_none() {
             let value = p.float_or_none(name)?.unwrap_or(default);
             if !(value > 0.0) {
                 return Err(p.refuse(name, &format!("an index of refraction greater than 0, found {value}")));
@@ -201,12 +207,12 @@ impl Reader<'_, '_> {
 
     fn coat(&mut self, p: &Parameters, eta: &'static str, names: [&'static str; 3]) -> Result<Coat> {
         Ok(Coat {
-            eta: self.index_of_refraction(p, eta, 1.5)?,
+            eta: self.index_of_refraction(p, eta, Ior::GLASS)?,
             roughness: self.roughness(p, names, 0.0)?,
-            thickness: self.scalar(p, "thickness", 0.01)?,
+            thickness: self.scalar(p, "thickness", Coat::THICKNESS)?,
             albedo: self.color(p, "albedo", Color::BLACK, Reflectance)?,
             g: self.scalar(p, "g", 0.0)?,
-            max_depth: p.integer("maxdepth", 10, 1, 1 << 20)? as u32,
+            max_depth: p.integer("maxdepth", COAT_DEPTH as i32, 1, 1 << 20)? as u32,
             samples: p.integer("nsamples", 1, 1, 1 << 16)? as u32,
             estimate: CoatEstimate::Pbrt,
         })
@@ -214,8 +220,8 @@ impl Reader<'_, '_> {
 
     /// A mix of two materials that are already defined.
     fn mix(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let amount = self.scalar(p, "amount", 0.5)?;
-        let parameter = p.find("materials", &[Kind::String])?;
+        let amount = self.scalar(p, "amount", MaterialKind::MIX_AMOUNT)?;
+        let parameter = p.find("materials", &[ParameterType::String])?;
         let Some(parameter) = parameter else {
             let error = p.place.invalid(format!("{} has no \"string materials\"", p.title));
             return Err(error
@@ -245,12 +251,9 @@ impl Reader<'_, '_> {
         let coat = Coat {
             eta: self.index_of_refraction(p, "eta", 1.33)?,
             roughness,
-            thickness: Scalar::Value(0.01),
-            albedo: Color::BLACK,
-            g: Scalar::Value(0.0),
-            max_depth: 10,
-            samples: 1,
+            max_depth: COAT_DEPTH,
             estimate: CoatEstimate::Pbrt,
+            ..Coat::default()
         };
         Ok(MaterialKind::CoatedDiffuse { reflectance, coat })
     }

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::Reader;
 use super::loop_subdivision::subdivide;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh, Patches};
@@ -24,9 +24,9 @@ impl Reader<'_, '_> {
         let handedness = if mirrors == self.state.reverse_orientation { 1.0 } else { -1.0 };
         let mesh = Mesh {
             name: "trianglemesh".into(),
-            normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
+            normals: self.one_a_vertex(p, "N", p.vectors("N", ParameterType::Normal)?, positions.len()),
             tangents: self
-                .one_a_vertex(p, "S", p.vectors("S", Kind::Vector3)?, positions.len())
+                .one_a_vertex(p, "S", p.vectors("S", ParameterType::Vector3)?, positions.len())
                 .into_iter()
                 .map(|tangent| tangent.extend(handedness))
                 .collect(),
@@ -39,13 +39,13 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn ply_mesh(&mut self, p: &Parameters) -> Result<Geometry> {
-        let parameter = p.find("filename", &[Kind::String])?;
+        let parameter = p.find("filename", &[ParameterType::String])?;
         let Some(name) = p.string("filename")?.filter(|name| !name.is_empty()) else {
             let error = p.place.invalid(format!("{} has no \"string filename\"", p.title));
             return Err(error.hint("name a .ply or .ply.gz file"));
         };
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
-        if p.find("displacement", &[Kind::Texture, Kind::String])?.is_some() {
+        if p.find("displacement", &[ParameterType::Texture, ParameterType::String])?.is_some() {
             let message = "displacement is not rendered yet: the mesh is not displaced";
             self.warn_once("displacement", &p.place, message);
         }
@@ -56,7 +56,7 @@ impl Reader<'_, '_> {
 
     pub(super) fn bilinear_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
         p.ignore(&["faceIndices"]);
-        if p.find("emissionfilename", &[Kind::String])?.is_some() {
+        if p.find("emissionfilename", &[ParameterType::String])?.is_some() {
             let message = "\"emissionfilename\" is not supported yet: the whole patch emits uniformly";
             self.warn_once("emissionfilename", &p.place, message);
         }
@@ -66,7 +66,7 @@ impl Reader<'_, '_> {
             return Ok(None);
         }
         Ok(Some(Geometry::Bilinear(Arc::new(Patches {
-            normals: self.one_a_vertex(p, "N", p.vectors("N", Kind::Normal)?, positions.len()),
+            normals: self.one_a_vertex(p, "N", p.vectors("N", ParameterType::Normal)?, positions.len()),
             uvs: self.uvs(p, positions.len())?,
             positions,
             patches,
@@ -121,7 +121,7 @@ impl Reader<'_, '_> {
 }
 
 fn points(p: &Parameters) -> Result<Vec<Vec3>> {
-    let positions = p.vectors("P", Kind::Point3)?;
+    let positions = p.vectors("P", ParameterType::Point3)?;
     if positions.is_empty() {
         let error = p.place.invalid(format!("{} has no \"point3 P\"", p.title));
         return Err(error.hint("add its vertices: \"point3 P\" [ 0 0 0  1 0 0  0 1 0 ]"));

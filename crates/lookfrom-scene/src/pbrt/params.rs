@@ -19,7 +19,7 @@ use crate::suggest::nearest;
 
 /// Types of parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ParameterType {
     Integer,
     Float,
     Point2,
@@ -35,26 +35,27 @@ pub(super) enum Kind {
     Texture,
 }
 
-const KINDS: [(&str, Kind); 13] = [
-    ("integer", Kind::Integer),
-    ("float", Kind::Float),
-    ("point2", Kind::Point2),
-    ("vector2", Kind::Vector2),
-    ("point3", Kind::Point3),
-    ("vector3", Kind::Vector3),
-    ("normal", Kind::Normal),
-    ("bool", Kind::Bool),
-    ("string", Kind::String),
-    ("rgb", Kind::Rgb),
-    ("spectrum", Kind::Spectrum),
-    ("blackbody", Kind::Blackbody),
-    ("texture", Kind::Texture),
+const KINDS: [(&str, ParameterType); 13] = [
+    ("integer", ParameterType::Integer),
+    ("float", ParameterType::Float),
+    ("point2", ParameterType::Point2),
+    ("vector2", ParameterType::Vector2),
+    ("point3", ParameterType::Point3),
+    ("vector3", ParameterType::Vector3),
+    ("normal", ParameterType::Normal),
+    ("bool", ParameterType::Bool),
+    ("string", ParameterType::String),
+    ("rgb", ParameterType::Rgb),
+    ("spectrum", ParameterType::Spectrum),
+    ("blackbody", ParameterType::Blackbody),
+    ("texture", ParameterType::Texture),
 ];
 
 /// Types of constant colours.
-pub(super) const SPECTRA: &[Kind] = &[Kind::Rgb, Kind::Spectrum, Kind::Blackbody];
+pub(super) const SPECTRA: &[ParameterType] =
+    &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody];
 
-impl Kind {
+impl ParameterType {
     pub(super) fn word(self) -> &'static str {
         KINDS.iter().find(|entry| entry.1 == self).map_or("", |entry| entry.0)
     }
@@ -91,7 +92,7 @@ impl Values {
 
 /// One parameter.
 pub(super) struct Parameter {
-    pub(super) kind: Kind,
+    pub(super) kind: ParameterType,
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) values: Values,
@@ -172,12 +173,12 @@ pub(super) fn read(lexer: &mut Lexer<'_>) -> Result<Vec<Parameter>> {
     Ok(parameters)
 }
 
-fn kind_of(word: &str, name: &str, place: &Place) -> Result<Kind> {
+fn kind_of(word: &str, name: &str, place: &Place) -> Result<ParameterType> {
     if let Some(&(_, kind)) = KINDS.iter().find(|entry| entry.0 == word) {
         return Ok(kind);
     }
     if word == "normal3" {
-        return Ok(Kind::Normal);
+        return Ok(ParameterType::Normal);
     }
     version3::check_kind(word, name, place)?;
     let error = place.invalid(format!("{word:?} is not a type of parameters"));
@@ -189,7 +190,7 @@ fn kind_of(word: &str, name: &str, place: &Place) -> Result<Kind> {
 }
 
 /// A value, or a list of them in brackets.
-fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
+fn values(lexer: &mut Lexer<'_>, kind: ParameterType) -> Result<Values> {
     let start = lexer.here();
     let is_list = lexer.peek()? == Some(Token::Open);
     if is_list {
@@ -197,13 +198,13 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
     }
     let first = lexer.peek()?;
     let strings = match kind {
-        Kind::String | Kind::Texture | Kind::Bool => true,
+        ParameterType::String | ParameterType::Texture | ParameterType::Bool => true,
         // A spectrum is a name or file, or pairs of wavelength and value.
-        Kind::Spectrum => matches!(first, Some(Token::Quoted(_))),
+        ParameterType::Spectrum => matches!(first, Some(Token::Quoted(_))),
         _ => false,
     };
     match (is_list, strings) {
-        (true, false) if kind == Kind::Integer => return Ok(Values::Integers(lexer.integers()?)),
+        (true, false) if kind == ParameterType::Integer => return Ok(Values::Integers(lexer.integers()?)),
         (true, false) => return Ok(Values::Numbers(lexer.singles()?)),
         _ => {}
     }
@@ -214,12 +215,14 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
         let token = lexer.token()?;
         match (token, kind) {
             (Some(Token::Close), _) if is_list => break,
-            (Some(Token::Word(b"true") | Token::Quoted(b"true")), Kind::Bool) => truths.push(true),
-            (Some(Token::Word(b"false") | Token::Quoted(b"false")), Kind::Bool) => truths.push(false),
-            (Some(Token::Quoted(raw)), _) if strings && kind != Kind::Bool => {
+            (Some(Token::Word(b"true") | Token::Quoted(b"true")), ParameterType::Bool) => truths.push(true),
+            (Some(Token::Word(b"false") | Token::Quoted(b"false")), ParameterType::Bool) => {
+                truths.push(false);
+            }
+            (Some(Token::Quoted(raw)), _) if strings && kind != ParameterType::Bool => {
                 words.push(lexer.unescape(raw, start)?.into_owned());
             }
-            (Some(Token::Word(word)), Kind::Integer) => {
+            (Some(Token::Word(word)), ParameterType::Integer) => {
                 integers.push(parse_integer(word).ok_or_else(|| lexer.wrong(start, "a whole number"))?);
             }
             (Some(Token::Word(word)), _) if !strings => {
@@ -229,8 +232,8 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
                 return Err(lexer.wrong(
                     start,
                     match kind {
-                        Kind::Bool => "true or false",
-                        Kind::Integer => "a whole number",
+                        ParameterType::Bool => "true or false",
+                        ParameterType::Integer => "a whole number",
                         _ if strings => "a quoted string",
                         _ => "a number",
                     },
@@ -242,8 +245,8 @@ fn values(lexer: &mut Lexer<'_>, kind: Kind) -> Result<Values> {
         }
     }
     Ok(match kind {
-        Kind::Bool => Values::Truths(truths),
-        Kind::Integer => Values::Integers(integers),
+        ParameterType::Bool => Values::Truths(truths),
+        ParameterType::Integer => Values::Integers(integers),
         _ if strings => Values::Strings(words),
         _ if numbers.is_empty() => return Err(lexer.wrong(start, "a value")),
         _ => Values::Numbers(numbers),
@@ -278,7 +281,7 @@ impl Parameters {
     }
 
     /// The parameter with this name, if it has one of these types. The last one written counts.
-    pub(super) fn find(&self, name: &'static str, kinds: &[Kind]) -> Result<Option<&Parameter>> {
+    pub(super) fn find(&self, name: &'static str, kinds: &[ParameterType]) -> Result<Option<&Parameter>> {
         self.asked.borrow_mut().push(name);
         let mut misfit = None;
         for parameter in self.own.iter().rev().filter(|parameter| parameter.name == name) {
@@ -307,7 +310,7 @@ impl Parameters {
     }
 
     /// The parameter with this name and type, if there is one; one of another type is not an error.
-    pub(super) fn of_kind(&self, name: &'static str, kind: Kind) -> Result<Option<&Parameter>> {
+    pub(super) fn of_kind(&self, name: &'static str, kind: ParameterType) -> Result<Option<&Parameter>> {
         let there = |p: &Parameter| p.name == name && p.kind == kind;
         if self.own.iter().any(there) || self.inherited.iter().any(|parameter| there(parameter)) {
             self.find(name, &[kind])
@@ -329,7 +332,7 @@ impl Parameters {
     }
 
     pub(super) fn float_or_none(&self, name: &'static str) -> Result<Option<f32>> {
-        let Some(parameter) = self.find(name, &[Kind::Float])? else { return Ok(None) };
+        let Some(parameter) = self.find(name, &[ParameterType::Float])? else { return Ok(None) };
         Ok(parameter.single(parameter.numbers())?.first().copied())
     }
 
@@ -365,7 +368,7 @@ impl Parameters {
     }
 
     pub(super) fn integer_or_none(&self, name: &'static str) -> Result<Option<i32>> {
-        let Some(parameter) = self.find(name, &[Kind::Integer])? else { return Ok(None) };
+        let Some(parameter) = self.find(name, &[ParameterType::Integer])? else { return Ok(None) };
         let Values::Integers(values) = &parameter.values else { return Ok(None) };
         Ok(parameter.single(values)?.first().copied())
     }
@@ -386,13 +389,13 @@ impl Parameters {
     }
 
     pub(super) fn boolean(&self, name: &'static str, default: bool) -> Result<bool> {
-        let Some(parameter) = self.find(name, &[Kind::Bool])? else { return Ok(default) };
+        let Some(parameter) = self.find(name, &[ParameterType::Bool])? else { return Ok(default) };
         let Values::Truths(values) = &parameter.values else { return Ok(default) };
         Ok(parameter.single(values)?.first().copied().unwrap_or(default))
     }
 
     pub(super) fn string(&self, name: &'static str) -> Result<Option<&str>> {
-        let Some(parameter) = self.find(name, &[Kind::String])? else { return Ok(None) };
+        let Some(parameter) = self.find(name, &[ParameterType::String])? else { return Ok(None) };
         Ok(parameter.single(parameter.strings())?.first().map(String::as_str))
     }
 
@@ -417,12 +420,12 @@ impl Parameters {
     }
 
     /// All numbers of a list.
-    pub(super) fn floats(&self, name: &'static str, kind: Kind) -> Result<Option<&[f32]>> {
+    pub(super) fn floats(&self, name: &'static str, kind: ParameterType) -> Result<Option<&[f32]>> {
         Ok(self.find(name, &[kind])?.map(Parameter::numbers))
     }
 
     /// One point or vector.
-    pub(super) fn vector(&self, name: &'static str, kind: Kind, default: DVec3) -> Result<DVec3> {
+    pub(super) fn vector(&self, name: &'static str, kind: ParameterType, default: DVec3) -> Result<DVec3> {
         let Some(parameter) = self.find(name, &[kind])? else { return Ok(default) };
         Ok(match parameter.single(parameter.numbers())? {
             &[x, y, z] => Vec3::new(x, y, z).as_dvec3(),
@@ -431,20 +434,20 @@ impl Parameters {
     }
 
     /// A list of points, vectors or normals; empty if absent.
-    pub(super) fn vectors(&self, name: &'static str, kind: Kind) -> Result<Vec<Vec3>> {
+    pub(super) fn vectors(&self, name: &'static str, kind: ParameterType) -> Result<Vec<Vec3>> {
         let numbers = self.floats(name, kind)?.unwrap_or_default();
         Ok(numbers.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect())
     }
 
     /// A list of points in the plane; empty if absent.
     pub(super) fn points2(&self, name: &'static str) -> Result<Vec<Vec2>> {
-        let numbers = self.floats(name, Kind::Point2)?.unwrap_or_default();
+        let numbers = self.floats(name, ParameterType::Point2)?.unwrap_or_default();
         Ok(numbers.chunks_exact(2).map(|v| Vec2::new(v[0], v[1])).collect())
     }
 
     /// A list of integers; empty if absent.
     pub(super) fn integers(&self, name: &'static str) -> Result<&[i32]> {
-        Ok(match self.find(name, &[Kind::Integer])?.map(|parameter| &parameter.values) {
+        Ok(match self.find(name, &[ParameterType::Integer])?.map(|parameter| &parameter.values) {
             Some(Values::Integers(values)) => values,
             _ => &[],
         })

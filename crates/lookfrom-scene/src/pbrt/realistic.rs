@@ -5,7 +5,7 @@
 //! it by matrices (Gauss 1841). Distortion, vignetting and the shape of blur are left out.
 
 use super::Reader;
-use super::params::{Kind, Parameters};
+use super::params::{ParameterType, Parameters};
 use crate::error::Result;
 use crate::packed;
 
@@ -20,7 +20,7 @@ pub(super) struct Optics {
 
 /// A surface of a lens system.
 #[derive(Clone, Copy, Debug)]
-struct Surface {
+struct LensSurface {
     radius: f64,
     thickness: f64,
     index: f64,
@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
     /// The optics of a realistic camera, with a warning; without a readable lens file, those of a perspective camera of 50°.
     pub(super) fn realistic(&mut self, p: &Parameters, diagonal: f64) -> Result<Option<Optics>> {
         let name = p.string("lensfile")?.unwrap_or_default().to_owned();
-        p.find("lensfile", &[Kind::String])?;
+        p.find("lensfile", &[ParameterType::String])?;
         p.ignore(&["aperture"]);
         let stop = f64::from(p.positive("aperturediameter", 1.0)?);
         let focus = f64::from(p.positive("focusdistance", 10.0)?);
@@ -75,7 +75,7 @@ impl Optics {
 }
 
 /// The surfaces of a lens file: four numbers each, and comments.
-fn surfaces(bytes: &[u8]) -> Option<Vec<Surface>> {
+fn surfaces(bytes: &[u8]) -> Option<Vec<LensSurface>> {
     let text = String::from_utf8_lossy(bytes);
     let words = text.lines().flat_map(|line| line.split('#').next().unwrap_or_default().split_whitespace());
     let numbers: Option<Vec<f64>> = words.take(4 * MOST_SURFACES + 1).map(|word| word.parse().ok()).collect();
@@ -84,12 +84,12 @@ fn surfaces(bytes: &[u8]) -> Option<Vec<Surface>> {
         return None;
     }
     let surface =
-        |&[radius, thickness, index, aperture]: &[f64; 4]| Surface { radius, thickness, index, aperture };
+        |&[radius, thickness, index, aperture]: &[f64; 4]| LensSurface { radius, thickness, index, aperture };
     Some(numbers.as_chunks().0.iter().map(surface).collect())
 }
 
 /// Height and slope of a ray behind each surface, that enters the system so.
-fn crossed(lens: &[Surface], [mut height, mut slope]: [f64; 2]) -> Vec<[f64; 2]> {
+fn crossed(lens: &[LensSurface], [mut height, mut slope]: [f64; 2]) -> Vec<[f64; 2]> {
     let mut before = 1.0;
     let mut rays = Vec::with_capacity(lens.len());
     for (place, surface) in lens.iter().enumerate() {
@@ -107,7 +107,7 @@ fn crossed(lens: &[Surface], [mut height, mut slope]: [f64; 2]) -> Vec<[f64; 2]>
 }
 
 /// The optics of a lens focused at a distance before its first surface, with a film of this diagonal; lengths are millimetres.
-fn optics(lens: &[Surface], diagonal: f64, distance: f64) -> Option<Optics> {
+fn optics(lens: &[LensSurface], diagonal: f64, distance: f64) -> Option<Optics> {
     // Rays through the axis at the distance: the film is where they meet again.
     let fan = crossed(lens, [distance, 1.0]);
     let [height, slope] = *fan.last()?;

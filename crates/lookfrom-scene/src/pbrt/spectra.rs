@@ -4,7 +4,7 @@
 //! named measured ones) and `blackbody` values become functions of wavelength.
 
 use super::Reader;
-use super::params::{Kind, Parameter, Parameters, SPECTRA};
+use super::params::{Parameter, ParameterType, Parameters, SPECTRA};
 use super::text::Place;
 use crate::error::{ErrorKind, Result};
 use crate::material::{Color, Scalar};
@@ -37,9 +37,10 @@ impl Reader<'_, '_> {
         name: &'static str,
         meaning: Meaning,
     ) -> Result<Option<Color>> {
-        const KINDS: &[Kind] = &[Kind::Rgb, Kind::Spectrum, Kind::Blackbody, Kind::Texture];
+        const KINDS: &[ParameterType] =
+            &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody, ParameterType::Texture];
         let Some(parameter) = parameters.find(name, KINDS)? else { return Ok(None) };
-        if parameter.kind == Kind::Texture {
+        if parameter.kind == ParameterType::Texture {
             return self.spectrum_texture(parameter).map(Some);
         }
         self.uniform(parameter, parameters.space, meaning).map(Some)
@@ -72,8 +73,10 @@ impl Reader<'_, '_> {
         parameters: &Parameters,
         name: &'static str,
     ) -> Result<Option<Scalar>> {
-        let Some(parameter) = parameters.find(name, &[Kind::Float, Kind::Texture])? else { return Ok(None) };
-        if parameter.kind == Kind::Texture {
+        let Some(parameter) = parameters.find(name, &[ParameterType::Float, ParameterType::Texture])? else {
+            return Ok(None);
+        };
+        if parameter.kind == ParameterType::Texture {
             return self.float_texture(parameter).map(Some);
         }
         parameters.float_or_none(name).map(|value| value.map(Scalar::Value))
@@ -92,8 +95,8 @@ impl Reader<'_, '_> {
     /// A spectrum by name, from a file or inline, or a blackbody's.
     fn uniform(&mut self, parameter: &Parameter, scene_space: Space, meaning: Meaning) -> Result<Color> {
         match parameter.kind {
-            Kind::Rgb => rgb(parameter, parameter.space.get().unwrap_or(scene_space), meaning),
-            Kind::Blackbody => match parameter.numbers() {
+            ParameterType::Rgb => rgb(parameter, parameter.space.get().unwrap_or(scene_space), meaning),
+            ParameterType::Blackbody => match parameter.numbers() {
                 &[kelvin] if kelvin > 0.0 => Ok(self.curve(Curve::Blackbody { kelvin })),
                 _ => Err(parameter.wrong("one temperature in kelvin, greater than 0")),
             },

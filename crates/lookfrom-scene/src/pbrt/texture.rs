@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lexer::Lexer;
-use super::params::{Kind, Parameter, Parameters};
+use super::params::{Parameter, ParameterType, Parameters};
 use super::picture::encoding_of;
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
@@ -143,7 +143,9 @@ impl Reader<'_, '_> {
         is_float: bool,
         kind_place: &Place,
     ) -> Result<TextureKind> {
-        let octaves = |p: &Parameters| p.integer("octaves", 8, 1, 16).map(|octaves| octaves as u32);
+        let octaves = |p: &Parameters| {
+            p.integer("octaves", TextureKind::OCTAVES as i32, 1, 16).map(|octaves| octaves as u32)
+        };
         Ok(match kind {
             "constant" => uniform(self.part(p, "value", 1.0, is_float)?),
             "scale" => TextureKind::Scale {
@@ -153,10 +155,10 @@ impl Reader<'_, '_> {
             "mix" => TextureKind::Mix {
                 low: self.part(p, "tex1", 0.0, is_float)?,
                 high: self.part(p, "tex2", 1.0, is_float)?,
-                amount: self.scalar(p, "amount", 0.5)?,
+                amount: self.scalar(p, "amount", TextureKind::MIX_AMOUNT)?,
             },
             "directionmix" => {
-                let direction = p.vector("dir", Kind::Vector3, DVec3::Y)?;
+                let direction = p.vector("dir", ParameterType::Vector3, DVec3::Y)?;
                 let direction = self.state.matrix.transform_vector3(direction).try_normalize();
                 let direction = direction.ok_or_else(|| p.refuse("dir", "a vector other than 0"))?;
                 TextureKind::DirectionMix {
@@ -190,18 +192,18 @@ impl Reader<'_, '_> {
             "imagemap" => self.imagemap(p, is_float)?,
             "fbm" if is_float => TextureKind::Fbm {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 mapping: self.in_space(p)?,
             },
             "wrinkled" if is_float => TextureKind::Wrinkled {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 mapping: self.in_space(p)?,
             },
             "windy" if is_float => TextureKind::Windy { mapping: self.in_space(p)? },
             "marble" if !is_float => TextureKind::PbrtMarble {
                 octaves: octaves(p)?,
-                roughness: p.float("roughness", 0.5)?,
+                roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 scale: p.float("scale", 1.0)?,
                 variation: p.float("variation", 0.2)?,
                 mapping: self.in_space(p)?,
@@ -223,7 +225,7 @@ impl Reader<'_, '_> {
     }
 
     fn imagemap(&mut self, p: &Parameters, is_float: bool) -> Result<TextureKind> {
-        let parameter = p.find("filename", &[Kind::String])?;
+        let parameter = p.find("filename", &[ParameterType::String])?;
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
         let Some(name) = p.string("filename")? else {
             return Err(place
@@ -285,8 +287,8 @@ impl Reader<'_, '_> {
             _ => Mapping::Planar {
                 texture_from_world: self.texture_from_world(p)?,
                 axes: [
-                    p.vector("v1", Kind::Vector3, DVec3::X)?.as_vec3(),
-                    p.vector("v2", Kind::Vector3, DVec3::Y)?.as_vec3(),
+                    p.vector("v1", ParameterType::Vector3, DVec3::X)?.as_vec3(),
+                    p.vector("v2", ParameterType::Vector3, DVec3::Y)?.as_vec3(),
                 ],
                 offset,
             },

@@ -6,7 +6,7 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use super::edges::Edges;
-use super::header::{Element, Format, Header, Kind, Scalar};
+use super::header::{Element, Format, Header, PropertyKind, Scalar};
 use super::values::Reader;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
@@ -126,7 +126,7 @@ fn too_short(element: &Element, least: u64, there: u64) -> Error {
 
 fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Content) -> Result<()> {
     let columns = VERTEX.map(|names| {
-        element.find(names).filter(|&index| matches!(element.properties[index].kind, Kind::One(_)))
+        element.find(names).filter(|&index| matches!(element.properties[index].kind, PropertyKind::One(_)))
     });
     for axis in 0..3 {
         if columns[axis].is_none() {
@@ -138,7 +138,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
     let count = element.count as usize;
     let mut positions = Vec::with_capacity(count);
     let is_single = |slot: usize| {
-        columns[slot].is_some_and(|column| element.properties[column].kind == Kind::One(Scalar::F32))
+        columns[slot].is_some_and(|column| element.properties[column].kind == PropertyKind::One(Scalar::F32))
     };
     let is_single = reader.is_binary() && (0..3).all(is_single);
     let (normals, uvs, colors) = (has(3..6), has(6..8), has(8..11));
@@ -160,9 +160,9 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
         let mut row = [0.0_f64; VERTEX.len() + 1];
         for (property, &slot) in element.properties.iter().zip(&slots) {
             match property.kind {
-                Kind::One(scalar) if slot < 3 => row[slot] = reader.exact_value(scalar)?,
-                Kind::One(scalar) => row[slot] = reader.value(scalar)?,
-                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+                PropertyKind::One(scalar) if slot < 3 => row[slot] = reader.exact_value(scalar)?,
+                PropertyKind::One(scalar) => row[slot] = reader.value(scalar)?,
+                PropertyKind::List { count, item } => reader.list(count, item, |_| {})?,
             }
         }
         let [_, _, _, nx, ny, nz, s, t, ..] = row.map(|value| value as f32);
@@ -184,11 +184,11 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
 
 /// The conversion of a colour to linear light: integers are sRGB-encoded, floating-point values are linear if they reach from
 /// 0 to 1, see [`Content::settle_colors`].
-pub(super) fn color_decoder(kind: Option<Kind>) -> impl Fn(f64) -> f32 {
+pub(super) fn color_decoder(kind: Option<PropertyKind>) -> impl Fn(f64) -> f32 {
     let bytes: Vec<f32> = (0..=255).map(|byte| linear_from_srgb(byte as f32 / 255.0)).collect();
     let full = match kind {
-        Some(Kind::One(Scalar::F32 | Scalar::F64)) | None => 0.0,
-        Some(Kind::One(Scalar::U16 | Scalar::I16)) => 65535.0,
+        Some(PropertyKind::One(Scalar::F32 | Scalar::F64)) | None => 0.0,
+        Some(PropertyKind::One(Scalar::U16 | Scalar::I16)) => 65535.0,
         Some(_) => 255.0,
     };
     move |value| match full {
@@ -206,7 +206,7 @@ fn read_faces(
     reader: &mut Reader<'_>,
     content: &mut Content,
 ) -> Result<()> {
-    let is_list = |index: &usize| matches!(element.properties[*index].kind, Kind::List { .. });
+    let is_list = |index: &usize| matches!(element.properties[*index].kind, PropertyKind::List { .. });
     let strips = element.name != "face";
     let Some(indices) = element.find(&["vertex_indices", "vertex_index"]).filter(is_list) else {
         if element.count == 0 {
@@ -216,7 +216,7 @@ fn read_faces(
         return Err(Error::syntax(&element.at, message));
     };
     let texcoords = element.find(&["texcoord"]).filter(is_list);
-    let is_one = |index: &usize| matches!(element.properties[*index].kind, Kind::One(_));
+    let is_one = |index: &usize| matches!(element.properties[*index].kind, PropertyKind::One(_));
     let columns = [8, 9, 10].map(|slot| element.find(VERTEX[slot]).filter(is_one));
     let has_colors = columns.iter().all(Option::is_some);
     let decode = color_decoder(columns[0].map(|column| element.properties[column].kind));
@@ -228,22 +228,22 @@ fn read_faces(
         let mut color = [0.0; 3];
         for (index, property) in element.properties.iter().enumerate() {
             match property.kind {
-                Kind::One(scalar) => {
+                PropertyKind::One(scalar) => {
                     let value = reader.value(scalar)?;
                     if let Some(channel) = columns.iter().position(|column| *column == Some(index)) {
                         color[channel] = decode(value);
                     }
                 }
-                Kind::List { count, item } if index == indices => {
+                PropertyKind::List { count, item } if index == indices => {
                     face.clear();
                     place = reader.position();
                     reader.list(count, item, |value| face.push(value))?;
                     line = reader.line();
                 }
-                Kind::List { count, item } if Some(index) == texcoords => {
+                PropertyKind::List { count, item } if Some(index) == texcoords => {
                     reader.list(count, item, |value| uvs.push(value as f32))?;
                 }
-                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+                PropertyKind::List { count, item } => reader.list(count, item, |_| {})?,
             }
         }
         for value in &face {
@@ -321,15 +321,15 @@ impl Content {
 }
 
 fn skip(element: &Element, least: u64, reader: &mut Reader<'_>) -> Result<()> {
-    let fixed = element.properties.iter().all(|property| matches!(property.kind, Kind::One(_)));
+    let fixed = element.properties.iter().all(|property| matches!(property.kind, PropertyKind::One(_)));
     if least == 0 || (fixed && reader.skip_bytes(element.count * least)) {
         return Ok(());
     }
     for _ in 0..element.count {
         for property in &element.properties {
             match property.kind {
-                Kind::One(scalar) => drop(reader.value(scalar)?),
-                Kind::List { count, item } => reader.list(count, item, |_| {})?,
+                PropertyKind::One(scalar) => drop(reader.value(scalar)?),
+                PropertyKind::List { count, item } => reader.list(count, item, |_| {})?,
             }
         }
         reader.end_row();

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::body::{VERTEX, color_decoder};
-use super::header::{Element, Kind};
+use super::header::{Element, PropertyKind};
 use super::values::Reader;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
@@ -26,7 +26,7 @@ pub(super) struct Edges {
 impl Edges {
     /// Parses the rows of an element with the properties `vertex1` and `vertex2`, without which there are no edges.
     pub(super) fn read(element: &Element, reader: &mut Reader<'_>) -> Result<Self> {
-        let is_one = |index: &usize| matches!(element.properties[*index].kind, Kind::One(_));
+        let is_one = |index: &usize| matches!(element.properties[*index].kind, PropertyKind::One(_));
         let column = |names: &[&str]| element.find(names).filter(is_one);
         let ends = [column(&["vertex1"]), column(&["vertex2"])];
         let channels = [8, 9, 10].map(|slot| column(VERTEX[slot]));
@@ -37,8 +37,8 @@ impl Edges {
             let (mut vertices, mut color) = ([0.0; 2], [0.0; 3]);
             for (index, property) in element.properties.iter().enumerate() {
                 let scalar = match property.kind {
-                    Kind::One(scalar) => scalar,
-                    Kind::List { count, item } => {
+                    PropertyKind::One(scalar) => scalar,
+                    PropertyKind::List { count, item } => {
                         reader.list(count, item, |_| {})?;
                         continue;
                     }

@@ -28,14 +28,14 @@ pub(super) enum Scalar {
 
 /// A value, or a list of values after its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum PropertyKind {
     One(Scalar),
     List { count: Scalar, item: Scalar },
 }
 
 pub(super) struct Property {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: PropertyKind,
 }
 
 pub(super) struct Element {
@@ -87,7 +87,7 @@ impl Element {
     pub(super) fn least_row(&self, format: Format) -> u64 {
         let least = |property: &Property| match (format, property.kind) {
             (Format::Ascii, _) => 2,
-            (_, Kind::One(scalar) | Kind::List { count: scalar, .. }) => scalar.size() as u64,
+            (_, PropertyKind::One(scalar) | PropertyKind::List { count: scalar, .. }) => scalar.size() as u64,
         };
         self.properties.iter().map(least).sum()
     }
@@ -195,9 +195,9 @@ fn property(scanner: &mut Scanner<'_>, file: &Location) -> Result<Property> {
             return Err(Error::syntax(&scanner.at(file), "the length of a list must have an integer type"));
         }
         let item = scanner.word();
-        Kind::List { count, item: scalar(item, scanner)? }
+        PropertyKind::List { count, item: scalar(item, scanner)? }
     } else {
-        Kind::One(scalar(word, scanner)?)
+        PropertyKind::One(scalar(word, scanner)?)
     };
     Ok(Property { name: String::from_utf8_lossy(scanner.word()).into_owned(), kind })
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::{Adjacency, Around, Cage, Edge, Kind, around_edges};
+use super::{Adjacency, Around, Cage, Edge, VertexRule, around_edges};
 
 /// Positions on the limit surface, and normals there: not of unit length where a vertex has no face.
 pub(super) struct Limit {
@@ -30,9 +30,9 @@ impl Limit {
         let limit = |(at, around): (&DVec3, &Around)| {
             let n = f64::from(around.faces);
             match around.kind() {
-                Kind::Fixed => *at,
-                Kind::Crease => (*at * 4.0 + around.on_creases) / 6.0,
-                Kind::Smooth => {
+                VertexRule::Fixed => *at,
+                VertexRule::Crease => (*at * 4.0 + around.on_creases) / 6.0,
+                VertexRule::Smooth => {
                     let ends = around.ends / f64::from(around.edges);
                     (*at * n + ends * 4.0 + around.centers / n) / (n + 5.0)
                 }
@@ -61,7 +61,7 @@ fn normals(cage: &Cage, adjacency: &Adjacency, around: &[Around], positions: &[D
     let normal = |vertex: usize| {
         let mean = facets[vertex].normalize_or_zero();
         let smooth = match (around[vertex].kind(), first[vertex]) {
-            (Kind::Smooth, Some(corner)) => tangents(cage, adjacency, corner, around[vertex].faces),
+            (VertexRule::Smooth, Some(corner)) => tangents(cage, adjacency, corner, around[vertex].faces),
             _ => None,
         };
         let normal = smooth.and_then(|[a, b]| a.cross(b).try_normalize());

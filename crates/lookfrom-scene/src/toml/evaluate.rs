@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use super::expression::{Expression, Fault, Kind, Operator};
+use super::expression::{Expression, ExpressionKind, Fault, Operator};
 use super::function;
 use super::quantity::Quantity;
 
@@ -68,18 +68,18 @@ pub(super) fn evaluate(
     let of = |part: &Expression| allowance.deeper(at, || evaluate(part, names, allowance));
     let all = |parts: &[Expression]| parts.iter().map(of).collect::<Result<Vec<_>, _>>();
     let value = match &expression.kind {
-        Kind::Constant(value) => value.clone(),
-        Kind::Name(name) => names(name, at)?,
-        Kind::List(items) => Quantity::List(all(items)?),
-        Kind::Minus(value) => numbers(&[of(value)?], "-", at, &|x| -x[0])?,
-        Kind::Not(value) => Quantity::Truth(!truth(of(value)?, value.at)?),
-        Kind::Choice(parts) => {
+        ExpressionKind::Constant(value) => value.clone(),
+        ExpressionKind::Name(name) => names(name, at)?,
+        ExpressionKind::List(items) => Quantity::List(all(items)?),
+        ExpressionKind::Minus(value) => numbers(&[of(value)?], "-", at, &|x| -x[0])?,
+        ExpressionKind::Not(value) => Quantity::Truth(!truth(of(value)?, value.at)?),
+        ExpressionKind::Choice(parts) => {
             let [condition, one, other] = &**parts;
             of(if truth(of(condition)?, condition.at)? { one } else { other })?
         }
-        Kind::Item(parts) => item(of(&parts[0])?, at, of(&parts[1])?, parts[1].at)?,
-        Kind::Call(name, arguments) => function::call(name, &all(arguments)?, at)?,
-        Kind::Chain(first, others) => {
+        ExpressionKind::Item(parts) => item(of(&parts[0])?, at, of(&parts[1])?, parts[1].at)?,
+        ExpressionKind::Call(name, arguments) => function::call(name, &all(arguments)?, at)?,
+        ExpressionKind::Chain(first, others) => {
             let mut value = of(first)?;
             for &(operator, at, ref other) in others {
                 value = match (operator, &value) {

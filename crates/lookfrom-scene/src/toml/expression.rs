@@ -8,11 +8,11 @@ use super::quantity::Quantity;
 #[derive(Debug)]
 pub(super) struct Expression {
     pub(super) at: usize,
-    pub(super) kind: Kind,
+    pub(super) kind: ExpressionKind,
 }
 
 #[derive(Debug)]
-pub(super) enum Kind {
+pub(super) enum ExpressionKind {
     Constant(Quantity),
     Name(String),
     List(Vec<Expression>),
@@ -173,7 +173,7 @@ impl Parser<'_> {
         let one = self.deeper(Self::choice)?;
         self.must(":")?;
         let other = self.deeper(Self::choice)?;
-        Ok(Expression { at: condition.at, kind: Kind::Choice(Box::new([condition, one, other])) })
+        Ok(Expression { at: condition.at, kind: ExpressionKind::Choice(Box::new([condition, one, other])) })
     }
 
     /// Operators of a level, between parts of the next one.
@@ -190,7 +190,7 @@ impl Parser<'_> {
         if others.is_empty() {
             return Ok(first);
         }
-        Ok(Expression { at: first.at, kind: Kind::Chain(Box::new(first), others) })
+        Ok(Expression { at: first.at, kind: ExpressionKind::Chain(Box::new(first), others) })
     }
 
     fn signed(&mut self) -> Result<Expression, Fault> {
@@ -198,11 +198,11 @@ impl Parser<'_> {
         let at = self.at;
         if self.takes("-") {
             let value = self.deeper(Self::signed)?;
-            return Ok(Expression { at, kind: Kind::Minus(Box::new(value)) });
+            return Ok(Expression { at, kind: ExpressionKind::Minus(Box::new(value)) });
         }
         if self.takes("!") {
             let value = self.deeper(Self::signed)?;
-            return Ok(Expression { at, kind: Kind::Not(Box::new(value)) });
+            return Ok(Expression { at, kind: ExpressionKind::Not(Box::new(value)) });
         }
         let base = self.indexed()?;
         self.next();
@@ -211,7 +211,10 @@ impl Parser<'_> {
             return Ok(base);
         }
         let exponent = self.deeper(Self::signed)?;
-        Ok(Expression { at, kind: Kind::Chain(Box::new(base), vec![(Operator::Power, operator, exponent)]) })
+        Ok(Expression {
+            at,
+            kind: ExpressionKind::Chain(Box::new(base), vec![(Operator::Power, operator, exponent)]),
+        })
     }
 
     fn indexed(&mut self) -> Result<Expression, Fault> {
@@ -221,7 +224,7 @@ impl Parser<'_> {
         }
         let index = self.deeper(Self::choice)?;
         self.must("]")?;
-        Ok(Expression { at: value.at, kind: Kind::Item(Box::new([value, index])) })
+        Ok(Expression { at: value.at, kind: ExpressionKind::Item(Box::new([value, index])) })
     }
 
     fn primary(&mut self) -> Result<Expression, Fault> {
@@ -236,7 +239,7 @@ impl Parser<'_> {
             }
             Some('[') => {
                 self.at += 1;
-                Kind::List(self.listed("]")?)
+                ExpressionKind::List(self.listed("]")?)
             }
             Some('\'') => {
                 let (text, _) = self.rest()[1..].split_once('\'').ok_or_else(|| {
@@ -244,7 +247,7 @@ impl Parser<'_> {
                 })?;
                 let text = text.to_owned();
                 self.at += text.len() + 2;
-                Kind::Constant(Quantity::Text(text))
+                ExpressionKind::Constant(Quantity::Text(text))
             }
             Some('0'..='9' | '.') => self.number()?,
             Some(character) if begins_name(character) => {
@@ -252,7 +255,11 @@ impl Parser<'_> {
                 let end = rest.find(|character| !continues_name(character)).unwrap_or(rest.len());
                 let name = rest[..end].to_owned();
                 self.at += end;
-                if self.takes("(") { Kind::Call(name, self.listed(")")?) } else { Kind::Name(name) }
+                if self.takes("(") {
+                    ExpressionKind::Call(name, self.listed(")")?)
+                } else {
+                    ExpressionKind::Name(name)
+                }
             }
             _ => return Err(self.expected("a number, a name, a 'text', a list or a parenthesis")),
         };
@@ -271,7 +278,7 @@ impl Parser<'_> {
         Ok(items)
     }
 
-    fn number(&mut self) -> Result<Kind, Fault> {
+    fn number(&mut self) -> Result<ExpressionKind, Fault> {
         let rest = self.rest();
         let mut end = 0;
         for (index, character) in rest.char_indices() {
@@ -285,6 +292,6 @@ impl Parser<'_> {
         let number = digits.parse().ok().filter(|number: &f64| number.is_finite());
         let number = number.ok_or_else(|| Fault::new(self.at, format!("`{digits}` is no finite number")))?;
         self.at += end;
-        Ok(Kind::Constant(Quantity::Number(number)))
+        Ok(ExpressionKind::Constant(Quantity::Number(number)))
     }
 }

@@ -116,19 +116,23 @@ impl Reader<'_, '_> {
 
     fn whitted(&mut self, table: &Table<'_>) -> Whitted {
         let default = Whitted::default();
-        let transmission = self.color_or(table, "transmission", 0.0);
+        let mut color = |key, default| table.or(key, default, |value| self.color(value));
+        let diffuse = color("diffuse", default.diffuse);
+        let specular = color("specular", default.specular);
+        let mirror = color("mirror", default.mirror);
+        let transmission = color("transmission", default.transmission);
         let absorption = table.or("absorption", default.absorption, plain_color);
         if absorption != [0.0; 3] && transmission == Color::BLACK {
             self.ineffective(table, "absorption", "`transmission`: no light gets inside");
         }
         Whitted {
             ambient: table.maybe("ambient", |value| self.color(value)),
-            diffuse: self.color_or(table, "diffuse", 0.8),
-            specular: self.color_or(table, "specular", 0.0),
+            diffuse,
+            specular,
             shininess: table.or("shininess", default.shininess, |value| {
                 value.single_where("a number of at least 0", |n| n >= 0.0)
             }),
-            mirror: self.color_or(table, "mirror", 0.0),
+            mirror,
             transmission,
             ior: table
                 .or("ior", default.ior, |value| value.single_where("a number greater than 0", |n| n > 0.0)),

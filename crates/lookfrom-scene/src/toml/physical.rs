@@ -7,10 +7,10 @@ use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::material::{Coat, CoatEstimate, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{Coat, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
 
-/// Default index of refraction.
-const IOR: f32 = 1.5;
+/// Reflectance of a diffuse surface, or base, where a scene does not set it: that of white paint, as of Whitted's `diffuse`.
+const REFLECTANCE: f32 = 0.8;
 
 /// The words for what becomes of light between microfacets.
 pub(super) const ENERGIES: &[(&str, Energy)] =
@@ -24,10 +24,12 @@ impl Reader<'_, '_> {
     /// A material of a type other than "whitted".
     pub(super) fn physical(&mut self, word: &str, table: &Table<'_>) -> MaterialKind {
         match word {
-            "diffuse" => MaterialKind::Diffuse { reflectance: self.color_or(table, "reflectance", 0.8) },
+            "diffuse" => {
+                MaterialKind::Diffuse { reflectance: self.color_or(table, "reflectance", REFLECTANCE) }
+            }
             "diffuse_transmission" => MaterialKind::DiffuseTransmission {
-                reflectance: self.color_or(table, "reflectance", 0.25),
-                transmittance: self.color_or(table, "transmittance", 0.25),
+                reflectance: self.color_or(table, "reflectance", MaterialKind::DIFFUSE_SHEET),
+                transmittance: self.color_or(table, "transmittance", MaterialKind::DIFFUSE_SHEET),
                 scale: 1.0,
             },
             "conductor" => MaterialKind::Conductor {
@@ -42,7 +44,7 @@ impl Reader<'_, '_> {
             },
             "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table) },
             "coated_diffuse" => MaterialKind::CoatedDiffuse {
-                reflectance: self.color_or(table, "reflectance", 0.8),
+                reflectance: self.color_or(table, "reflectance", REFLECTANCE),
                 coat: self.coat(table),
             },
             "coated_conductor" => MaterialKind::CoatedConductor {
@@ -53,7 +55,7 @@ impl Reader<'_, '_> {
             "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
             "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {
-                let amount = self.share_or(table, "amount", 0.5);
+                let amount = self.share_or(table, "amount", MaterialKind::MIX_AMOUNT);
                 let materials = table.need("materials", "[\"red\", \"gold\"]", None, |value| {
                     let names = value.list_of::<2>("the names of two materials")?;
                     let [first, second] =
@@ -97,25 +99,24 @@ impl Reader<'_, '_> {
     }
 
     fn ior_of(&mut self, table: &Table<'_>) -> Ior {
-        table.or("ior", Ior::Value(IOR), |value| self.ior(value))
+        table.or("ior", Ior::default(), |value| self.ior(value))
     }
 
     fn coat(&mut self, table: &Table<'_>) -> Coat {
-        let thickness = table.or("thickness", Scalar::Value(0.01), |value| {
+        let usual = Coat::default();
+        let thickness = table.or("thickness", usual.thickness, |value| {
             self.scalar_where(value, "a number of at least 0", |thickness| thickness >= 0.0)
         });
-        let g = table.or("g", Scalar::Value(0.0), |value| {
+        let g = table.or("g", usual.g, |value| {
             self.scalar_where(value, "a number between -1 and 1", |g| g > -1.0 && g < 1.0)
         });
         Coat {
             eta: self.ior_of(table),
             roughness: self.roughness(table, "roughness"),
             thickness,
-            albedo: self.color_or(table, "coat_albedo", 0.0),
+            albedo: table.or("coat_albedo", usual.albedo, |value| self.color(value)),
             g,
-            max_depth: Coat::MAX_DEPTH,
-            samples: 1,
-            estimate: CoatEstimate::Unbiased,
+            ..usual
         }
     }
 

@@ -4,7 +4,7 @@ use super::Reader;
 use super::color::plain_color;
 use super::table::Table;
 use super::value::Value;
-use crate::material::{Anisotropy, Color, NormalTexture, Principled, Scalar};
+use crate::material::{Anisotropy, Color, NormalTexture, Principled};
 
 /// The keys of the type.
 pub(super) const KEYS: &[&str] = &[
@@ -36,27 +36,31 @@ pub(super) const KEYS: &[&str] = &[
 
 impl Reader<'_, '_> {
     pub(super) fn principled(&mut self, table: &Table<'_>) -> Principled {
+        let usual = Principled::default();
         let number = |key, default, expected, ok: fn(f32) -> bool| {
             table.or(key, default, |value| value.single_where(expected, ok))
         };
         let share = |key| number(key, 0.0, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
         let strength = share("anisotropy");
         let rotation = number("anisotropy_rotation", 0.0, "an angle in degrees", |_| true);
-        let ior = number("ior", 1.5, "a number of at least 1", |ior| ior >= 1.0);
-        let iridescence_ior = number("iridescence_ior", 1.3, "a number of at least 1", |ior| ior >= 1.0);
-        let dispersion = number("dispersion", 0.0, "a number of at least 0", |dispersion| dispersion >= 0.0);
-        let thickness = table.or("iridescence_thickness", Scalar::Value(400.0), |value| {
+        let ior = number("ior", usual.ior, "a number of at least 1", |ior| ior >= 1.0);
+        let iridescence_ior =
+            number("iridescence_ior", usual.iridescence_ior, "a number of at least 1", |ior| ior >= 1.0);
+        let dispersion =
+            number("dispersion", usual.dispersion, "a number of at least 0", |dispersion| dispersion >= 0.0);
+        let thickness = table.or("iridescence_thickness", usual.iridescence_thickness, |value| {
             self.scalar_where(value, "a thickness in nm", |nm| nm >= 0.0)
         });
         let clearcoat_normal = table.maybe("clearcoat_normal_map", |value| match self.color(value)? {
             Color::Texture(texture) => Ok(NormalTexture { texture, scale: 1.0 }),
             _ => Err(value.wrong("a texture")),
         });
-        let is_solid = table.or("solid", false, Value::boolean);
-        let absorption = table.or("absorption", [0.0; 3], plain_color);
+        let is_solid = table.or("solid", usual.is_solid, Value::boolean);
+        let absorption = table.or("absorption", usual.absorption, plain_color);
         if absorption != [0.0; 3] && !is_solid {
             self.ineffective(table, "absorption", "`solid = true`: a thin sheet has no inside");
         }
+        // glTF's default is a rough white metal; without a word about it ours is grey plastic.
         Principled {
             base_color: self.color_or(table, "base_color", 0.8),
             metallic: self.share_or(table, "metallic", 0.0),

@@ -57,7 +57,7 @@ pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "p
 pub(super) const INSTANCE: &[&str] = &["object", "material"];
 
 /// The keys of a shape's table besides its geometry.
-pub(super) struct Look {
+pub(super) struct ShapeAttributes {
     pub(super) name: Option<String>,
     pub(super) material: Option<MaterialId>,
     pub(super) emission: Option<Emission>,
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
 
     /// The parts of a shape at their places, with the look that its table gives them.
     pub(super) fn parts(&mut self, kind: &str, table: &Table<'_>) -> Result<Vec<Part>> {
-        let look = self.look(table);
+        let attributes = self.shape_attributes(table);
         let world_from_object = transform::world_from_object(table);
         let mut parts = match (kind, table.find("file")) {
             ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
@@ -123,12 +123,12 @@ impl Reader<'_, '_> {
         for part in &mut parts {
             part.world_from_object = world_from_object * part.world_from_object;
         }
-        self.dress(&look, &mut parts);
+        self.dress(&attributes, &mut parts);
         Ok(parts)
     }
 
-    pub(super) fn look(&mut self, table: &Table<'_>) -> Look {
-        Look {
+    pub(super) fn shape_attributes(&mut self, table: &Table<'_>) -> ShapeAttributes {
+        ShapeAttributes {
             material: table.maybe("material", |value| self.material_named(value)),
             emission: self.emission(table),
             alpha: table.find("alpha").map(|_| self.share_or(table, "alpha", 1.0)),
@@ -137,14 +137,14 @@ impl Reader<'_, '_> {
     }
 
     /// Gives parts the look that a table has for them.
-    pub(super) fn dress(&self, look: &Look, parts: &mut [Part]) {
+    pub(super) fn dress(&self, attributes: &ShapeAttributes, parts: &mut [Part]) {
         for part in parts {
-            part.name = look.name.clone().or(part.name.take());
-            part.material = look.material.or(part.material);
+            part.name = attributes.name.clone().or(part.name.take());
+            part.material = attributes.material.or(part.material);
             // Emission of the shape has priority over that of its material, and that over that of its file.
-            let glow = look.material.and_then(|material| self.glows.get(&material).copied());
-            part.emission = look.emission.or(glow).or(part.emission);
-            part.alpha = look.alpha.or(part.alpha);
+            let glow = attributes.material.and_then(|material| self.glows.get(&material).copied());
+            part.emission = attributes.emission.or(glow).or(part.emission);
+            part.alpha = attributes.alpha.or(part.alpha);
         }
     }
 

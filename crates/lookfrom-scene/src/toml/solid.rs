@@ -7,7 +7,7 @@ use super::shape::{KEYS, OPERAND};
 use super::table::Table;
 use super::value::Value;
 use super::{Reader, revolution, transform};
-use crate::boolean::{BYTES_PER_TRIANGLE, Flaw, Operation, Solid, Surface};
+use crate::boolean::{BYTES_PER_TRIANGLE, Flaw, OperandSurface, Operation, Solid};
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MeshId;
@@ -132,10 +132,10 @@ impl Reader<'_, '_> {
         table.allow(&[keys, OPERAND, transform::KEYS]);
         let first = build.parts.len();
         if kind == SOLID {
-            let look = self.look(&table);
+            let attributes = self.shape_attributes(&table);
             let matrix = outer * transform::world_from_object(&table);
             let solid = self.combined(&table, matrix, build)?;
-            self.dress(&look, &mut build.parts[first..]);
+            self.dress(&attributes, &mut build.parts[first..]);
             return Ok(solid);
         }
         let meshes = self.scene.meshes.len();
@@ -181,7 +181,7 @@ impl Reader<'_, '_> {
                 _ => return Err(flawed(table, kind, Flaw::Open)),
             };
             let number = (build.parts.len() + index) as u32;
-            surfaces.push(Surface { number, mesh, matrix: outer * part.world_from_object * own });
+            surfaces.push(OperandSurface { number, mesh, matrix: outer * part.world_from_object * own });
         }
         // What we make of these does not cross itself, which takes a while to find out.
         let may_cross = !matches!(kind, "sphere" | "box" | "cylinder" | "cone");

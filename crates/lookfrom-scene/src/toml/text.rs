@@ -6,7 +6,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::shape::Geometry;
-use crate::text::{Align, Layout, solid};
+use crate::text::{Align, TextLayout, solid};
 
 /// The depth of a solid in its size.
 const DEPTH: f64 = 0.2;
@@ -22,7 +22,7 @@ impl Reader<'_, '_> {
             Ok(Some(self.resolve(value, "the name of a font file (.ttf, .otf)")?))
         });
         let size = table.or("size", 1.0, Value::positive);
-        let layout = Layout {
+        let layout = TextLayout {
             size,
             depth: table.or("depth", DEPTH * size, Value::not_negative),
             align: table.or("align", Align::Left, |value| value.choice(ALIGNMENTS)),

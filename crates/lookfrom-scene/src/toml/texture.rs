@@ -88,9 +88,9 @@ impl Reader<'_, '_> {
     fn typed(&mut self, table: &Table<'_>) -> Result<TextureKind> {
         let mapping_keys = |kind| if is_mapped(kind) { super::mapping::KEYS } else { &[] };
         let Some(word) = table.kind(KEYS, None, mapping_keys) else { return Err(Error::untold()) };
-        let octaves = |default| table.or("octaves", default, |value| value.integer(1, 16)) as u32;
+        let octaves = |default: u32| table.or("octaves", default.into(), |value| value.integer(1, 16)) as u32;
         let roughness = || {
-            table.or("roughness", 0.5, |value| {
+            table.or("roughness", TextureKind::ROUGHNESS, |value| {
                 value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
             })
         };
@@ -133,12 +133,12 @@ impl Reader<'_, '_> {
                 TextureKind::Bilinear { corners, mapping: mapping(table, "uv")? }
             }
             "fbm" => TextureKind::Fbm {
-                octaves: octaves(8),
+                octaves: octaves(TextureKind::OCTAVES),
                 roughness: roughness(),
                 mapping: mapping(table, "world")?,
             },
             "wrinkled" => TextureKind::Wrinkled {
-                octaves: octaves(8),
+                octaves: octaves(TextureKind::OCTAVES),
                 roughness: roughness(),
                 mapping: mapping(table, "world")?,
             },
@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
             "mix" => TextureKind::Mix {
                 low: self.color_or(table, "low", 0.0),
                 high: self.color_or(table, "high", 1.0),
-                amount: self.share_or(table, "amount", 0.5),
+                amount: self.share_or(table, "amount", TextureKind::MIX_AMOUNT),
             },
             "direction_mix" => TextureKind::DirectionMix {
                 low: self.color_or(table, "low", 0.0),

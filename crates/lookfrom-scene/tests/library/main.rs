@@ -5,12 +5,15 @@
 mod gltf;
 mod gltf_corpus;
 mod gltf_hostile;
+#[cfg(feature = "gltf")]
 mod gltf_odd;
+#[cfg(feature = "gltf")]
 mod gltf_pose;
 mod graphs;
 mod image;
 mod image_exr;
 mod image_radiance;
+mod left_out;
 mod models_corpus;
 mod models_errors;
 mod models_formats;

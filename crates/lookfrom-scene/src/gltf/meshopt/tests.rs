@@ -14,7 +14,7 @@ fn hex(text: &str) -> Vec<u8> {
 }
 
 fn run(bytes: &[u8], count: u64, stride: u64, mode: Mode) -> Result<Vec<u8>> {
-    let layout = Layout { count, stride, mode, filter: Filter::None };
+    let layout = CompressedView { count, stride, mode, filter: Filter::None };
     decode(bytes, &layout, &Location::file(Path::new("model.gltf")), &Limits::default())
 }
 

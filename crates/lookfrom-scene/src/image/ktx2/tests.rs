@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::*;
+use crate::image::read::KTX2_MAGIC;
 use crate::{Limits, Memory};
 
 fn run(bytes: &[u8]) -> Result<Pixels> {
@@ -15,7 +16,7 @@ fn run(bytes: &[u8]) -> Result<Pixels> {
 
 /// A file of 3 × 2 texels in this format and with this level.
 fn file(format: u32, packing: u32, level: &[u8], unpacked: usize) -> Vec<u8> {
-    let mut bytes = MAGIC.to_vec();
+    let mut bytes = KTX2_MAGIC.to_vec();
     for field in [format, 1, 3, 2, 0, 0, 1, 1, packing, 0, 0, 0, 0] {
         bytes.extend(field.to_le_bytes());
     }
@@ -66,7 +67,7 @@ fn what_is_not_read_says_so() {
         (file(9, 77, &[0; 6], 6), ErrorKind::Unsupported),
         (file(9, PLAIN, &[0; 5], 5), ErrorKind::Syntax),
         (file(9, ZSTANDARD, &[0; 6], 6), ErrorKind::Syntax),
-        (MAGIC.to_vec(), ErrorKind::Syntax),
+        (KTX2_MAGIC.to_vec(), ErrorKind::Syntax),
     ];
     for (bytes, kind) in kinds {
         let error = run(&bytes).unwrap_err();

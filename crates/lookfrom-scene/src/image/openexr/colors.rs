@@ -20,14 +20,14 @@ const MOST_TOLD: usize = 12;
 
 /// The channels of a layer that make colours, by their indices in the part.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum ColorChannels {
     Rgb([usize; 3]),
     LuminanceChroma([usize; 3]),
     Xyz([usize; 3]),
     Gray(usize),
 }
 
-impl Kind {
+impl ColorChannels {
     fn rank(self) -> u32 {
         match self {
             Self::Rgb(_) => 0,
@@ -45,9 +45,9 @@ struct Layer {
     own: String,
     /// The name with that of the part.
     name: String,
-    kind: Option<Kind>,
+    kind: Option<ColorChannels>,
     /// As `kind`, or numbers that are no colours.
-    values: Option<Kind>,
+    values: Option<ColorChannels>,
 }
 
 /// The colours of an OpenEXR file.
@@ -78,16 +78,16 @@ pub(in crate::image) fn decode_rgb(
         r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect()
     };
     let texels = match kind {
-        Kind::Rgb(channels) => planes(channels.map(take)),
-        Kind::Gray(channel) => {
+        ColorChannels::Rgb(channels) => planes(channels.map(take)),
+        ColorChannels::Gray(channel) => {
             to_rec709 = None;
             take(channel).into_iter().map(|grey| [grey; 3]).collect()
         }
-        Kind::Xyz(channels) => {
+        ColorChannels::Xyz(channels) => {
             to_rec709 = Chromaticities::XYZ.rec709(keeps_white);
             planes(channels.map(take))
         }
-        Kind::LuminanceChroma(channels) => {
+        ColorChannels::LuminanceChroma(channels) => {
             let weights = chromaticities.unwrap_or(Chromaticities::REC709).luminance();
             let mut texels = planes(channels.map(take));
             texels.iter_mut().for_each(|texel| *texel = rgb_of_chroma(*texel, weights));
@@ -129,23 +129,23 @@ fn layers(parts: &[Part]) -> Vec<Layer> {
 }
 
 /// The kind of colour that the channels of a layer make, if they are colours.
-fn kind(channels: &[(usize, &str)], is_unnamed: bool) -> Option<Kind> {
+fn kind(channels: &[(usize, &str)], is_unnamed: bool) -> Option<ColorChannels> {
     all(channels, [&["R", "red"], &["G", "green"], &["B", "blue"]])
-        .map(Kind::Rgb)
-        .or_else(|| all(channels, [&["Y"], &["RY"], &["BY"]]).map(Kind::LuminanceChroma))
+        .map(ColorChannels::Rgb)
+        .or_else(|| all(channels, [&["Y"], &["RY"], &["BY"]]).map(ColorChannels::LuminanceChroma))
         // X, Y and Z of a layer with a name are positions or directions.
-        .or_else(|| all(channels, [&["X"], &["Y"], &["Z"]]).filter(|_| is_unnamed).map(Kind::Xyz))
+        .or_else(|| all(channels, [&["X"], &["Y"], &["Z"]]).filter(|_| is_unnamed).map(ColorChannels::Xyz))
         .or_else(|| {
             let is_vector = all(channels, [&["X"], &["Y"], &["Z"]]).is_some();
-            find(channels, &["Y"]).filter(|_| !is_vector).map(Kind::Gray)
+            find(channels, &["Y"]).filter(|_| !is_vector).map(ColorChannels::Gray)
         })
 }
 
 /// Three numbers as they are, or one, of a layer that is asked for by its name.
-fn values(channels: &[(usize, &str)]) -> Option<Kind> {
+fn values(channels: &[(usize, &str)]) -> Option<ColorChannels> {
     match channels {
-        &[(only, _)] => Some(Kind::Gray(only)),
-        _ => all(channels, [&["X"], &["Y"], &["Z"]]).map(Kind::Rgb),
+        &[(only, _)] => Some(ColorChannels::Gray(only)),
+        _ => all(channels, [&["X"], &["Y"], &["Z"]]).map(ColorChannels::Rgb),
     }
 }
 
@@ -165,13 +165,13 @@ fn first(
     parts: &[Part],
     at: &Location,
     context: &mut LoadContext<'_>,
-) -> Result<(usize, Kind)> {
+) -> Result<(usize, ColorChannels)> {
     let is_finished = |layer: &Layer| {
         let last = layer.own.rsplit('.').next().unwrap_or_default();
         FINISHED.iter().any(|name| name.eq_ignore_ascii_case(last))
     };
     let colored = layers.iter().filter_map(|layer| Some((layer, layer.kind?)));
-    let rank = |(layer, kind): &(&Layer, Kind)| {
+    let rank = |(layer, kind): &(&Layer, ColorChannels)| {
         (kind.rank(), layer.part, !layer.own.is_empty(), !is_finished(layer))
     };
     if let Some((layer, kind)) = colored.clone().min_by_key(rank) {
@@ -190,7 +190,7 @@ fn first(
     }
     let all = || parts.iter().flat_map(|part| part.channels.iter().map(move |channel| (part, channel)));
     if let (1, Some(layer)) = (all().count(), layers.first()) {
-        return Ok((layer.part, Kind::Gray(0)));
+        return Ok((layer.part, ColorChannels::Gray(0)));
     }
     let names: Vec<String> =
         all().take(MOST_TOLD).map(|(part, (name, _))| full_name(part.name.as_deref(), name)).collect();
@@ -199,7 +199,7 @@ fn first(
 }
 
 /// The layer with this name, or whose name ends so.
-fn named(layers: &[Layer], name: &str, at: &Location) -> Result<(usize, Kind)> {
+fn named(layers: &[Layer], name: &str, at: &Location) -> Result<(usize, ColorChannels)> {
     let is_end = |layer: &&Layer| layer.name.strip_suffix(name).is_some_and(|rest| rest.ends_with('.'));
     let found = layers.iter().find(|layer| layer.name == name).or_else(|| layers.iter().find(is_end));
     let Some(layer) = found else {
