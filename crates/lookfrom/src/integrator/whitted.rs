@@ -107,7 +107,7 @@ pub(super) fn step_all<P: Probe>(
     let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
     let mut memory = output.queues.scratch.take::<Memory>();
     let Memory { rounds, bins, shaded } = &mut *memory;
-    rounds.divide(paths);
+    rounds.divide(paths, output.queues.radiance.len());
     for round in 0..rounds.count() {
         for &index in rounds.paths(round) {
             let (path, hit) = (&paths[index as usize], &hits[index as usize]);
@@ -162,11 +162,8 @@ fn shade_bare_hits<P: Probe>(
             }
             false => path,
         };
-        let material = eight.materials[lane];
-        let boundary = match world.materials[material as usize].is_body() {
-            true => Boundary::Body { material, front: shaded.front & 1 << lane != 0 },
-            false => Boundary::None,
-        };
+        let front = shaded.front & 1 << lane != 0;
+        let boundary = Boundary::Bare { material: eight.materials[lane], front };
         let departure = Departure { path, origin_primitive: OriginPrimitive::of(hit), boundary };
         shaded.finish(world, (&Vertex { departure, hit }, lane), tree, output);
     }

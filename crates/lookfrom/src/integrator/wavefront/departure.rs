@@ -23,8 +23,8 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
 pub(in crate::integrator) enum Boundary<'a> {
     /// What the surface separates.
     Surface(&'a SurfaceInteraction),
-    /// The body of a material, or out of it where the path has met it from inside.
-    Body {
+    /// A bare surface: the body of its material, if it is one, or out of it where the path has met it from inside.
+    Bare {
         /// Index into the world's materials.
         material: u32,
         /// Whether the path has met the outside.
@@ -56,11 +56,14 @@ impl<S> Departure<'_, S> {
         let interior = self.path.interior;
         match self.boundary {
             Boundary::Surface(surface) => interior.leaving(&world.materials, surface, wi, passes),
-            Boundary::Body { material, front } if passes => match front {
-                true => interior.entered(material),
-                false => interior.left(material),
-            },
-            Boundary::Body { .. } | Boundary::None => interior,
+            Boundary::Bare { material, front } if passes && world.materials[material as usize].is_body() => {
+                if front {
+                    interior.entered(material)
+                } else {
+                    interior.left(material)
+                }
+            }
+            Boundary::Bare { .. } | Boundary::None => interior,
         }
     }
 

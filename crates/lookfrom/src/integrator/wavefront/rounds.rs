@@ -12,41 +12,41 @@ pub(in crate::integrator) struct Rounds {
     order: Vec<u32>,
     /// The ends of the rounds in `order`.
     ends: Vec<usize>,
-    /// Number of paths so far of each slot.
+    /// The round of each path.
+    rounds: Vec<u32>,
+    /// Number of paths so far of each slot; zeros between batches.
     counts: Vec<u32>,
 }
 
 impl Rounds {
-    /// Divides the paths of a batch.
-    pub(in crate::integrator) fn divide(&mut self, paths: &[Path]) {
-        let Self { order, ends, counts } = self;
-        counts.clear();
-        ends.clear();
-        let round_of = |counts: &mut Vec<u32>, path: &Path| {
-            let slot = path.slot as usize;
-            if slot >= counts.len() {
-                counts.resize(slot + 1, 0);
-            }
-            counts[slot] += 1;
-            counts[slot] as usize - 1
-        };
+    /// Divides the paths of a batch with a number of slots.
+    pub(in crate::integrator) fn divide<S>(&mut self, paths: &[Path<S>], slots: usize) {
+        let Self { order, ends, rounds, counts } = self;
+        if counts.len() < slots {
+            counts.resize(slots, 0);
+        }
         // Count the paths of each round.
+        ends.clear();
+        rounds.clear();
         for path in paths {
-            let round = round_of(counts, path);
+            let count = &mut counts[path.slot as usize];
+            let round = *count as usize;
             if round == ends.len() {
                 ends.push(0);
             }
             ends[round] += 1;
+            rounds.push(*count);
+            *count += 1;
         }
+        paths.iter().for_each(|path| counts[path.slot as usize] = 0);
         // Their places begin where those of the round before end.
         let mut next = 0;
         for end in ends.iter_mut() {
             next += std::mem::replace(end, next);
         }
-        counts.fill(0);
         order.resize(paths.len(), 0);
-        for (index, path) in (0..).zip(paths) {
-            let place = &mut ends[round_of(counts, path)];
+        for (index, round) in (0..).zip(&*rounds) {
+            let place = &mut ends[*round as usize];
             order[*place] = index;
             *place += 1;
         }
@@ -91,7 +91,7 @@ mod tests {
             (vec![3, 3, 1, 3, 0, 1], vec![vec![0, 2, 4], vec![1, 5], vec![3]]),
         ] {
             let paths: Vec<Path> = (1..).zip(slots).map(path).collect();
-            rounds.divide(&paths);
+            rounds.divide(&paths, 4);
             let found: Vec<_> = (0..rounds.count()).map(|round| rounds.paths(round).to_vec()).collect();
             assert_eq!(found, expected);
         }
