@@ -78,7 +78,7 @@ impl Shaded {
     ) {
         let departure = &vertex.departure;
         let interior = departure.interior(world, departure.wo(), false);
-        for from in self.lights.iter().filter(|from| from.lit & 1 << lane != 0) {
+        for from in self.lights[..self.light_count].iter().filter(|from| from.lit & 1 << lane != 0) {
             let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
             let light = (from.light, from.contribution[lane]);
             output.queues.shadows.push(departure.shadow(from.rays[lane], light, interior, last_scattering));

@@ -14,8 +14,10 @@ pub(in crate::integrator) struct Shaded {
     pub(super) ambient: [Spectrum; LANES],
     /// The samples of the light under way.
     pub(super) samples: LightSamples,
-    /// The lights that illuminate any of them, in the order of the world's.
+    /// The lights that illuminate any of them, in the order of the world's, and memory for others.
     pub(super) lights: Vec<FromLight>,
+    /// Number of those that count.
+    pub(super) light_count: usize,
     /// The reflected rays, and the refracted ones.
     pub(super) branches: [BranchRays; 2],
     /// Bit i for lane i: whether the ray hit the outside.
@@ -52,12 +54,23 @@ impl BranchRays {
         Self { exist: 0, beta: [Spectrum::BLACK; LANES], rays: [Ray::new([0.0; 3], [0.0; 3]); LANES] };
 }
 
+impl FromLight {
+    pub(super) const NONE: Self = Self {
+        light: 0,
+        lit: 0,
+        contribution: [Spectrum::BLACK; LANES],
+        diffuse: [Spectrum::BLACK; LANES],
+        rays: [Ray::new([0.0; 3], [0.0; 3]); LANES],
+    };
+}
+
 impl Default for Shaded {
     fn default() -> Self {
         Self {
             ambient: [Spectrum::BLACK; LANES],
             samples: LightSamples::default(),
             lights: Vec::new(),
+            light_count: 0,
             branches: [BranchRays::NONE; 2],
             front: 0,
             told: None,

@@ -60,7 +60,7 @@ impl<W: Width> Step<'_, W> {
         shaded.front = width.bits(surfaces.front);
 
         // Add the light of each source: I_j, its radiance over π and over the density of the direction.
-        shaded.lights.clear();
+        shaded.light_count = 0;
         let zero = width.splat(0.0);
         let exits = surfaces.exits();
         let at = Receivers {
@@ -70,7 +70,7 @@ impl<W: Width> Step<'_, W> {
             incomplete_pdf: IncompletePdf::Forbidden,
         };
         let is_lit = coefficients.is_lit();
-        let samples = &mut shaded.samples;
+        let Shaded { samples, lights, light_count, .. } = shaded;
         for (index, light) in (0..).zip(&world.lights).filter(|_| is_lit.any()) {
             if !light.illuminates() && told.is_none() {
                 continue;
@@ -105,16 +105,17 @@ impl<W: Width> Step<'_, W> {
             }
             let origin = exits.toward(wi);
             let (way, t_max) = samples.ways(width, origin);
-            shaded.lights.push(FromLight {
-                light: index,
-                lit: width.bits(lit),
-                contribution: width.spectra(contribution),
-                diffuse: match wanted.shares {
-                    true => width.spectra(diffuse.share_of(diffuse + specular)),
-                    false => [Spectrum::BLACK; LANES],
-                },
-                rays: width.rays(origin, way, t_max),
-            });
+            if *light_count == lights.len() {
+                lights.push(FromLight::NONE);
+            }
+            let from = &mut lights[*light_count];
+            *light_count += 1;
+            (from.light, from.lit) = (index, width.bits(lit));
+            from.contribution = width.spectra(contribution);
+            if wanted.shares {
+                from.diffuse = width.spectra(diffuse.share_of(diffuse + specular));
+            }
+            from.rays = width.rays(origin, way, t_max);
         }
 
         // Grow the tree: k_r S and k_t T.
@@ -262,7 +263,7 @@ impl Kernel for BareKernel<'_> {
                 SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(light)
             },
             #[inline(always)]
-            |samples, at, u| samples.sample(simd, world, at, u, (1 << LANES) - 1),
+            |samples, at, u| samples.sample_chosen(simd, world, at, u),
             shaded,
         );
     }
