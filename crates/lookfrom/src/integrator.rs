@@ -297,20 +297,8 @@ pub struct StepOutput<'a, P: Probe, S = ()> {
     pub background: Background,
     /// The light-path expressions of layers, if there are any. Then steps are not computed side by side.
     pub light_paths: Option<&'a LightPaths>,
-    /// Light that is added later, in an order of its own.
-    pub(crate) deferred: Option<Vec<AddedLight>>,
     /// The listener.
     pub probe: &'a mut P,
-}
-
-/// Light of a path's own, without a shadow ray.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct AddedLight {
-    slot: u32,
-    address: u64,
-    light_path: LightPathState,
-    term: Term,
-    value: Spectrum,
 }
 
 impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
@@ -344,20 +332,9 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// Adds light to a path's sample.
     #[inline]
     pub fn add(&mut self, path: &Path<S>, term: Term, value: Spectrum) {
-        let &Path { slot, address, light_path, .. } = path;
-        let light = AddedLight { slot, address, light_path, term, value };
-        match &mut self.deferred {
-            None => self.add_light(&light),
-            Some(deferred) => deferred.push(light),
-        }
-    }
-
-    #[inline]
-    fn add_light(&mut self, light: &AddedLight) {
-        let &AddedLight { slot, address, light_path, term, value } = light;
-        self.add_to(slot, address, term, value);
+        self.add_to(path.slot, path.address, term, value);
         if let Some(light_paths) = self.light_paths {
-            light_paths.add(light_path, term, value, self.queues.layers_of(slot, light_paths));
+            light_paths.add(path.light_path, term, value, self.queues.layers_of(path.slot, light_paths));
         }
     }
 

@@ -302,7 +302,6 @@ impl Renderer {
         let mut output = StepOutput {
             queues: std::mem::take(queues),
             paths: next,
-            deferred: None,
             background: self.image().background,
             light_paths,
             probe,

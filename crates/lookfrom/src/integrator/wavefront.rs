@@ -3,9 +3,9 @@
 pub(super) mod bare_hits;
 mod bins;
 mod departure;
-mod in_order;
 mod light_samples;
 mod modes;
+mod rounds;
 mod surfaces;
 
 use lookfrom_bvh::Hit;
@@ -13,9 +13,9 @@ use lookfrom_bvh::Hit;
 pub(super) use bare_hits::BareHits;
 pub(super) use bins::{Bins, Eight};
 pub(super) use departure::{Boundary, Departure};
-pub(super) use in_order::InOrder;
 pub(super) use light_samples::{LightSamples, Receivers};
 pub(super) use modes::Modes;
+pub(super) use rounds::Rounds;
 pub(super) use surfaces::Surfaces;
 
 use super::{BatchStreams, Path};

@@ -15,7 +15,7 @@ use lookfrom_bvh::{Hit, OriginPrimitive};
 
 use crate::core::lanes::{are_shaded_together, shade_together};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, InOrder};
+use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, Rounds};
 use crate::integrator::{
     BatchStreams, Cut, Integrator, Path, Probe, Queues, SampleStream, ShadowTransparency, StepOutput,
 };
@@ -91,11 +91,9 @@ impl Whitted {
 /// Memory that is reused from batch to batch.
 #[derive(Debug, Default)]
 struct Memory {
-    in_order: InOrder,
+    rounds: Rounds,
     bins: Bins,
     shaded: Shaded,
-    /// Of a path that is shaded alone.
-    alone: Shaded,
 }
 
 /// [`Integrator::step_all`] of Whitted ray tracing, or without a `tree` of ray casting.
@@ -108,43 +106,28 @@ pub(super) fn step_all<P: Probe>(
     let in_lanes = are_shaded_together();
     let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
     let mut memory = output.queues.scratch.take::<Memory>();
-    let Memory { in_order, bins, shaded, alone } = &mut *memory;
-    // A probe is told of one path after the other.
-    let mut in_order = if P::LISTENS || !in_order.is_needed(paths) { None } else { Some(in_order) };
-    if let Some(in_order) = &mut in_order {
-        in_order.begin(paths.len(), output);
-    }
-    let mut shade = |eight: (&Eight<'_>, bool), in_order: &mut Option<&mut InOrder>, output: &mut _| {
-        shade_bare_hits(tree, batch, eight, shaded, in_order, output);
-    };
-    for (index, (path, hit)) in (0..).zip(paths.iter().zip(hits)) {
-        output.notice_hit(path, hit);
-        if hit.is_hit()
-            && let Some(bare) = world.bare_surface(hit).filter(|_| in_lanes)
-        {
-            let kind = 2 * bare.material as usize + usize::from(bare.is_sphere);
-            bins.push(kind, index, bare.material, |eight| {
-                shade((eight, bare.is_sphere), &mut in_order, output);
-            });
-            if P::LISTENS {
-                bins.flush(u64::MAX, |eight| shade((eight, bare.is_sphere), &mut in_order, output));
+    let Memory { rounds, bins, shaded } = &mut *memory;
+    rounds.divide(paths, output.queues.radiance.len());
+    for round in 0..rounds.count() {
+        for &index in rounds.paths(round) {
+            let (path, hit) = (&paths[index as usize], &hits[index as usize]);
+            output.notice_hit(path, hit);
+            if !hit.is_hit() {
+                output.add_surroundings_behind_medium(world, path, even_sky);
+            } else if let Some(bare) = world.bare_surface(hit).filter(|_| in_lanes) {
+                let kind = 2 * bare.material as usize + usize::from(bare.is_sphere);
+                bins.push(kind, index, bare.material, |eight| {
+                    shade_bare_hits(tree, batch, (eight, bare.is_sphere), shaded, output);
+                });
+            } else {
+                step(tree, world, &streams.of(path), (path, hit), shaded, output);
             }
-            continue;
         }
-        let before = output.lengths();
-        match hit.is_hit() {
-            true => step(tree, world, &streams.of(path), (path, hit), alone, output),
-            false => output.add_surroundings_behind_medium(world, path, even_sky),
+        for (mask, are_on_spheres) in [(Bins::EVEN, false), (Bins::ODD, true)] {
+            bins.flush(mask, |eight| {
+                shade_bare_hits(tree, batch, (eight, are_on_spheres), shaded, output);
+            });
         }
-        if let Some(in_order) = &mut in_order {
-            in_order.note(index, before, output.lengths());
-        }
-    }
-    for (mask, are_on_spheres) in [(Bins::EVEN, false), (Bins::ODD, true)] {
-        bins.flush(mask, |eight| shade((eight, are_on_spheres), &mut in_order, output));
-    }
-    if let Some(in_order) = in_order {
-        in_order.finish(output);
     }
     output.queues.scratch.put(memory);
 }
@@ -156,10 +139,8 @@ fn shade_bare_hits<P: Probe>(
     batch: &HitBatch<'_>,
     (eight, are_on_spheres): (&Eight<'_>, bool),
     shaded: &mut Shaded,
-    in_order: &mut Option<&mut InOrder>,
     output: &mut StepOutput<'_, P>,
 ) {
-    let indices = eight.paths;
     let (world, count) = (batch.world, eight.paths.len());
     let eight = &BareEight::of(batch, eight, are_on_spheres);
     let wanted = wanted(tree, output);
@@ -184,11 +165,7 @@ fn shade_bare_hits<P: Probe>(
         let front = shaded.front & 1 << lane != 0;
         let boundary = Boundary::Bare { material: eight.materials[lane], front };
         let departure = Departure { path, origin_primitive: OriginPrimitive::of(hit), boundary };
-        let before = output.lengths();
         shaded.finish(world, (&Vertex { departure, hit }, lane), tree, output);
-        if let Some(in_order) = in_order {
-            in_order.note(indices[lane], before, output.lengths());
-        }
     }
 }
 

@@ -1,7 +1,5 @@
 //! Shadow rays that wait to be traced, by their parts, so that the kernel reads rays where they are.
 
-use std::ops::Range;
-
 use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
 
@@ -40,18 +38,6 @@ impl Shadows {
         self.rays.push(ray);
         self.origin_primitives.push(origin_primitive);
         self.lights.push(ShadowLight { contribution, interior, address, term, slot, last_scattering });
-    }
-
-    /// Number of rays.
-    pub(in crate::integrator) fn len(&self) -> usize {
-        self.rays.len()
-    }
-
-    /// Adds a range of others.
-    pub(in crate::integrator) fn extend_from(&mut self, others: &Self, range: Range<usize>) {
-        self.rays.extend_from_slice(&others.rays[range.clone()]);
-        self.origin_primitives.extend_from_slice(&others.origin_primitives[range.clone()]);
-        self.lights.extend_from_slice(&others.lights[range]);
     }
 
     /// Removes all.
