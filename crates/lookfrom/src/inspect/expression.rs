@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::inspect_without_tests;
 use super::report::{Addition, Inspection, MetReport, RayReport};
 use super::scatter::{FoundReport, LightSampleReport};
+use super::segments::RayKind;
 use crate::core::math::luminance;
 use crate::render::{Renderer, SampleId};
 
@@ -112,9 +113,9 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
     let mut ray = ray;
     while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
         let letters = match (ray.kind, &parent.bounce) {
-            ("straight on", _) => None,
+            (RayKind::StraightOn, _) => None,
             (_, Some(bounce)) => Some(bounce.letters),
-            ("reflected", None) => Some("R"),
+            (RayKind::Reflected, None) => Some("R"),
             _ => Some("T"),
         };
         if let (Some(letters), Some(met)) = (letters, &parent.met) {

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use super::candidates::{write_candidates, write_traced};
 use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
 use super::{Excerpt, Part, amount, full, lanes, vector, vector32};
-use crate::inspect::{BranchReport, LightReport, RayReport};
+use crate::inspect::{BranchReport, LightReport, RayKind, RayReport};
 
 /// Number of candidates that are shown besides the hit of a ray of the tree; the JSON has all.
 const OTHERS_IN_TREE: usize = 5;
@@ -25,7 +25,7 @@ impl Excerpt<'_> {
             .inspection
             .rays
             .iter()
-            .find(|child| child.parent == Some(ray.address) && child.kind == "straight on");
+            .find(|child| child.parent == Some(ray.address) && child.kind == RayKind::StraightOn);
         if let Some(child) = straight_on {
             if is_shown {
                 writeln!(
