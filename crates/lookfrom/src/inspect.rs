@@ -44,7 +44,7 @@ pub use scatter::{
 };
 pub use segments::{RayKind, RaySegment};
 pub use svg::{SvgView, svg};
-pub use text::{Excerpt, Part, Selection};
+pub use text::{Excerpt, Selection, TextPart};
 
 pub use crate::light::derivation::Derivation;
 
