@@ -49,7 +49,7 @@ export const lanes = (v, digits = 4) =>
 export const luminance = (rgb) => (rgb.length === 3 ? 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2] : mean(rgb));
 
 /** @param {readonly number[]} v */
-export const mean = (v) => v.reduce((sum, x) => sum + x, 0) / Math.max(v.length, 1);
+const mean = (v) => v.reduce((sum, x) => sum + x, 0) / Math.max(v.length, 1);
 
 /** @param {number} x linear */
 const encoded = (x) => Math.round(255 * (x <= 0.0031308 ? 12.92 * Math.max(x, 0) : 1.055 * Math.min(x, 1) ** (1 / 2.4) - 0.055));

@@ -3,7 +3,7 @@
 import { h, replace, svg } from "./html.js";
 import { slider } from "./fields.js";
 import { exact, fileName, short, single, swatch } from "./format.js";
-import { kindName, rayWidth } from "./rays.js";
+import { linesOfRays } from "./rays.js";
 import { noPixel } from "./notes.js";
 
 /** @typedef {import("./protocol.js").Inspection} Inspection */
@@ -61,7 +61,9 @@ export function treeLesson(app) {
 }
 
 /** @param {Inspection} inspection @param {number | null} selected @param {(address: number) => void} select */
-function diagram({ rays }, selected, select) {
+function diagram(inspection, selected, select) {
+    const { rays } = inspection;
+    const lines = linesOfRays(inspection);
     /** @type {Map<number, {x: number, y: number}>} */
     const places = new Map();
     const levels = Math.max(...rays.map(({ depth }) => depth)) + 1;
@@ -85,11 +87,11 @@ function diagram({ rays }, selected, select) {
         rays.map((ray) => {
             if (ray.parent === null) return null;
             const [[x1, y1], [x2, y2]] = [at(ray.parent), at(ray.address)];
-            return svg("line", { x1, y1, x2, y2, class: `edge ${kindName(ray.kind)}`, "stroke-width": rayWidth(ray).toFixed(1) });
+            return svg("line", { x1, y1, x2, y2, class: `edge ${ray.kind}`, "stroke-width": lines.get(ray.address)?.width.toFixed(1) });
         }),
         rays.map((ray) => {
             const [cx, cy] = at(ray.address);
-            return svg("circle", { cx, cy, r: ray.address === selected ? 6 : 4, class: `node ${kindName(ray.kind)} ${ray.address === selected ? "selected" : ""}`, onclick: () => select(ray.address) }, svg("title", {}, `ray ${ray.address}: ${ray.kind}`));
+            return svg("circle", { cx, cy, r: ray.address === selected ? 6 : 4, class: `node ${ray.kind} ${ray.address === selected ? "selected" : ""}`, onclick: () => select(ray.address) }, svg("title", {}, `ray ${ray.address}: ${ray.kind}`));
         }));
 }
 

@@ -2,7 +2,6 @@
 
 import { orbit, project, screenFromWorld } from "./camera.js";
 import { add, cross, length, mix, scale, subtract, unit } from "./vector.js";
-import { end, shadows } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
 /** @typedef {import("./protocol.js").Inspection} Inspection */
@@ -21,11 +20,8 @@ const FOV = 36;
  */
 export function observer(inspection, viewed, size, sceneSize, place) {
     const eye = viewed.lookfrom;
-    const first = inspection.rays[0]?.met?.point;
-    const reach = Math.min(sceneSize / 4, first ? 0.6 * length(subtract(first, eye)) : Infinity);
-    const hits = inspection.rays.map((ray) => end(ray, reach));
-    const lights = inspection.rays.flatMap(shadows).filter(({ shadow }) => !shadow.is_endless).map(({ shadow }) => shadow.to);
-    const points = place === "beside" ? [eye, ...hits, ...lights] : [...hits, ...lights];
+    const ends = inspection.segments.map(({ to }) => to);
+    const points = place === "beside" ? [eye, ...ends] : ends;
     /** @type {(pick: (...values: number[]) => number) => Vector} */
     const corner = (pick) => /** @type {Vector} */ ([0, 1, 2].map((i) => pick(...points.map((p) => p[i]))));
     const middle = mix(corner(Math.min), corner(Math.max), 0.5);

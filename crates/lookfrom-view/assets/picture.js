@@ -94,7 +94,7 @@ export function showPicture(app) {
             context.rect(0, 0, width, height);
             context.clip();
             const matrix = screenFromWorld(camera, [width, height]);
-            drawRays(context, { inspection, selected: app.ray.get(), project: (p) => project(matrix, p), isCameraRayShown: false, farAway: sceneSize() });
+            drawRays(context, { inspection, selected: app.ray.get(), project: (p) => project(matrix, p), isCameraRayShown: false });
             context.restore();
         }
         if (pixel) drawMarker(context, pixel, scale);

@@ -89,6 +89,7 @@
 /** @typedef {import("../types/inspection.js").Microfacet} Microfacet */
 /** @typedef {import("../types/inspection.js").MatrixStep} Step */
 /** @typedef {import("../types/inspection.js").Ray} Ray */
+/** @typedef {import("../types/inspection.js").Segment} Segment */
 /** @typedef {import("../types/inspection.js").Sample} Inspection */
 
 export {};

@@ -1,11 +1,10 @@
-// Rays on a picture: colour by kind, width by throughput; shadow rays; what is hidden behind geometry is dashed.
+// Rays on a picture: the segments of an inspection, projected; what is hidden behind geometry is dashed.
 
 import { byId } from "./html.js";
-import { luminance, mean } from "./format.js";
-import { add, mix, scale } from "./vector.js";
+import { mix } from "./vector.js";
 
 /** @typedef {import("./protocol.js").Inspection} Inspection */
-/** @typedef {import("./protocol.js").Ray} Ray */
+/** @typedef {import("./protocol.js").Segment} Segment */
 /** @typedef {import("./protocol.js").Vector} Vector */
 
 /**
@@ -14,87 +13,41 @@ import { add, mix, scale } from "./vector.js";
  * @property {number | null} selected The address of the ray that is highlighted.
  * @property {(p: Vector) => [number, number, number]} project To x, y and the depth.
  * @property {boolean} isCameraRayShown
- * @property {number} farAway The length that endless rays are drawn with.
  * @property {(x: number, y: number, depth: number) => boolean} [isHidden]
  */
 
-/** The kinds of rays with the names of their colours in style.css. */
-export const KINDS = {
-    camera: "camera",
-    reflected: "reflected",
-    refracted: "refracted",
-    transmitted: "refracted",
-    "straight on": "straight",
-    scattered: "scattered",
-};
+/** The colour of a kind of ray, or of another mark, from style.css. @param {string} name */
+export const color = (name) => getComputedStyle(byId("picture-overlay")).getPropertyValue(`--ray-${name.replace(" ", "-")}`).trim() || "#888";
 
-/** @param {string} name */
-export const color = (name) => getComputedStyle(byId("picture-overlay")).getPropertyValue(`--ray-${name}`).trim() || "#888";
+/** @param {Segment} segment */
+const isShadow = ({ kind }) => kind === "shadow" || kind === "blocked";
 
-/** @param {string} kind */
-export const kindName = (kind) => /** @type {Record<string, string>} */ (KINDS)[kind] ?? "straight";
-
-/** Where a ray ends: at its hit, or far away. @param {Ray} ray @param {number} farAway @returns {Vector} */
-export function end(ray, farAway) {
-    if (ray.met?.point) return ray.met.point;
-    const size = Math.hypot(...ray.direction) || 1;
-    return add(ray.a, scale(ray.direction, farAway / size));
-}
-
-/** @param {Ray} ray */
-export const rayWidth = (ray) => 1.1 + 2.4 * Math.sqrt(Math.min(1, mean(ray.throughput)));
-
-/** The shadow rays of a hit, with the light's contribution. @param {Ray} ray @returns {{shadow: import("./protocol.js").Shadow, added: number, light: string}[]} */
-export function shadows(ray) {
-    const sources = ray.light_sample ? [...ray.lights, ray.light_sample] : ray.lights;
-    return sources.flatMap(({ shadow, added, light }) => (shadow ? [{ shadow, added: luminance(added.rgb), light }] : []));
-}
+/** The lines of rays by their addresses, without those of shadow rays. @param {Inspection} inspection @returns {Map<number, Segment>} */
+export const linesOfRays = ({ segments }) => new Map(segments.filter((segment) => !isShadow(segment)).map((segment) => [segment.address, segment]));
 
 /**
  * @param {CanvasRenderingContext2D} context
  * @param {Drawing} drawing
  */
 export function drawRays(context, drawing) {
-    const { inspection, selected, farAway } = drawing;
+    const { inspection, selected } = drawing;
     context.lineCap = "round";
     // The selected ray is drawn last, above the others.
-    const rays = [...inspection.rays].sort((a, b) => Number(a.address === selected) - Number(b.address === selected));
-    for (const ray of rays) {
-        const isSelected = ray.address === selected;
+    const segments = [...inspection.segments].sort((a, b) => Number(a.address === selected) - Number(b.address === selected));
+    for (const segment of segments) {
+        if (segment.kind === "camera" && !drawing.isCameraRayShown) continue;
+        const isSelected = segment.address === selected;
         context.globalAlpha = selected === null || isSelected ? 1 : 0.5;
-        for (const { shadow, added } of shadows(ray)) drawShadow(context, drawing, shadow, added > 0, isSelected);
-        if (ray.kind === "camera" && !drawing.isCameraRayShown) continue;
-        drawLine(context, drawing, ray.a, end(ray, farAway), color(kindName(ray.kind)), rayWidth(ray) + (isSelected ? 1.5 : 0), isSelected);
+        drawLine(context, drawing, segment.from, segment.to, color(segment.kind), segment.width + (isSelected ? 1.5 : 0), isSelected && !isShadow(segment));
     }
     context.globalAlpha = 1;
-    for (const ray of rays) {
-        if (!ray.met?.point) continue;
-        const [x, y, depth] = drawing.project(ray.met.point);
+    for (const segment of segments) {
+        if (segment.is_endless) continue;
+        const [x, y, depth] = drawing.project(segment.to);
         if (depth <= 0) continue;
-        dot(context, x, y, ray.address === selected ? 4.5 : 3, color(kindName(ray.kind)));
+        const radius = isShadow(segment) ? 2.5 : 3;
+        dot(context, x, y, segment.address === selected ? 1.5 * radius : radius, color(segment.kind));
     }
-}
-
-/**
- * A shadow ray: bright up to what blocks it, dark behind.
- * @param {CanvasRenderingContext2D} context
- * @param {Drawing} drawing
- * @param {import("./protocol.js").Shadow} shadow
- * @param {boolean} isLit
- * @param {boolean} isSelected
- */
-function drawShadow(context, drawing, shadow, isLit, isSelected) {
-    const blocker = shadow.blockers.find(({ passed }) => Math.max(...passed) === 0);
-    const at = blocker?.point ?? null;
-    const width = isSelected ? 2 : 1.1;
-    if (isLit || !blocker) drawLine(context, drawing, shadow.from, shadow.to, color("shadow"), width, false);
-    else if (at) {
-        drawLine(context, drawing, shadow.from, at, color("shadow"), width, false);
-        drawLine(context, drawing, at, shadow.to, color("blocked"), width, false);
-    } else drawLine(context, drawing, shadow.from, shadow.to, color("blocked"), width, false);
-    if (shadow.is_endless) return;
-    const [x, y, depth] = drawing.project(shadow.to);
-    if (depth > 0) dot(context, x, y, isSelected ? 4 : 2.5, isLit ? color("shadow") : color("blocked"));
 }
 
 /** @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} radius @param {string} fill */

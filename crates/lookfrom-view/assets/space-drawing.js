@@ -7,7 +7,7 @@ import { add, length, scale, subtract } from "./vector.js";
 /** @typedef {import("./protocol.js").Camera} Camera */
 /** @typedef {import("./protocol.js").Lobe} Lobe */
 /** @typedef {import("./protocol.js").Vector} Vector */
-/** @typedef {import("./rays.js").Drawing & {camera: Camera, size: [number, number], lobe: Lobe | null}} SpaceDrawing */
+/** @typedef {import("./rays.js").Drawing & {camera: Camera, size: [number, number], sceneSize: number, lobe: Lobe | null}} SpaceDrawing */
 
 /**
  * @param {CanvasRenderingContext2D} context
@@ -22,13 +22,12 @@ export function drawSpace(context, drawing) {
 
 /** The frustum up to the image plane, and u, v, w. @param {CanvasRenderingContext2D} context @param {SpaceDrawing} drawing */
 function drawCamera(context, drawing) {
-    const { camera, size, inspection, farAway } = drawing;
+    const { camera, size, sceneSize, inspection } = drawing;
     const { u, v, w } = axes(camera);
     const eye = camera.lookfrom;
     // Drawn at a size that is seen: the true image plane is at t = 1, and may be tiny or huge.
-    const [first] = inspection.rays;
-    const reach = first?.met ? length(subtract(first.met.point, eye)) : farAway;
-    const distance = Math.min(reach * 0.25, farAway * 0.12) || 1;
+    const [first] = inspection.segments;
+    const distance = Math.min(length(subtract(first.to, eye)) * 0.25, sceneSize * 0.12) || 1;
     if (camera.fov !== null) {
         const top = distance * Math.tan(((camera.fov / 2) * Math.PI) / 180);
         const side = (top * size[0]) / size[1];

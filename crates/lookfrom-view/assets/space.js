@@ -6,7 +6,6 @@ import { project, screenFromWorld } from "./camera.js";
 import { byId } from "./html.js";
 import { drawSpace } from "./space-drawing.js";
 import { observer, sees } from "./observer.js";
-import { end } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
 /** @typedef {import("./protocol.js").Vector} Vector */
@@ -87,7 +86,7 @@ export function showSpace(app) {
             lobe,
             selected: app.ray.get(),
             isCameraRayShown: true,
-            farAway: sceneSize(),
+            sceneSize: sceneSize(),
             project: projected,
             isHidden,
         });
@@ -141,21 +140,21 @@ export function showSpace(app) {
         click(x, y) {
             const inspection = app.inspection.get();
             if (!inspection || !frame) return;
-            const ray = nearestRay(inspection.rays, x, y);
+            const ray = nearestRay(inspection.segments, x, y);
             if (ray !== null) app.ray.set(ray);
         },
     });
 
-    /** The ray that passes within a finger's reach. @param {import("./protocol.js").Ray[]} rays @param {number} x @param {number} y */
-    function nearestRay(rays, x, y) {
+    /** The ray that passes within a finger's reach, or the one whose shadow ray does. @param {import("./protocol.js").Segment[]} segments @param {number} x @param {number} y */
+    function nearestRay(segments, x, y) {
         let [best, distance] = [/** @type {number | null} */ (null), 12];
-        for (const ray of rays) {
-            const [[x0, y0, d0], [x1, y1, d1]] = [projected(ray.a), projected(end(ray, sceneSize()))];
+        for (const { address, from, to } of segments) {
+            const [[x0, y0, d0], [x1, y1, d1]] = [projected(from), projected(to)];
             if (d0 <= 0 || d1 <= 0) continue;
             const [dx, dy] = [x1 - x0, y1 - y0];
             const s = Math.max(0, Math.min(1, ((x - x0) * dx + (y - y0) * dy) / (dx * dx + dy * dy || 1)));
             const d = Math.hypot(x0 + s * dx - x, y0 + s * dy - y);
-            if (d < distance) [best, distance] = [ray.address, d];
+            if (d < distance) [best, distance] = [address, d];
         }
         return best;
     }

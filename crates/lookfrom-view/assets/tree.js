@@ -2,7 +2,7 @@
 
 import { byId, h, replace } from "./html.js";
 import { exact, fileName, luminance, short, swatch } from "./format.js";
-import { kindName, rayWidth } from "./rays.js";
+import { linesOfRays } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Ray} Ray */
 
@@ -17,6 +17,7 @@ export function showTree(app) {
         if (!inspection) return replace(element);
         /** @type {Map<number | null, Ray[]>} */
         const children = new Map();
+        const lines = linesOfRays(inspection);
         for (const ray of inspection.rays) children.set(ray.parent, [...(children.get(ray.parent) ?? []), ray]);
         const isTree = [...children.values()].some((siblings) => siblings.length > 1);
         replace(element, (children.get(null) ?? []).map((ray) => item(ray, 1)));
@@ -26,12 +27,12 @@ export function showTree(app) {
             const below = children.get(ray.address) ?? [];
             const isOpen = below.length > 0 ? !closed.has(ray.address) : null;
             const row = h("div", { class: "ray" },
-                h("span", { class: `kind ${kindName(ray.kind)}`, "aria-hidden": "true" }),
+                h("span", { class: `kind ${ray.kind}`, "aria-hidden": "true" }),
                 h("span", { class: "name" }, `${ray.address} ${ray.kind}`),
                 h("span", { class: "met", title: ray.met?.shape }, ends(ray)),
                 h("span", { class: "value", title: "contribution of this ray and all after it" }, swatch(ray.subtree.rgb), " ", short(luminance(ray.subtree.rgb), 3)));
             const kind = /** @type {HTMLElement} */ (row.firstChild);
-            kind.style.height = `${rayWidth(ray).toFixed(1)}px`;
+            kind.style.height = `${lines.get(ray.address)?.width.toFixed(1)}px`;
             // Rays of a path follow each other: indented, they would leave the panel.
             const group = below.length > 0 && h("ul", { role: "group", class: isTree ? "nested" : "" }, isOpen ? below.map((ray) => item(ray, level + 1)) : null);
             const label = `Ray ${ray.address}, ${ray.kind}, ${ends(ray)}, contributes ${exact(Number(luminance(ray.subtree.rgb).toPrecision(3)))}`;

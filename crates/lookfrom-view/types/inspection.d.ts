@@ -553,6 +553,8 @@ export interface Sample {
     render_origin: Vector;
     /** Number of the sample in its pixel. */
     sample: number;
+    /** The rays and shadow rays as lines of a drawing, each ray before its shadow rays. */
+    segments: Segment[];
     /** What the sensor does to it. */
     sensor: Sensor;
     /** The wavelengths of the four lanes; null where light is red, green and blue. */
@@ -619,6 +621,26 @@ export interface Scattering {
     numbers: [string, number[]][];
     /** The tangents along which the roughness has its two values, unit length; of a BSDF that is the same in all directions around n, any two. */
     tangents: [Vector, Vector];
+}
+
+/** A line segment of a drawing: a ray, or a part of a shadow ray. */
+export interface Segment {
+    /** Address of the ray; for a shadow ray, of the ray whose hit cast it. */
+    address: number;
+    /** Its start. */
+    from: Vector;
+    /** Whether it has no end. */
+    is_endless: boolean;
+    /** The kind of the ray; of a shadow ray `shadow` up to its light or to what blocks it, and `blocked` behind that. */
+    kind: "camera" | "reflected" | "refracted" | "transmitted" | "scattered" | "straight on" | "shadow" | "blocked";
+    /** The name at its end: of the shape, or of the light of a shadow ray. */
+    name: string | null;
+    /** Its description with its contribution. */
+    title: string;
+    /** Its end; without one, a point so far away that the ray is seen. */
+    to: Vector;
+    /** The width of its line in pixels, which grows with the throughput. */
+    width: number;
 }
 
 /** What the camera's sensor does to the light of a sample. */

@@ -12,6 +12,7 @@ mod microfacets;
 mod pixel;
 mod report;
 mod scatter;
+mod segments;
 mod svg;
 mod text;
 mod trace_log;
@@ -41,8 +42,9 @@ pub use report::{
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,
 };
+pub use segments::{RayKind, RaySegment};
 pub use svg::{SvgView, svg};
-pub use text::{Excerpt, Part, Selection};
+pub use text::{Excerpt, Selection, TextPart};
 
 pub use crate::light::derivation::Derivation;
 
@@ -83,6 +85,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         camera: camera::camera_steps(renderer, id),
         render_origin: renderer.world().origin().to_array(),
         rays: told.rays,
+        segments: Vec::new(),
         radiance: told.radiance,
         additions: told.additions,
         weight: traced.weight,
@@ -93,6 +96,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         adds_up: film.map(f32::to_bits) == traced.rgb.map(f32::to_bits),
     };
     inspection.color8 = pixel::color8(&renderer.view().image, &inspection);
+    inspection.segments = segments::segments(&inspection);
     inspection.contributions = expression::largest(&inspection);
     inspection
 }

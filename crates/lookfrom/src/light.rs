@@ -36,7 +36,7 @@ pub use area::{
 pub(crate) use area::{AreaSamples, sample_area_lights};
 pub use choice::{ChosenLight, LightChoice};
 pub(crate) use environment::brightest_around;
-pub use environment::{Environment, Layout, Sky, SkyImage};
+pub use environment::{Environment, MapLayout, Sky, SkyImage};
 pub use picture::{Goniometric, Projection};
 pub use portal::{Opening, Portal};
 pub use scale::{Scale, Total};

@@ -4,14 +4,18 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args;
-use lookfrom::inspect::{Part, SvgView};
+use lookfrom::inspect::{SvgView, TextPart};
 
 use super::{Common, Overrides};
 use crate::values;
 
 /// The parts of the text.
-const PARTS: &[(&str, Part)] =
-    &[("camera", Part::Camera), ("tests", Part::Tests), ("lights", Part::Lights), ("sums", Part::Sums)];
+const PARTS: &[(&str, TextPart)] = &[
+    ("camera", TextPart::Camera),
+    ("tests", TextPart::Tests),
+    ("lights", TextPart::Lights),
+    ("sums", TextPart::Sums),
+];
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -56,7 +60,7 @@ pub(crate) struct InspectArguments {
 
     /// Show only a part: camera, tests (of primitives), lights, sums
     #[arg(long, value_name = "PART", value_parser = values::word(PARTS))]
-    pub(crate) only: Option<Part>,
+    pub(crate) only: Option<TextPart>,
 
     /// Print one JSON object instead of text; it always has everything
     #[arg(long)]

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::inspect_without_tests;
 use super::report::{Addition, Inspection, MetReport, RayReport};
 use super::scatter::{FoundReport, LightSampleReport};
+use super::segments::RayKind;
 use crate::core::math::luminance;
 use crate::render::{Renderer, SampleId};
 
@@ -112,9 +113,9 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
     let mut ray = ray;
     while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
         let letters = match (ray.kind, &parent.bounce) {
-            ("straight on", _) => None,
+            (RayKind::StraightOn, _) => None,
             (_, Some(bounce)) => Some(bounce.letters),
-            ("reflected", None) => Some("R"),
+            (RayKind::Reflected, None) => Some("R"),
             _ => Some("T"),
         };
         if let (Some(letters), Some(met)) = (letters, &parent.met) {
@@ -172,65 +173,65 @@ fn letters_toward_light(ray: &RayReport, addition: &Addition) -> String {
 }
 
 /// One factor of a contribution.
-struct Part {
+struct NamedFactor {
     name: &'static str,
     value: f32,
     is_divisor: bool,
 }
 
-impl Part {
+impl NamedFactor {
     fn times(name: &'static str, lanes: &[f32]) -> Self {
         Self { name, value: most(lanes), is_divisor: false }
     }
 
     /// What it multiplies the light by.
-    fn factor(&self) -> f32 {
+    fn multiplier(&self) -> f32 {
         if self.is_divisor { 1.0 / self.value } else { self.value }
     }
 }
 
 /// The factors of a contribution (the largest lane of each), and the one that makes it large.
 fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String {
-    let beta = Part::times("β", ray.throughput_there.as_ref().unwrap_or(&ray.throughput));
-    let mut parts = vec![beta];
+    let beta = NamedFactor::times("β", ray.throughput_there.as_ref().unwrap_or(&ray.throughput));
+    let mut factors = vec![beta];
     let sampled = ray.light_sample.as_ref().filter(|_| addition.term.starts_with("sampled "));
     let found = ray.found.iter().find(|found| addition.term == format!("found {}", found.light));
     let local = ray.lights.iter().find(|light| light.light == addition.term);
     if let Some(LightSampleReport { sample: Some(sample), .. }) = sampled {
-        parts.extend([
-            Part::times("f cos", &sample.f_cos),
-            Part::times("L", &sample.arrives.lanes),
-            Part::times("w", &[sample.weight]),
-            Part { name: "p", value: sample.pdf, is_divisor: true },
+        factors.extend([
+            NamedFactor::times("f cos", &sample.f_cos),
+            NamedFactor::times("L", &sample.arrives.lanes),
+            NamedFactor::times("w", &[sample.weight]),
+            NamedFactor { name: "p", value: sample.pdf, is_divisor: true },
         ]);
     } else if let Some(FoundReport { radiance, weight, .. }) = found {
-        parts.extend([Part::times("L", &radiance.lanes), Part::times("w", &[*weight])]);
+        factors.extend([NamedFactor::times("L", &radiance.lanes), NamedFactor::times("w", &[*weight])]);
     } else if let Some(light) = local {
         let sum: Vec<f32> = light.diffuse.iter().zip(&light.specular).map(|(d, s)| d + s).collect();
-        parts.extend([
-            Part::times("(k_d N·L + k_s (N·H)^n)", &sum),
-            Part::times("I_j", &light.intensity.lanes),
+        factors.extend([
+            NamedFactor::times("(k_d N·L + k_s (N·H)^n)", &sum),
+            NamedFactor::times("I_j", &light.intensity.lanes),
         ]);
     } else {
-        let beta = parts[0].value;
+        let beta = factors[0].value;
         let rest: Vec<f32> = addition.value.lanes.iter().map(|value| value / beta).collect();
-        parts.push(Part::times("L", &rest));
+        factors.push(NamedFactor::times("L", &rest));
     }
-    let product = parts.iter().enumerate().map(|(index, part)| match (index, part.is_divisor) {
-        (0, _) => format!("{} {}", part.name, three(part.value)),
-        (_, true) => format!(" / {} {}", part.name, three(part.value)),
-        (_, false) => format!(" · {} {}", part.name, three(part.value)),
+    let product = factors.iter().enumerate().map(|(index, factor)| match (index, factor.is_divisor) {
+        (0, _) => format!("{} {}", factor.name, three(factor.value)),
+        (_, true) => format!(" / {} {}", factor.name, three(factor.value)),
+        (_, false) => format!(" · {} {}", factor.name, three(factor.value)),
     });
     let product: String = product.collect();
-    let largest = parts.iter().max_by(|a, b| a.factor().total_cmp(&b.factor()));
-    let largest = largest.filter(|part| part.factor() > 1.0);
+    let largest = factors.iter().max_by(|a, b| a.multiplier().total_cmp(&b.multiplier()));
+    let largest = largest.filter(|factor| factor.multiplier() > 1.0);
     let reason = match largest {
-        Some(part) => reason(inspection, ray, part, found),
+        Some(factor) => reason(inspection, ray, factor, found),
         None => "no factor is above 1".into(),
     };
     // A throughput that stands for many paths makes fireflies even where it is not large.
     match grown(inspection, ray) {
-        Some(growth) if largest.is_none_or(|part| part.name != "β") && growth.times > MUCH => {
+        Some(growth) if largest.is_none_or(|factor| factor.name != "β") && growth.times > MUCH => {
             format!("{product}: {reason}; β has grown {growth}")
         }
         _ => format!("{product}: {reason}"),
@@ -241,8 +242,13 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
 const MUCH: f32 = 4.0;
 
 /// What a factor above 1 means.
-fn reason(inspection: &Inspection, ray: &RayReport, part: &Part, found: Option<&FoundReport>) -> String {
-    match (part.name, found) {
+fn reason(
+    inspection: &Inspection,
+    ray: &RayReport,
+    factor: &NamedFactor,
+    found: Option<&FoundReport>,
+) -> String {
+    match (factor.name, found) {
         ("p", _) => "small p, a direction that is rarely sampled".into(),
         ("β", _) => match grown(inspection, ray) {
             Some(growth) => format!("large β, grown {growth}"),

@@ -7,6 +7,7 @@ mod ray;
 use serde::Serialize;
 
 use super::expression::Contribution;
+use super::segments::RaySegment;
 
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
@@ -46,6 +47,8 @@ pub struct Inspection {
     pub render_origin: [f64; 3],
     /// All rays, parents before children, by address.
     pub rays: Vec<RayReport>,
+    /// The rays and shadow rays as lines of a drawing, each ray before its shadow rays.
+    pub segments: Vec<RaySegment>,
     /// The sum over all rays, added in the order of `additions`.
     pub radiance: Amount,
     /// Every addition to the sample, in the order in which they were made.

@@ -1,22 +1,21 @@
 //! The rays as a drawing (SVG): views from the side, from above, from behind, and the camera's own, with one colour for
 //! each kind of ray.
 
+mod kinds;
 mod labels;
 mod marks;
 mod outlines;
 mod panel;
 mod projection;
-mod segments;
 
 use std::fmt::Write;
 
 use glam::DVec2;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
-use super::Inspection;
+use super::{Inspection, RayKind};
 use crate::render::Renderer;
 use panel::{NORMAL_COLOR, Panel};
-use segments::{Kind, Segment, segments};
 
 /// Width of a drawing of one view, and of a sheet of them, in units of the drawing.
 const WIDTH: f64 = 1000.0;
@@ -75,7 +74,6 @@ impl SvgView {
 /// # Errors
 /// `Request` for the camera's view where the camera sees all around.
 pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Result<String> {
-    let segments = segments(inspection);
     let of = (renderer, inspection);
     let mut panels = Vec::new();
     let (width, height) = if view == SvgView::Sheet {
@@ -83,13 +81,13 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
         let views = [SvgView::Top, SvgView::Camera, SvgView::Side, SvgView::Front];
         for (index, view) in views.into_iter().enumerate() {
             // A camera that sees all around has no view to draw.
-            let Some(panel) = Panel::new(view, of, &segments, (cell.x, Some(cell.y))) else { continue };
+            let Some(panel) = Panel::new(view, of, (cell.x, Some(cell.y))) else { continue };
             let place = DVec2::new((index % 2) as f64, (index / 2) as f64);
             panels.push((panel, DVec2::new(GAP, HEADER) + place * (cell + GAP)));
         }
         (SHEET, HEADER + 2.0 * (cell.y + GAP))
     } else {
-        let Some(panel) = Panel::new(view, of, &segments, (WIDTH - 2.0 * GAP, None)) else {
+        let Some(panel) = Panel::new(view, of, (WIDTH - 2.0 * GAP, None)) else {
             let message = "a camera that sees all around has no image plane to draw rays in: choose the side, the top or \
                            the front";
             return Err(Error::new(ErrorKind::Request, &Location::default(), message));
@@ -100,7 +98,7 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
     };
 
     let mut legend = String::new();
-    let rows = draw_legend(&mut legend, (width, height), inspection, &segments);
+    let rows = draw_legend(&mut legend, (width, height), inspection);
     let total = height + 22.0 * rows + GAP;
     let mut out = String::new();
     let _ = writeln!(
@@ -125,18 +123,14 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
 }
 
 /// Draws the meanings of lines below the panels, in columns, and returns the number of rows.
-fn draw_legend(
-    out: &mut String,
-    (width, top): (f64, f64),
-    inspection: &Inspection,
-    segments: &[Segment],
-) -> f64 {
-    let is_drawn = |kind: &Kind| segments.iter().any(|segment| segment.kind == *kind);
-    let rays = Kind::ALL.into_iter().filter(is_drawn);
-    let mut lines: Vec<(String, &str)> =
-        rays.map(|kind| (kind.stroke(), kind.name(inspection.is_path()))).collect();
+fn draw_legend(out: &mut String, (width, top): (f64, f64), inspection: &Inspection) -> f64 {
+    let first = |kind: RayKind| inspection.segments.iter().find(|segment| segment.kind == kind);
+    let drawn = RayKind::ALL.into_iter().filter_map(first);
+    let mut lines: Vec<(String, String)> =
+        drawn.map(|segment| (kinds::stroke(segment), kinds::name(segment.kind))).collect();
     if inspection.rays.iter().any(|ray| ray.met.is_some()) {
-        lines.push((format!("stroke=\"{NORMAL_COLOR}\" stroke-width=\"1.2\""), "shading normal at a hit"));
+        let stroke = format!("stroke=\"{NORMAL_COLOR}\" stroke-width=\"1.2\"");
+        lines.push((stroke, "shading normal at a hit".into()));
     }
     let columns = (width / 400.0).floor();
     for (index, (stroke, name)) in lines.iter().enumerate() {

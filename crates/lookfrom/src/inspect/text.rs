@@ -19,7 +19,7 @@ const COLUMNS: usize = 120;
 
 /// A part of the text of an inspection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum TextPart {
     /// From the pixel to the world.
     Camera,
     /// The rays and the primitives that they were tested against.
@@ -38,7 +38,7 @@ pub struct Selection {
     /// Only rays after this number of reflections, refractions and bounces.
     pub bounce: Option<u32>,
     /// Only this part.
-    pub part: Option<Part>,
+    pub part: Option<TextPart>,
 }
 
 /// The text of a part of an inspection.
@@ -74,16 +74,16 @@ impl Excerpt<'_> {
         let inspection = self.inspection;
         let [x, y] = inspection.pixel;
         writeln!(f, "pixel {x} {y} (column, row from the top), sample {}", inspection.sample)?;
-        if self.has(Part::Sums) && !self.is_of_rays() {
+        if self.has(TextPart::Sums) && !self.is_of_rays() {
             writeln!(f)?;
             inspection.write_summary(f)?;
         }
-        if self.has(Part::Camera) && !self.is_of_rays() {
+        if self.has(TextPart::Camera) && !self.is_of_rays() {
             writeln!(f)?;
             inspection.write_camera(f)?;
             inspection.write_wavelengths(f)?;
         }
-        if self.has(Part::Tests) || self.has(Part::Lights) {
+        if self.has(TextPart::Tests) || self.has(TextPart::Lights) {
             writeln!(f)?;
             if inspection.is_path() {
                 self.write_path(f)?;
@@ -94,7 +94,7 @@ impl Excerpt<'_> {
                 }
             }
         }
-        if self.has(Part::Sums) && !self.is_of_rays() {
+        if self.has(TextPart::Sums) && !self.is_of_rays() {
             writeln!(f)?;
             inspection.write_sum(f)?;
             inspection.write_development(f)?;
@@ -103,7 +103,7 @@ impl Excerpt<'_> {
     }
 
     /// Whether a part is shown.
-    fn has(&self, part: Part) -> bool {
+    fn has(&self, part: TextPart) -> bool {
         self.selection.part.is_none_or(|chosen| chosen == part)
     }
 

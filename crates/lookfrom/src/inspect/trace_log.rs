@@ -14,6 +14,7 @@ use lookfrom_scene::settings::Integrator;
 use super::microfacets::MicrofacetReport;
 use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
 use super::scatter::FoundReport;
+use super::segments::RayKind;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Branch, Cut, Event, Path, PreviousVertex, Term};
 use crate::render::Renderer;
@@ -152,8 +153,8 @@ impl<'a> TraceLogBuilder<'a> {
             }
             Event::Grew { address, branch, direction, weight, fresnel, total_reflection, cut } => {
                 let (kind, bit) = match branch {
-                    Branch::Mirrored => ("reflected", 0),
-                    Branch::Refracted => ("refracted", 1),
+                    Branch::Mirrored => (RayKind::Reflected, 0),
+                    Branch::Refracted => (RayKind::Refracted, 1),
                 };
                 let met = self.rays.get(address).and_then(|ray| ray.met.as_ref());
                 let n = met.map_or(Vec3::ZERO, |met| Vec3::from_array(met.n));
@@ -209,7 +210,7 @@ impl<'a> TraceLogBuilder<'a> {
                 .is_some_and(|ray| ray.branches.iter().any(|branch| branch.address == address));
             self.at(address, |ray| {
                 if has_parent && !is_path && !has_branch {
-                    ray.kind = "straight on";
+                    ray.kind = RayKind::StraightOn;
                 }
                 ray.parent = has_parent.then_some(parent);
                 ray.departure = departure;
@@ -237,12 +238,12 @@ impl<'a> TraceLogBuilder<'a> {
                 Some(bounce) => {
                     bounce.next_throughput.clone_from(&next);
                     match settings.integrator {
-                        Integrator::RandomWalk => "scattered",
-                        _ if bounce.lobe.ends_with("transmission") => "transmitted",
-                        _ => "reflected",
+                        Integrator::RandomWalk => RayKind::Scattered,
+                        _ if bounce.lobe.ends_with("transmission") => RayKind::Transmitted,
+                        _ => RayKind::Reflected,
                     }
                 }
-                None => "straight on",
+                None => RayKind::StraightOn,
             };
             if next.is_some() {
                 self.at(address + 1, |next| next.kind = kind_of_next);

@@ -22,7 +22,7 @@ use crate::integrator::{
 use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
-use emit::Vertex;
+use emit::PathHit;
 pub(super) use shaded::Shaded;
 use step::{BareEight, BareKernel, Wanted, shade_one};
 
@@ -165,7 +165,7 @@ fn shade_bare_hits<P: Probe>(
         let front = shaded.front & 1 << lane != 0;
         let boundary = Boundary::Bare { material: eight.materials[lane], front };
         let departure = Departure { path, origin_primitive: OriginPrimitive::of(hit), boundary };
-        shaded.finish(world, (&Vertex { departure, hit }, lane), tree, output);
+        shaded.finish(world, (&PathHit { departure, hit }, lane), tree, output);
     }
 }
 
@@ -213,7 +213,7 @@ pub(super) fn step<P: Probe>(
     shade_one(world, (path, stream, &mode), surface, &coefficients, wanted, shaded);
     let (origin_primitive, boundary) = (OriginPrimitive::of(hit), Boundary::Surface(surface));
     let departure = Departure { path, origin_primitive, boundary };
-    shaded.finish(world, (&Vertex { departure, hit }, 0), tree, output);
+    shaded.finish(world, (&PathHit { departure, hit }, 0), tree, output);
 }
 
 fn wanted<'a, P: Probe>(tree: Option<&'a Whitted>, output: &StepOutput<'_, P>) -> Wanted<'a> {

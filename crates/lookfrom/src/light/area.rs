@@ -319,7 +319,7 @@ impl AreaLight {
 
     /// Bounds of the light and of its normals.
     pub fn emitter_bounds(&self) -> EmitterBounds {
-        let (bounds, Cone { axis, cos }) = match &self.shape {
+        let (bounds, NormalCone { axis, cos }) = match &self.shape {
             LightShape::Quadric(light) => (light.bounds(), light.normals()),
             LightShape::Disk(light) => (light.bounds(), light.normals()),
             LightShape::Mesh(light) => (light.bounds(), light.normals()),
@@ -353,12 +353,12 @@ fn mirrored_by_coat(cos: f32) -> f32 {
 
 /// A cone of directions around an axis of unit length, up to an angle of this cosine.
 #[derive(Clone, Copy, Debug)]
-struct Cone {
+struct NormalCone {
     axis: DVec3,
     cos: f64,
 }
 
-impl Cone {
+impl NormalCone {
     const ALL: Self = Self { axis: DVec3::Z, cos: -1.0 };
 
     /// A cone that contains the given unit vectors.

@@ -60,7 +60,7 @@ pub struct SkyImage {
     /// Factor of each channel.
     pub scale: [f32; 3],
     /// Its parametrisation of the sphere of directions.
-    pub layout: Layout,
+    pub layout: MapLayout,
     /// Columns: the light's axes in the world; a rotation or a rotation with reflection.
     pub world_from_light: Mat3,
     /// Distribution by luminous contribution: brightness times solid angle of each texel.
@@ -77,7 +77,7 @@ pub struct SkyImage {
 /// Parametrisation of the sphere of directions in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Layout {
+pub enum MapLayout {
     /// Equirectangular. Row 0 is +y; the middle column is −z, columns to the right are toward +x.
     LatitudeLongitude,
     /// `warp::octahedral_direction`.
@@ -231,10 +231,10 @@ impl SkyImage {
     fn texel(&self, textures: &Textures, uv: [f32; 2]) -> [f32; 3] {
         let image = textures.image(self.image);
         match self.layout {
-            Layout::LatitudeLongitude => {
+            MapLayout::LatitudeLongitude => {
                 texture::look_up(image, uv, [Wrap::Repeat, Wrap::Clamp], TexelFilter::Bilinear)
             }
-            Layout::Octahedral => texture::look_up(image, uv, [Wrap::Clamp; 2], TexelFilter::Nearest),
+            MapLayout::Octahedral => texture::look_up(image, uv, [Wrap::Clamp; 2], TexelFilter::Nearest),
         }
     }
 
@@ -249,8 +249,8 @@ impl SkyImage {
     pub fn blended(&self, textures: &Textures, direction: Vec3) -> [f32; 3] {
         let (uv, _) = self.uv(direction);
         match self.layout {
-            Layout::LatitudeLongitude => self.texel(textures, uv),
-            Layout::Octahedral => {
+            MapLayout::LatitudeLongitude => self.texel(textures, uv),
+            MapLayout::Octahedral => {
                 // Look up four texels; beyond an edge of the octahedral square the coordinates are folded back.
                 let image = textures.image(self.image);
                 let size = [image.width as f32, image.height as f32];
@@ -278,8 +278,8 @@ impl SkyImage {
     /// The (u, v) of a unit direction, and the factor there from a density over the unit square to one over solid angle.
     fn uv(&self, direction: Vec3) -> ([f32; 2], f32) {
         match self.layout {
-            Layout::LatitudeLongitude => latitude_longitude(self.of_light(direction.into())),
-            Layout::Octahedral => {
+            MapLayout::LatitudeLongitude => latitude_longitude(self.of_light(direction.into())),
+            MapLayout::Octahedral => {
                 (warp::octahedral_square(self.world_from_light.transpose() * direction), OCTAHEDRAL_DENSITY)
             }
         }
@@ -288,11 +288,11 @@ impl SkyImage {
     /// The inverse of [`SkyImage::uv`].
     fn direction(&self, uv: [f32; 2]) -> (Vec3, f32) {
         match self.layout {
-            Layout::LatitudeLongitude => {
+            MapLayout::LatitudeLongitude => {
                 let (of_light, per_solid_angle) = latitude_longitude_direction(uv);
                 (self.in_world(of_light).into(), per_solid_angle)
             }
-            Layout::Octahedral => {
+            MapLayout::Octahedral => {
                 (self.world_from_light * warp::octahedral_direction(uv), OCTAHEDRAL_DENSITY)
             }
         }
@@ -322,10 +322,10 @@ impl SkyImage {
 
 /// The brightest channel that a look-up in a texel may give: where it interpolates with neighbours, that of the texels around, so
 /// that no visible light has density 0.
-pub(crate) fn brightest_around(image: &Image, layout: Layout, [x, y]: [usize; 2]) -> f32 {
+pub(crate) fn brightest_around(image: &Image, layout: MapLayout, [x, y]: [usize; 2]) -> f32 {
     let (width, height) = (image.width as usize, image.height as usize);
     let brightness = |x: usize, y: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
-    if layout == Layout::Octahedral {
+    if layout == MapLayout::Octahedral {
         return brightness(x, y);
     }
     let around = [x + width - 1, x, x + 1].map(|x| x % width);

@@ -136,7 +136,7 @@ struct Work<'a> {
 }
 
 /// Pixels of a tile that lack the same samples.
-struct Part {
+struct TilePart {
     /// Disjoint.
     areas: Vec<PixelBounds>,
     samples: Range<u32>,
@@ -197,7 +197,7 @@ impl Work<'_> {
 
     /// Adds the samples to every pixel that lacks them and is not clean.
     fn pass(&self, samples: Range<u32>) -> Result<Pass> {
-        let missing = || -> Vec<Part> {
+        let missing = || -> Vec<TilePart> {
             let guard = locked(&self.film);
             let of_tile = |tile: &PixelBounds| parts(guard.0.ledger().missing(*tile, &samples));
             self.tiles.iter().flat_map(of_tile).collect()
@@ -228,7 +228,7 @@ impl Work<'_> {
     }
 
     /// Adds the samples of a part, unless it is cancelled meanwhile; returns whether they are added.
-    fn part(&self, Part { areas, samples }: &Part) -> Result<bool> {
+    fn part(&self, TilePart { areas, samples }: &TilePart) -> Result<bool> {
         let Some(around) = areas.iter().copied().reduce(union) else { return Ok(true) };
         let mut tile = FilmTile::for_image(around, self.renderer.image())?;
         let mut batch = locked(&self.batches).pop().unwrap_or_default();
@@ -378,12 +378,12 @@ fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
 }
 
 /// The missing samples of a tile's pixels, those with the same samples together.
-fn parts(missing: Vec<(PixelBounds, Range<u32>)>) -> Vec<Part> {
-    let mut parts: Vec<Part> = Vec::new();
+fn parts(missing: Vec<(PixelBounds, Range<u32>)>) -> Vec<TilePart> {
+    let mut parts: Vec<TilePart> = Vec::new();
     for (area, samples) in missing {
         match parts.iter_mut().find(|part| part.samples == samples) {
             Some(part) => part.areas.push(area),
-            None => parts.push(Part { areas: vec![area], samples }),
+            None => parts.push(TilePart { areas: vec![area], samples }),
         }
     }
     parts

@@ -33,11 +33,11 @@ pub struct FilmParts<'a> {
     budget: Budget,
     /// What all are of, with a film that knows their samples but has no sums.
     whole: Option<FilmFile>,
-    parts: Vec<Part>,
+    parts: Vec<PartFile>,
 }
 
 /// A film's file.
-struct Part {
+struct PartFile {
     path: PathBuf,
     area: PixelBounds,
     /// Among the numbers of its rows, the place of each channel of the film.
@@ -68,7 +68,7 @@ impl<'a> FilmParts<'a> {
                 whole.merge(&file).map_err(|error| Error { at: Location::file(path), ..error })?;
             }
         }
-        self.parts.push(Part { path: path.to_owned(), area, places, bytes: length });
+        self.parts.push(PartFile { path: path.to_owned(), area, places, bytes: length });
         Ok(())
     }
 
@@ -95,15 +95,15 @@ impl<'a> FilmParts<'a> {
     /// The most bytes of files that are open at the same time.
     fn most_bytes(&self) -> u64 {
         let open = |row: u32| -> u64 {
-            let is_open = |part: &&Part| (part.area.y0..part.area.y1 + BAND).contains(&row);
+            let is_open = |part: &&PartFile| (part.area.y0..part.area.y1 + BAND).contains(&row);
             self.parts.iter().filter(is_open).map(|part| part.bytes).sum()
         };
         self.parts.iter().map(|part| open(part.area.y0 / BAND * BAND + BAND)).max().unwrap_or(0)
     }
 
     /// The rows of a part, from its first on.
-    fn open(&self, part: &Part) -> Result<ExrRowStream> {
-        let Part { path, area, places, .. } = part;
+    fn open(&self, part: &PartFile) -> Result<ExrRowStream> {
+        let PartFile { path, area, places, .. } = part;
         let bytes = LoadContext::within(&self.budget, self.files).read(path)?;
         let opened = Opened::new(bytes, path)?;
         if opened.places != *places || opened.file.film.area() != *area {

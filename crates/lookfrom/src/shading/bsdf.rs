@@ -32,7 +32,7 @@ use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::{Dielectric, ThinDielectric};
 use diffuse::{Diffuse, DiffuseTransmission};
-use lanes::Kind;
+use lanes::ClassTraits;
 use layered::{CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::TrowbridgeReitz;
@@ -144,10 +144,10 @@ impl<R: Real> DirectionSample<R> {
 impl DirectionSample<f32> {
     /// As a scalar sample of a class of BSDFs.
     #[inline]
-    fn scalar(self, kind: Kind) -> Option<BsdfSample> {
+    fn scalar(self, traits: ClassTraits) -> Option<BsdfSample> {
         let Self { wi, f, pdf, eta, is_specular, is_diffuse, is_transmission, is_valid } = self;
         let lobe = Lobes::sampled(is_specular, is_diffuse, is_transmission);
-        let pdf_is_proportional = kind.pdf_is_proportional;
+        let pdf_is_proportional = traits.pdf_is_proportional;
         is_valid.then(|| BsdfSample { wi: wi.into(), f, pdf, lobe, eta, pdf_is_proportional })
     }
 }

@@ -26,7 +26,7 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
-use crate::shading::bsdf::whitted::Whitted as WhittedBsdf;
+use crate::shading::bsdf::whitted::WhittedBsdf;
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
@@ -40,7 +40,8 @@ pub use bump::Relief;
 pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use kind::{
-    Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled, Roughness, Whitted,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
+    Roughness, WhittedMaterial,
 };
 pub(crate) use rows::MaterialRow;
 pub use whitted::{Branches, Coefficients};
@@ -58,7 +59,7 @@ pub struct Material {
     /// material declares one.
     pub medium: Option<u32>,
     /// The nearest equivalent in Whitted's model, for integrators that support no other.
-    pub whitted: Whitted,
+    pub whitted: WhittedMaterial,
     /// The pictures that its scattering function depends on.
     pub pictures: PictureSet,
     /// False if its scattering function is known to be the same everywhere.
@@ -158,9 +159,9 @@ impl Shading {
     /// The BSDF for a fixed outgoing direction `wo` as a function of the incident one, without a cosine. Both have unit
     /// length and are in render space.
     pub fn f_toward(&self, wo: Vec3) -> impl Fn(Vec3) -> Spectrum {
-        let view = self.bsdf.view(self.frame.local(wo).into());
+        let prepared = self.bsdf.prepare(self.frame.local(wo).into());
         move |wi| match self.agrees(wo, wi) {
-            true => LaneBsdf::f(&self.bsdf, &view, self.frame.local(wi).into()),
+            true => LaneBsdf::f(&self.bsdf, &prepared, self.frame.local(wi).into()),
             false => Spectrum::BLACK,
         }
     }
@@ -353,12 +354,17 @@ impl Evaluator<'_> {
         Dielectric::new(self.ior(eta), roughness.at(self.textures, self.point)).with_energy(energy)
     }
 
-    fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &Coat) -> Layered<Diffuse> {
+    fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &CoatMaterial) -> Layered<Diffuse> {
         let coat = self.coat(coat);
         Layered::coated_diffuse(self.diffuse(reflectance), &coat, self.seed)
     }
 
-    fn coated_conductor(&mut self, metal: &Metal, roughness: &Roughness, coat: &Coat) -> Layered<Conductor> {
+    fn coated_conductor(
+        &mut self,
+        metal: &Metal,
+        roughness: &Roughness,
+        coat: &CoatMaterial,
+    ) -> Layered<Conductor> {
         let coat = self.coat(coat);
         let (eta, k) = self.indices(metal);
         Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat, self.seed)
@@ -389,7 +395,7 @@ impl Evaluator<'_> {
         }
     }
 
-    fn coat(&mut self, coat: &Coat) -> CoatLayer {
+    fn coat(&mut self, coat: &CoatMaterial) -> CoatLayer {
         let eta = self.ior(&coat.eta);
         CoatLayer {
             eta,

@@ -12,7 +12,7 @@ use crate::core::distribution::Piecewise2D;
 use crate::core::math;
 use crate::core::warp;
 use crate::light::{
-    EmissionSpectrum, Environment, Goniometric, Layout, Light, Opening, Portal, Projection, Scale, Sky,
+    EmissionSpectrum, Environment, Goniometric, Light, MapLayout, Opening, Portal, Projection, Scale, Sky,
     SkyImage, Total, brightest_around,
 };
 use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
@@ -216,10 +216,10 @@ impl<'a> Lights<'a> {
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
             }
             WrittenSky::Image { image, scale, world_from_light } => {
-                (image.index(), scale, world_from_light, Layout::LatitudeLongitude)
+                (image.index(), scale, world_from_light, MapLayout::LatitudeLongitude)
             }
             WrittenSky::Octahedral { image, scale, world_from_light } => {
-                (image.index(), scale, world_from_light, Layout::Octahedral)
+                (image.index(), scale, world_from_light, MapLayout::Octahedral)
             }
         };
         let picture = self.textures.image(image);
@@ -266,15 +266,15 @@ fn mean(image: &Image) -> f32 {
 
 /// The illuminance from an environment map, multiplied by `scale`, on a surface that faces up in the light's space:
 /// along +y for latitude and longitude, along +z for the octahedral square.
-fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
+fn illuminance(image: &Image, scale: [f32; 3], layout: MapLayout) -> f32 {
     let (width, height) = (image.width as f32, image.height as f32);
     let mut sum = 0.0;
     for (index, texel) in (0..).zip(image.texels()) {
         let s = ((index % image.width) as f32 + 0.5) / width;
         let t = ((index / image.width) as f32 + 0.5) / height;
         let (cos, solid_angle) = match layout {
-            Layout::LatitudeLongitude => (libm::cosf(PI * t), 2.0 * PI * PI * libm::sinf(PI * t)),
-            Layout::Octahedral => (warp::octahedral_direction([s, t]).dot(Vec3::Z), 4.0 * PI),
+            MapLayout::LatitudeLongitude => (libm::cosf(PI * t), 2.0 * PI * PI * libm::sinf(PI * t)),
+            MapLayout::Octahedral => (warp::octahedral_direction([s, t]).dot(Vec3::Z), 4.0 * PI),
         };
         let color = std::array::from_fn(|c| (texel[c] * scale[c]).max(0.0));
         sum += f64::from(math::luminance(color) * cos.max(0.0) * solid_angle);
@@ -283,9 +283,9 @@ fn illuminance(image: &Image, scale: [f32; 3], layout: Layout) -> f32 {
 }
 
 /// Upper bound of the brightness of each texel of an environment map, and its relative solid angle.
-fn weights(image: &Image, layout: Layout) -> Vec<(f32, f32)> {
+fn weights(image: &Image, layout: MapLayout) -> Vec<(f32, f32)> {
     let (width, height) = (image.width as usize, image.height as usize);
-    if layout == Layout::Octahedral {
+    if layout == MapLayout::Octahedral {
         let texels = (0..width * height).map(|index| [index % width, index / width]);
         return texels.map(|texel| (brightest_around(image, layout, texel), 1.0)).collect();
     }

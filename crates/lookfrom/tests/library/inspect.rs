@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::support::{Compiled, scene};
 use lookfrom::film::{Film, FilmTile};
-use lookfrom::inspect::{Inspection, RayReport, SvgView, inspect, inspect_pixel, svg};
+use lookfrom::inspect::{Inspection, RayKind, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Light, LightKind, Power, Sky};
@@ -273,7 +273,7 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
                         ray,
                         &format!("{name} {color:?} at {pixel:?}, ray {}", ray.address),
                     );
-                    told.insert(ray.kind.into());
+                    told.insert(ray.kind.to_string());
                     told.extend(ray.ends.map(String::from));
                     told.extend(ray.scattering.iter().map(|scattering| scattering.kind.into()));
                     told.extend(ray.bounce.iter().map(|bounce| bounce.lobe.clone()));
@@ -421,7 +421,7 @@ fn rays_that_pass_holes_are_shown() {
             let text = inspection.to_string();
             let mut parent = None;
             for ray in &inspection.rays {
-                let kind = if parent.is_none() { "camera" } else { "straight on" };
+                let kind = if parent.is_none() { RayKind::Camera } else { RayKind::StraightOn };
                 assert_eq!((ray.kind, ray.parent), (kind, parent), "{integrator:?} at {x} {y}");
                 assert!(text.contains(&format!("{kind} ray {}:", ray.address)), "{text}");
                 assert_eq!(ray.subtree, inspection.radiance, "{integrator:?} at {x} {y}");

@@ -464,7 +464,7 @@ fn every_number_follows_from_what_is_printed() {
             met(&inspection, ray, &what);
             ray.lights.iter().for_each(|of_ray| light(of_ray, ray, &what));
             branches(&inspection, ray, &what);
-            told.insert(ray.kind.into());
+            told.insert(ray.kind.to_string());
             told.extend(ray.absorption.as_ref().map(|_| "absorbs".to_owned()));
             let blockers = ray.lights.iter().filter_map(|light| light.shadow.as_ref());
             let passes = |shadow: &lookfrom::inspect::ShadowReport| {

@@ -19,6 +19,7 @@ mod inspect_lifts;
 mod inspect_lights;
 mod inspect_microfacets;
 mod inspect_numbers;
+mod inspect_segments;
 mod layers;
 mod light_paths;
 mod media;

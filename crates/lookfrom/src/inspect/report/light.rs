@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::{Amount, Departure, Factor};
 use crate::inspect::candidate::TraversalReport;
+use crate::inspect::segments::RayKind;
 use crate::light::derivation::Derivation;
 
 /// One light in Whitted's model.
@@ -78,8 +79,8 @@ pub struct Blocker {
 pub struct BranchReport {
     /// Address of the child.
     pub address: u64,
-    /// `reflected` or `refracted`.
-    pub kind: &'static str,
+    /// Reflected or refracted.
+    pub kind: RayKind,
     /// Its direction by the shading normal, unit length, whether it was followed or not. (The ray itself is reflected at the
     /// tangent plane where this points to the wrong side.)
     pub direction: [f32; 3],
@@ -98,8 +99,8 @@ pub struct BranchReport {
 }
 
 impl ShadowReport {
-    /// Whether the light is completely blocked.
-    pub fn is_blocked(&self) -> bool {
-        self.blockers.iter().any(|blocker| blocker.passed.iter().all(|lane| *lane == 0.0))
+    /// The surface that blocks the light completely, if there is one.
+    pub fn blocker(&self) -> Option<&Blocker> {
+        self.blockers.iter().find(|blocker| blocker.passed.iter().all(|lane| *lane == 0.0))
     }
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::{Amount, BranchReport, Factor, LightReport, ShadowReport};
 use crate::inspect::candidate::{Candidate, TraversalReport};
 use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
+use crate::inspect::segments::RayKind;
 
 /// One ray.
 #[derive(Clone, Debug, Serialize)]
@@ -14,9 +15,8 @@ pub struct RayReport {
     pub address: u64,
     /// Address of the ray that it comes from.
     pub parent: Option<u64>,
-    /// `camera`; in a tree `reflected` or `refracted`; along a path `reflected`, `transmitted`, `scattered` (a random
-    /// walk) or `straight on` (past a surface that it passes by alpha or as an interface).
-    pub kind: &'static str,
+    /// Its kind, which is not of shadow rays.
+    pub kind: RayKind,
     /// Number of reflections, refractions and bounces before.
     pub depth: u32,
     /// Its origin.

@@ -20,8 +20,8 @@ pub(super) fn arrow(out: &mut String, from: DVec2, to: DVec2, color: &str, width
 /// The head of an arrow.
 pub(super) fn head(out: &mut String, tip: DVec2, direction: DVec2, color: &str) {
     let along = direction.normalize_or_zero();
-    let back = tip - 8.0 * along;
-    let [a, b] = [3.2, -3.2].map(|side| back + side * along.perp());
+    let back = tip - 10.0 * along;
+    let [a, b] = [4.0, -4.0].map(|side| back + side * along.perp());
     let _ = writeln!(
         out,
         "<polygon points=\"{:.1},{:.1} {:.1},{:.1} {:.1},{:.1}\" fill=\"{color}\"/>",

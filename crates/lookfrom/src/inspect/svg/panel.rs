@@ -8,10 +8,9 @@ use super::labels::{self, FONT, Label};
 use super::marks::{arrow, head, line};
 use super::outlines::{Outline, outlines};
 use super::projection::Projection;
-use super::segments::{Kind, Segment};
-use super::{SvgView, escape};
-use crate::inspect::Inspection;
+use super::{SvgView, escape, kinds};
 use crate::inspect::expression::without_place;
+use crate::inspect::{Inspection, RayKind};
 use crate::render::Renderer;
 
 /// Lengths of arrows for axes and normals.
@@ -29,7 +28,6 @@ pub(super) struct Panel<'a> {
     view: SvgView,
     renderer: &'a Renderer,
     inspection: &'a Inspection,
-    segments: &'a [Segment],
     projection: Projection,
     /// The part of the projection that is shown.
     low: DVec2,
@@ -44,7 +42,6 @@ impl<'a> Panel<'a> {
     pub(super) fn new(
         view: SvgView,
         (renderer, inspection): (&'a Renderer, &'a Inspection),
-        segments: &'a [Segment],
         (width, height): (f64, Option<f64>),
     ) -> Option<Self> {
         let camera = renderer.view().camera();
@@ -60,7 +57,8 @@ impl<'a> Panel<'a> {
             image_plane(renderer, inspection)?.into_iter().for_each(include);
         } else {
             include(eye);
-            segments.iter().flat_map(|segment| segment.ends).for_each(include);
+            let ends = inspection.segments.iter().flat_map(|segment| [segment.from, segment.to]);
+            ends.map(DVec3::from_array).for_each(include);
             let margin = 0.12 * (high - low).max_element().max(1e-9);
             (low, high) = (low - margin, high + margin);
         }
@@ -69,7 +67,7 @@ impl<'a> Panel<'a> {
             if view == SvgView::Camera { span.y / span.x } else { (span.y / span.x).clamp(0.45, 0.9) };
         let size = DVec2::new(width, height.unwrap_or(width * aspect));
         let scale = (size / span).min_element();
-        Some(Self { view, renderer, inspection, segments, projection, low, high, size, scale })
+        Some(Self { view, renderer, inspection, projection, low, high, size, scale })
     }
 
     pub(super) fn height(&self) -> f64 {
@@ -157,7 +155,7 @@ impl<'a> Panel<'a> {
     fn draw_camera(&self, out: &mut String, labels: &mut Vec<Label>) -> Vec<[DVec2; 2]> {
         let mut lines = Vec::new();
         let camera = &self.inspection.camera;
-        let color = Kind::Camera.color();
+        let color = kinds::color(RayKind::Camera);
         let eye = DVec3::from_array(camera.lookfrom);
         if self.view == SvgView::Camera {
             // Of the pinhole's ray: one from a lens crosses the image plane elsewhere, and meets it in the plane of focus.
@@ -219,29 +217,30 @@ impl<'a> Panel<'a> {
     fn draw_rays(&self, out: &mut String, labels: &mut Vec<Label>) -> Vec<[DVec2; 2]> {
         let mut lines = Vec::new();
         let (mut numbered, mut names) = (0, Vec::new());
-        for segment in self.segments {
-            let Some(ends) = self.segment(segment.ends) else { continue };
+        for segment in &self.inspection.segments {
+            let Some(ends) = self.segment([segment.from, segment.to].map(DVec3::from_array)) else {
+                continue;
+            };
             let kind = segment.kind;
+            let color = kinds::color(kind);
             // The camera sees its own ray as a point.
-            if self.view != SvgView::Camera || kind != Kind::Camera {
+            if self.view != SvgView::Camera || kind != RayKind::Camera {
                 let title = escape(&segment.title);
-                let _ = writeln!(out, "<g><title>{title}</title>{}</g>", line(&ends, &kind.stroke()));
-                if segment.address.is_some() && ends[0].distance(ends[1]) > 40.0 {
-                    head(out, ends[0].lerp(ends[1], 0.55), ends[1] - ends[0], kind.color());
+                let _ =
+                    writeln!(out, "<g><title>{title}</title>{}</g>", line(&ends, &kinds::stroke(segment)));
+                if !kind.is_shadow() && ends[0].distance(ends[1]) > 40.0 {
+                    head(out, ends[0].lerp(ends[1], 0.55), ends[1] - ends[0], color);
                 }
                 lines.push(ends);
                 let anchor = ends[0].midpoint(ends[1]);
-                if let Some(address) = segment.address
-                    && numbered < MOST_LABELS
-                    && self.is_inside(anchor)
-                {
+                if !kind.is_shadow() && numbered < MOST_LABELS && self.is_inside(anchor) {
                     numbered += 1;
-                    let text = address.to_string();
-                    labels.push(Label { anchor, text, color: kind.color(), is_bold: true });
+                    let text = segment.address.to_string();
+                    labels.push(Label { anchor, text, color, is_bold: true });
                 }
             }
             if let Some(name) = segment.name.as_deref().map(without_place)
-                && self.point(segment.ends[1]).is_some_and(|end| self.is_inside(end))
+                && self.point(DVec3::from_array(segment.to)).is_some_and(|end| self.is_inside(end))
                 && names.len() < MOST_LABELS
                 && !names.contains(&name)
             {

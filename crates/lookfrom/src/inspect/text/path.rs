@@ -7,7 +7,7 @@ use lookfrom_scene::plural::counted;
 use super::candidates::{write_candidates, write_traced};
 use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
 use super::microfacets::write_microfacets;
-use super::{Excerpt, Part, RayReport};
+use super::{Excerpt, RayReport, TextPart};
 use super::{amount, full, lanes, vector, vector32};
 use crate::inspect::scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, ScatteringReport,
@@ -23,7 +23,7 @@ const ONLY_CHOICE: &str =
 impl Excerpt<'_> {
     pub(super) fn write_path(&self, f: &mut String) -> fmt::Result {
         writeln!(f, "The path, ray by ray")?;
-        if self.has(Part::Lights) && !self.is_of_rays() {
+        if self.has(TextPart::Lights) && !self.is_of_rays() {
             self.write_introduction(f)?;
         }
         for ray in self.inspection.rays.iter().filter(|ray| self.shows(ray)) {
@@ -92,7 +92,7 @@ impl Excerpt<'_> {
             after(ray.depth),
             lanes(&ray.throughput)
         )?;
-        if self.has(Part::Tests) {
+        if self.has(TextPart::Tests) {
             writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
             write_departure(f, ray.departure.as_ref(), &format!("{pad}  "))?;
             write_traced(f, ray, pad)?;
@@ -102,7 +102,7 @@ impl Excerpt<'_> {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
-        if !self.has(Part::Lights) {
+        if !self.has(TextPart::Lights) {
             return Ok(());
         }
         write_absorption(f, ray, pad)?;

@@ -4,8 +4,8 @@ use std::fmt::{self, Write};
 
 use super::candidates::{write_candidates, write_traced};
 use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
-use super::{Excerpt, Part, amount, full, lanes, vector, vector32};
-use crate::inspect::{BranchReport, LightReport, RayReport};
+use super::{Excerpt, TextPart, amount, full, lanes, vector, vector32};
+use crate::inspect::{BranchReport, LightReport, RayKind, RayReport};
 
 /// Number of candidates that are shown besides the hit of a ray of the tree; the JSON has all.
 const OTHERS_IN_TREE: usize = 5;
@@ -25,7 +25,7 @@ impl Excerpt<'_> {
             .inspection
             .rays
             .iter()
-            .find(|child| child.parent == Some(ray.address) && child.kind == "straight on");
+            .find(|child| child.parent == Some(ray.address) && child.kind == RayKind::StraightOn);
         if let Some(child) = straight_on {
             if is_shown {
                 writeln!(
@@ -36,7 +36,7 @@ impl Excerpt<'_> {
             return self.write_ray(f, child, indent);
         }
         for branch in &ray.branches {
-            if is_shown && self.has(Part::Lights) {
+            if is_shown && self.has(TextPart::Lights) {
                 write_branch(f, branch, pad)?;
             }
             if let Some(child) = self.inspection.rays.iter().find(|child| child.address == branch.address) {
@@ -52,7 +52,7 @@ impl Excerpt<'_> {
     /// Writes a ray, its hit, and the light there.
     fn write_hit(&self, f: &mut String, ray: &RayReport, pad: &str) -> fmt::Result {
         writeln!(f, "{pad}{} ray {}: throughput {}", ray.kind, ray.address, lanes(&ray.throughput))?;
-        if self.has(Part::Tests) {
+        if self.has(TextPart::Tests) {
             writeln!(f, "{pad}  a = {}   direction = {}", vector(&ray.a), vector32(&ray.direction))?;
             write_departure(f, ray.departure.as_ref(), &format!("{pad}  "))?;
             write_traced(f, ray, pad)?;
@@ -62,7 +62,7 @@ impl Excerpt<'_> {
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
-        if self.has(Part::Lights) {
+        if self.has(TextPart::Lights) {
             write_absorption(f, ray, pad)?;
             ray.lights.iter().try_for_each(|light| write_light(f, light, pad))?;
             let additions = &self.inspection.additions;

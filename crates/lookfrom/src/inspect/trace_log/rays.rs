@@ -8,6 +8,7 @@ use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
 use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 use crate::inspect::scatter::{self, BounceReport};
+use crate::inspect::segments::RayKind;
 use crate::integrator::{Bounce, Path, PreviousVertex};
 use crate::primitive::Primitives;
 use crate::shading::interaction::SurfaceInteraction;
@@ -23,9 +24,9 @@ impl TraceLogBuilder<'_> {
         surface: Option<&SurfaceInteraction>,
     ) -> RayReport {
         let kind = match (path.address, path.address & 1) {
-            (Path::ROOT, _) => "camera",
-            (_, 0) => "reflected",
-            _ => "refracted",
+            (Path::ROOT, _) => RayKind::Camera,
+            (_, 0) => RayKind::Reflected,
+            _ => RayKind::Refracted,
         };
         let (traversal, candidates) = match self.with_tests {
             true => candidate::candidates(self.world, &path.ray, hit),

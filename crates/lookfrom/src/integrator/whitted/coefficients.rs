@@ -9,7 +9,7 @@ use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::wavefront::{Modes, Surfaces, bare_hits};
-use crate::shading::material::{Coefficients, Whitted};
+use crate::shading::material::{Coefficients, WhittedMaterial};
 use crate::shading::texture::lanes::TexturePoints;
 use crate::shading::texture::{SpectrumTexture, TexturePoint};
 use crate::world::World;
@@ -142,8 +142,8 @@ fn texture_points<'a, S: Simd>(
 
 /// Whether any of the coefficients varies over a surface.
 #[inline]
-fn varies(material: &Whitted) -> bool {
-    let Whitted { ambient, diffuse, specular, mirror, transmission, .. } = material;
+fn varies(material: &WhittedMaterial) -> bool {
+    let WhittedMaterial { ambient, diffuse, specular, mirror, transmission, .. } = material;
     [diffuse, specular, mirror, transmission].into_iter().chain(ambient).any(SpectrumTexture::varies)
 }
 

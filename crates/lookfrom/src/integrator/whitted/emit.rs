@@ -9,7 +9,7 @@ use crate::integrator::{Branch, Event, Path, Probe, StepOutput, Term};
 use crate::world::World;
 
 /// A path, absorbed by media on its way, at what it has hit.
-pub(super) struct Vertex<'a> {
+pub(super) struct PathHit<'a> {
     pub(super) departure: Departure<'a>,
     pub(super) hit: &'a Hit,
 }
@@ -20,10 +20,10 @@ impl Shaded {
     fn tell_surface<P: Probe>(
         &self,
         world: &World,
-        (vertex, lane): (&Vertex<'_>, usize),
+        (path_hit, lane): (&PathHit<'_>, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        let Vertex { departure: Departure { path, boundary, .. }, hit } = *vertex;
+        let PathHit { departure: Departure { path, boundary, .. }, hit } = *path_hit;
         let surface = match boundary {
             Boundary::Surface(surface) => Some(surface),
             _ => None,
@@ -47,13 +47,13 @@ impl Shaded {
     pub(super) fn finish<P: Probe>(
         &self,
         world: &World,
-        (vertex, lane): (&Vertex<'_>, usize),
+        (path_hit, lane): (&PathHit<'_>, usize),
         tree: Option<&Whitted>,
         output: &mut StepOutput<'_, P>,
     ) {
-        let Departure { path, boundary, .. } = vertex.departure;
+        let Departure { path, boundary, .. } = path_hit.departure;
         if P::LISTENS || matches!(boundary, Boundary::Surface(_)) {
-            self.tell_surface(world, (vertex, lane), output);
+            self.tell_surface(world, (path_hit, lane), output);
         }
         output.add(path, Term::Ambient, self.ambient[lane]);
         if P::LISTENS
@@ -61,10 +61,10 @@ impl Shaded {
         {
             told.events[lane].iter().for_each(|event| output.probe.notice(|| event.clone()));
         }
-        self.add_lights(world, (vertex, lane), output);
+        self.add_lights(world, (path_hit, lane), output);
         if let Some(tree) = tree {
             for branch in [Branch::Mirrored, Branch::Refracted] {
-                self.grow(world, (vertex, lane), (tree, branch), output);
+                self.grow(world, (path_hit, lane), (tree, branch), output);
             }
         }
     }
@@ -73,10 +73,10 @@ impl Shaded {
     fn add_lights<P: Probe>(
         &self,
         world: &World,
-        (vertex, lane): (&Vertex<'_>, usize),
+        (path_hit, lane): (&PathHit<'_>, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        let departure = &vertex.departure;
+        let departure = &path_hit.departure;
         let interior = departure.interior(world, departure.wo(), false);
         for from in self.lights[..self.light_count].iter().filter(|from| from.lit & 1 << lane != 0) {
             let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
@@ -89,11 +89,11 @@ impl Shaded {
     fn grow<P: Probe>(
         &self,
         world: &World,
-        (vertex, lane): (&Vertex<'_>, usize),
+        (path_hit, lane): (&PathHit<'_>, usize),
         (tree, branch): (&Whitted, Branch),
         output: &mut StepOutput<'_, P>,
     ) {
-        let Departure { path, .. } = vertex.departure;
+        let Departure { path, .. } = path_hit.departure;
         let crosses = branch == Branch::Refracted;
         let rays = &self.branches[usize::from(crosses)];
         if rays.exist & 1 << lane == 0 {
@@ -101,14 +101,14 @@ impl Shaded {
         }
         let (ray, beta) = (rays.rays[lane], rays.beta[lane]);
         if tree.cut(path, beta).is_none() {
-            let wi = if crosses { ray.direction.into() } else { vertex.departure.wo() };
+            let wi = if crosses { ray.direction.into() } else { path_hit.departure.wo() };
             let light_path = output.scattered(path, [true, false, crosses]);
             output.paths.push(Path {
                 ray,
                 beta,
                 depth: path.depth + 1,
                 address: path.address << 1 | u64::from(crosses),
-                interior: vertex.departure.interior(world, wi, crosses),
+                interior: path_hit.departure.interior(world, wi, crosses),
                 light_path,
                 ..*path
             });

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec2};
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, prelude::*};
 
-use super::{AreaSamples, Cone, LightPoint, toward_all};
+use super::{AreaSamples, LightPoint, NormalCone, toward_all};
 use crate::core::lanes::{LANES, by_lane, gather_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
@@ -35,8 +35,8 @@ impl DiskLight {
         self.disk.bounds()
     }
 
-    pub(super) fn normals(&self) -> Cone {
-        Cone { axis: self.sampled.normal.into(), cos: 1.0 }
+    pub(super) fn normals(&self) -> NormalCone {
+        NormalCone { axis: self.sampled.normal.into(), cos: 1.0 }
     }
 
     pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {

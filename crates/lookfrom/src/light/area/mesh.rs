@@ -13,7 +13,7 @@ use lookfrom_bvh::Point;
 use lookfrom_simd::{Simd, f32x8};
 use spherical_triangle::SphericalTriangles;
 
-use super::{AreaDensity, Cone, LightPoint, seen};
+use super::{AreaDensity, LightPoint, NormalCone, seen};
 use crate::core::distribution::Discrete;
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::parallel;
@@ -149,11 +149,11 @@ impl MeshLight {
     }
 
     /// The cone of the normals, at all corners of all triangles that have an area.
-    pub(super) fn normals(&self) -> Cone {
+    pub(super) fn normals(&self) -> NormalCone {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
         let triangles = (0..self.triangles.len()).filter(|&rank| self.choice.pdf(rank) > 0.0);
         let triangles = triangles.map(|rank| self.triangles[rank].index as usize);
-        Cone::around(triangles.flat_map(|index| corners.map(|(u, v)| self.mesh.point(index, u, v).ng)))
+        NormalCone::around(triangles.flat_map(|index| corners.map(|(u, v)| self.mesh.point(index, u, v).ng)))
     }
 
     /// The index of a triangle of the mesh among those that are sampled.

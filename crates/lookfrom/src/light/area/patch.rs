@@ -9,7 +9,7 @@ use glam::{DVec3, Vec2};
 
 use lookfrom_bvh::{Procedural, Ray};
 
-use super::{AreaDensity, Cone, LightPoint, seen};
+use super::{AreaDensity, LightPoint, NormalCone, seen};
 use crate::core::distribution::Discrete;
 use crate::primitive::Patches;
 
@@ -46,9 +46,9 @@ impl PatchLight {
     }
 
     /// The cone of the normals: those of each patch lie between those at its corners.
-    pub(super) fn normals(&self) -> Cone {
+    pub(super) fn normals(&self) -> NormalCone {
         let patches = (0..self.patches.patches.len()).filter(|&index| self.choice.pdf(index) > 0.0);
-        Cone::around(patches.flat_map(|index| {
+        NormalCone::around(patches.flat_map(|index| {
             [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(u, v)| self.patches.normal(index, u, v))
         }))
     }

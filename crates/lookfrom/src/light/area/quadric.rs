@@ -8,7 +8,7 @@ mod sphere;
 use glam::{DVec3, Vec3};
 pub(crate) use sphere::{SphereLights, gather_spheres};
 
-use super::{Cone, DiskLights, LightPoint, seen};
+use super::{DiskLights, LightPoint, NormalCone, seen};
 use crate::primitive::{Disk, MaterialBinding, Quadric, QuadricKind};
 
 /// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
@@ -64,13 +64,13 @@ impl QuadricLight {
         self.quadric.bounds()
     }
 
-    pub(super) fn normals(&self) -> Cone {
+    pub(super) fn normals(&self) -> NormalCone {
         match self.quadric.kind {
             QuadricKind::Disk { .. } => {
                 let at = self.quadric.point(self.quadric.sample_in_object([0.5; 2]), MaterialBinding::NONE);
-                Cone { axis: at.ng, cos: 1.0 }
+                NormalCone { axis: at.ng, cos: 1.0 }
             }
-            QuadricKind::Sphere { .. } | QuadricKind::Cylinder { .. } => Cone::ALL,
+            QuadricKind::Sphere { .. } | QuadricKind::Cylinder { .. } => NormalCone::ALL,
         }
     }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::Vec3;
 use lookfrom_scene::image::Image;
 
-use super::{Environment, Layout, Sky, SkyImage, brightest_around};
+use super::{Environment, MapLayout, Sky, SkyImage, brightest_around};
 use crate::core::distribution::Cell;
 use crate::light::derivation::{
     Derivation, OCTAHEDRAL, as_spectrum, cell_of_density, color_of, in_space, lanes, place, texel_at, vector,
@@ -76,8 +76,8 @@ impl SkyImage {
             false => cell_of_density(by_direction, size, pdf, density),
         };
         let (of_texel, jacobian) = match self.layout {
-            Layout::LatitudeLongitude => (EQUIRECTANGULAR, "2π² sin θ"),
-            Layout::Octahedral => (OCTAHEDRAL, "4π"),
+            MapLayout::LatitudeLongitude => (EQUIRECTANGULAR, "2π² sin θ"),
+            MapLayout::Octahedral => (OCTAHEDRAL, "4π"),
         };
         let mut numbers = in_space(&to_map, to_map * wi);
         let [of_size, index] = place(image, texel);
@@ -89,7 +89,7 @@ impl SkyImage {
             numbers,
         );
         let mut numbers = vec![of_size];
-        if self.layout == Layout::LatitudeLongitude {
+        if self.layout == MapLayout::LatitudeLongitude {
             // By the density over solid angle: near the poles the rounded direction has lost its sine.
             let sin = match uniform || pdf == 0.0 {
                 true => 1.0 / (2.0 * PI * PI * f64::from(per_solid_angle)),
@@ -109,8 +109,8 @@ impl SkyImage {
                 IncompletePdf::Forbidden => "B",
             };
             let (sine, bright) = match self.layout {
-                Layout::LatitudeLongitude => (" sin θ_j", "the texel and its neighbours"),
-                Layout::Octahedral => ("", "the texel"),
+                MapLayout::LatitudeLongitude => (" sin θ_j", "the texel and its neighbours"),
+                MapLayout::Octahedral => ("", "the texel"),
             };
             format!(
                 "pdf = P(j) P(i) columns rows / ({jacobian}): by row, then column; \
@@ -135,7 +135,7 @@ impl SkyImage {
         if is_compensated {
             numbers.push(("mean", vec![f64::from(self.mean)]));
         }
-        if self.layout == Layout::LatitudeLongitude {
+        if self.layout == MapLayout::LatitudeLongitude {
             let sin = libm::sin(PI * (texel[1] as f64 + 0.5) / f64::from(image.height));
             numbers.push(("sin θ_j", vec![sin]));
             weight *= sin;
@@ -147,7 +147,7 @@ impl SkyImage {
 
     /// The colour at (u, v).
     fn of_radiance(&self, image: &Image, [u, v]: [f32; 2], mode: &SpectralMode) -> Derivation {
-        if self.layout == Layout::Octahedral {
+        if self.layout == MapLayout::Octahedral {
             let color = color_of(image, texel_at(image, [u, v]));
             let numbers = vec![("scale", vector(self.scale)), ("texel", vector(color))];
             return Derivation::new(format!("L = scale · texel (i, j){}", as_spectrum(mode)), numbers);

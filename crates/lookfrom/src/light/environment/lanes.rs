@@ -6,7 +6,9 @@ use glam::Vec3;
 use lookfrom_scene::texture::Wrap;
 use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*};
 
-use super::{Environment, Layout, Sky, SkyImage, finite, latitude_longitude, latitude_longitude_direction};
+use super::{
+    Environment, MapLayout, Sky, SkyImage, finite, latitude_longitude, latitude_longitude_direction,
+};
 use crate::core::lanes::{LANES, by_lane, gather, scatter};
 use crate::core::spectrum::Spectrum;
 use crate::light::IncompletePdf;
@@ -33,7 +35,9 @@ impl Environment {
     #[inline]
     pub(crate) fn map_in_lanes(&self) -> Option<&SkyImage> {
         match &self.sky {
-            Sky::Image(sky) if self.portal.is_none() && sky.layout == Layout::LatitudeLongitude => Some(sky),
+            Sky::Image(sky) if self.portal.is_none() && sky.layout == MapLayout::LatitudeLongitude => {
+                Some(sky)
+            }
             _ => None,
         }
     }

@@ -8,7 +8,7 @@ use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::layered::Layered;
 use super::lobes::Lobes;
 use super::principled::Principled;
-use super::whitted::Whitted;
+use super::whitted::WhittedBsdf;
 use super::{BsdfSample, MicrofacetFactors, Mode};
 use crate::core::spectrum::Spectrum;
 
@@ -109,7 +109,7 @@ macro_rules! bsdf_classes {
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
                 /// Whitted's model.
-                Whitted(Whitted),
+                Whitted(WhittedBsdf),
             }
         }
     };

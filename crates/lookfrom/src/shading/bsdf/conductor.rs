@@ -16,7 +16,7 @@ use super::microfacet::TrowbridgeReitz;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
     is_grazing,
-    lanes::{Kind, LaneBsdf},
+    lanes::{ClassTraits, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
 };
@@ -88,7 +88,7 @@ impl ScatteringFunction for Conductor {
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.kind())
+        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {
@@ -194,15 +194,15 @@ pub(super) fn try_half_vector(wo: Vec3, wi: Vec3) -> Option<Vec3> {
 }
 
 impl<R: Real> LaneBsdf<R> for Conductor<R> {
-    type View = Vector<R>;
+    type Prepared = Vector<R>;
 
     #[inline(always)]
-    fn kind(&self) -> Kind {
-        Kind { needs_lobe: false, ..Kind::PLAIN }
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_lobe: false, ..ClassTraits::PLAIN }
     }
 
     #[inline(always)]
-    fn view(&self, wo: Vector<R>) -> Vector<R> {
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo
     }
 

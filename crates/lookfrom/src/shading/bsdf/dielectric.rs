@@ -69,7 +69,7 @@ impl ScatteringFunction for Dielectric {
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sample(wo.into(), uc, u, mode, lobes).scalar(self.kind())
+        self.sample(wo.into(), uc, u, mode, lobes).scalar(self.traits())
     }
 
     /// With equal indices nothing is reflected or refracted.

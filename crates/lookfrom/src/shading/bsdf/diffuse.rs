@@ -9,7 +9,7 @@ use lookfrom_simd::{Float, Mask, Real};
 
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, is_grazing,
-    lanes::{Kind, LaneBsdf},
+    lanes::{ClassTraits, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
 };
@@ -41,7 +41,7 @@ impl ScatteringFunction for Diffuse {
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.kind())
+        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {
@@ -62,15 +62,15 @@ impl ScatteringFunction for Diffuse {
 }
 
 impl<R: Real> LaneBsdf<R> for Diffuse<R> {
-    type View = Vector<R>;
+    type Prepared = Vector<R>;
 
     #[inline(always)]
-    fn kind(&self) -> Kind {
-        Kind { needs_lobe: false, ..Kind::PLAIN }
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_lobe: false, ..ClassTraits::PLAIN }
     }
 
     #[inline(always)]
-    fn view(&self, wo: Vector<R>) -> Vector<R> {
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo
     }
 

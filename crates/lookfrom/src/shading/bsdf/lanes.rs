@@ -17,7 +17,7 @@ use crate::core::vector::Vector;
 
 /// Properties that all BSDFs of a class have in common.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
+pub struct ClassTraits {
     /// As [`super::BsdfSample::pdf_is_proportional`].
     pub pdf_is_proportional: bool,
     /// Whether sampling takes a number to choose a lobe.
@@ -27,7 +27,7 @@ pub struct Kind {
     pub needs_agreement: bool,
 }
 
-impl Kind {
+impl ClassTraits {
     /// The properties of most classes.
     pub const PLAIN: Self = Self { pdf_is_proportional: false, needs_lobe: true, needs_agreement: false };
 }
@@ -35,29 +35,29 @@ impl Kind {
 /// BSDFs of one class at any width, for paths from the camera. Directions are those of [`Bsdf`](super::Bsdf).
 pub trait LaneBsdf<R: Real> {
     /// A BSDF seen from an outgoing direction, computed once: that direction itself, where there is nothing to compute.
-    type View;
+    type Prepared;
 
     /// The properties of the class.
-    fn kind(&self) -> Kind;
-    /// The view from the outgoing direction `wo`, which the other methods take.
-    fn view(&self, wo: Vector<R>) -> Self::View;
+    fn traits(&self) -> ClassTraits;
+    /// The BSDF prepared for the outgoing direction `wo`, which the other methods take.
+    fn prepare(&self, wo: Vector<R>) -> Self::Prepared;
     /// As [`Bsdf::f`](super::Bsdf::f).
-    fn f(&self, view: &Self::View, wi: Vector<R>) -> Spectrum<R>;
+    fn f(&self, prepared: &Self::Prepared, wi: Vector<R>) -> Spectrum<R>;
     /// As [`Bsdf::pdf`](super::Bsdf::pdf).
-    fn pdf(&self, view: &Self::View, wi: Vector<R>) -> R;
+    fn pdf(&self, prepared: &Self::Prepared, wi: Vector<R>) -> R;
     /// [`Self::f`] and [`Self::pdf`]; the density means nothing where the value is black.
     #[inline(always)]
-    fn f_and_pdf(&self, view: &Self::View, wi: Vector<R>) -> (Spectrum<R>, R) {
-        (self.f(view, wi), self.pdf(view, wi))
+    fn f_and_pdf(&self, prepared: &Self::Prepared, wi: Vector<R>) -> (Spectrum<R>, R) {
+        (self.f(prepared, wi), self.pdf(prepared, wi))
     }
     /// As [`Bsdf::sample`](super::Bsdf::sample).
-    fn sample(&self, view: &Self::View, uc: R, u: [R; 2]) -> DirectionSample<R>;
+    fn sample(&self, prepared: &Self::Prepared, uc: R, u: [R; 2]) -> DirectionSample<R>;
     /// True if there is a lobe that is not specular.
     fn has_density(&self) -> R::Mask;
     /// The share of diffuse lobes in the value `f` for light from `wi`, 0 … 1 by lane of the spectrum; glossy ones have the
     /// rest. Sheen counts as diffuse, and so does what is scattered between a coat and a diffuse base.
     #[inline(always)]
-    fn diffuse_share(&self, _view: &Self::View, wi: Vector<R>, _f: Spectrum<R>) -> Spectrum<R> {
+    fn diffuse_share(&self, _prepared: &Self::Prepared, wi: Vector<R>, _f: Spectrum<R>) -> Spectrum<R> {
         Spectrum::splat(wi.z.like(0.0))
     }
 }
@@ -72,14 +72,14 @@ pub(crate) trait RowBsdf: Variant + ScatteringFunction {
 }
 
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
-    type View = Vector<R>;
+    type Prepared = Vector<R>;
 
     #[inline(always)]
-    fn kind(&self) -> Kind {
-        Kind::PLAIN
+    fn traits(&self) -> ClassTraits {
+        ClassTraits::PLAIN
     }
     #[inline(always)]
-    fn view(&self, wo: Vector<R>) -> Vector<R> {
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo
     }
     #[inline(always)]
@@ -101,14 +101,14 @@ impl<R: Real> LaneBsdf<R> for Dielectric<R> {
 }
 
 impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
-    type View = Vector<R>;
+    type Prepared = Vector<R>;
 
     #[inline(always)]
-    fn kind(&self) -> Kind {
-        Kind { pdf_is_proportional: true, ..Kind::PLAIN }
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { pdf_is_proportional: true, ..ClassTraits::PLAIN }
     }
     #[inline(always)]
-    fn view(&self, wo: Vector<R>) -> Vector<R> {
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo
     }
     #[inline(always)]
@@ -129,7 +129,7 @@ impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
     }
     #[inline(always)]
     fn diffuse_share(&self, &wo: &Vector<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
-        let below = self.base.diffuse_share(&self.base.view(wo), wi, f);
+        let below = self.base.diffuse_share(&self.base.prepare(wo), wi, f);
         let glossy = Spectrum::splat(self.off_the_coat(wo, wi)).share_of(f);
         below * (Spectrum::splat(wo.z.like(1.0)) - glossy)
     }

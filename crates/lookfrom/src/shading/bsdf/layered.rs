@@ -51,7 +51,7 @@ use random::{Purpose, Random};
 use walk::{Walk, surviving};
 
 /// An opaque BSDF of one lobe, which can be the base under a coat.
-pub trait Base<R: Real>: LaneBsdf<R, View = Vector<R>> + Copy {
+pub trait Base<R: Real>: LaneBsdf<R, Prepared = Vector<R>> + Copy {
     /// Knowledge of the light between coat and base; by default there is none.
     type Interior: Copy + fmt::Debug;
     /// The name of such a base under a coat, and what it does.
@@ -142,7 +142,7 @@ impl<B: Base<f32, Interior: Default> + ScatteringFunction> ScatteringFunction fo
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
-        self.sample(wo.into(), uc, u, mode).scalar(self.kind())
+        self.sample(wo.into(), uc, u, mode).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {

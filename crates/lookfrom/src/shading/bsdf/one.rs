@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::lanes::{Kind, LaneBsdf};
+use super::lanes::{ClassTraits, LaneBsdf};
 use super::lobes::Lobes;
 use super::principled::LocalScattering;
 use super::{Bsdf, BsdfSample, DirectionSample, Mode};
@@ -11,59 +11,59 @@ use crate::core::vector::Vector;
 use crate::core::warp;
 
 /// A BSDF seen from the outgoing direction ω_o.
-pub struct View {
+pub struct PreparedBsdf {
     wo: Vec3,
-    /// The view of glTF's layers.
+    /// glTF's layers, prepared.
     principled: Option<LocalScattering>,
 }
 
 impl LaneBsdf<f32> for Bsdf {
-    type View = View;
+    type Prepared = PreparedBsdf;
 
-    fn kind(&self) -> Kind {
+    fn traits(&self) -> ClassTraits {
         match self {
-            Self::CoatedDiffuse(bsdf) => bsdf.kind(),
-            Self::CoatedConductor(bsdf) => bsdf.kind(),
-            Self::Principled(_) => Kind { needs_agreement: true, ..Kind::PLAIN },
-            _ => Kind::PLAIN,
+            Self::CoatedDiffuse(bsdf) => bsdf.traits(),
+            Self::CoatedConductor(bsdf) => bsdf.traits(),
+            Self::Principled(_) => ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN },
+            _ => ClassTraits::PLAIN,
         }
     }
 
-    fn view(&self, wo: Vector<f32>) -> View {
+    fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf {
         let wo = wo.into();
         let principled = match self {
             Self::Principled(look) => Some(look.scattering(wo, Lobes::ALL)),
             _ => None,
         };
-        View { wo, principled }
+        PreparedBsdf { wo, principled }
     }
 
-    fn f(&self, view: &View, wi: Vector<f32>) -> Spectrum {
-        match &view.principled {
+    fn f(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> Spectrum {
+        match &prepared.principled {
             Some(principled) => principled.f(wi, Mode::Radiance),
-            None => self.f(view.wo, wi.into(), Mode::Radiance),
+            None => self.f(prepared.wo, wi.into(), Mode::Radiance),
         }
     }
 
-    fn pdf(&self, view: &View, wi: Vector<f32>) -> f32 {
-        match &view.principled {
+    fn pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> f32 {
+        match &prepared.principled {
             Some(principled) => principled.pdf(wi),
-            None => self.pdf(view.wo, wi.into(), Mode::Radiance, Lobes::ALL),
+            None => self.pdf(prepared.wo, wi.into(), Mode::Radiance, Lobes::ALL),
         }
     }
 
-    fn f_and_pdf(&self, view: &View, wi: Vector<f32>) -> (Spectrum, f32) {
-        if let Some(principled) = &view.principled {
+    fn f_and_pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> (Spectrum, f32) {
+        if let Some(principled) = &prepared.principled {
             return principled.f_and_pdf(wi, Mode::Radiance);
         }
-        let f = LaneBsdf::f(self, view, wi);
-        (f, if f.is_black() { 0.0 } else { LaneBsdf::pdf(self, view, wi) })
+        let f = LaneBsdf::f(self, prepared, wi);
+        (f, if f.is_black() { 0.0 } else { LaneBsdf::pdf(self, prepared, wi) })
     }
 
-    fn sample(&self, view: &View, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
-        match &view.principled {
+    fn sample(&self, prepared: &PreparedBsdf, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
+        match &prepared.principled {
             Some(principled) => principled.sample(uc, u, Mode::Radiance),
-            None => self.sample(view.wo, uc, u, Mode::Radiance, Lobes::ALL).into(),
+            None => self.sample(prepared.wo, uc, u, Mode::Radiance, Lobes::ALL).into(),
         }
     }
 
@@ -71,10 +71,10 @@ impl LaneBsdf<f32> for Bsdf {
         self.lobes().is_non_specular()
     }
 
-    fn diffuse_share(&self, view: &View, wi: Vector<f32>, f: Spectrum) -> Spectrum {
-        match &view.principled {
+    fn diffuse_share(&self, prepared: &PreparedBsdf, wi: Vector<f32>, f: Spectrum) -> Spectrum {
+        match &prepared.principled {
             Some(principled) => principled.diffuse_f(wi).share_of(f),
-            None => self.class().diffuse_share(view.wo, wi.into(), f),
+            None => self.class().diffuse_share(prepared.wo, wi.into(), f),
         }
     }
 }
@@ -105,29 +105,29 @@ pub(crate) struct Uniform<'a> {
 }
 
 impl LaneBsdf<f32> for Uniform<'_> {
-    type View = View;
+    type Prepared = PreparedBsdf;
 
-    fn kind(&self) -> Kind {
-        Kind { pdf_is_proportional: false, ..self.bsdf.kind() }
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { pdf_is_proportional: false, ..self.bsdf.traits() }
     }
 
-    fn view(&self, wo: Vector<f32>) -> View {
-        self.bsdf.view(wo)
+    fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf {
+        self.bsdf.prepare(wo)
     }
 
-    fn f(&self, view: &View, wi: Vector<f32>) -> Spectrum {
-        LaneBsdf::f(self.bsdf, view, wi)
+    fn f(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> Spectrum {
+        LaneBsdf::f(self.bsdf, prepared, wi)
     }
 
-    fn pdf(&self, _: &View, _: Vector<f32>) -> f32 {
+    fn pdf(&self, _: &PreparedBsdf, _: Vector<f32>) -> f32 {
         warp::UNIFORM_SPHERE_PDF
     }
 
-    fn sample(&self, view: &View, _: f32, u: [f32; 2]) -> DirectionSample<f32> {
+    fn sample(&self, prepared: &PreparedBsdf, _: f32, u: [f32; 2]) -> DirectionSample<f32> {
         let direction = warp::uniform_sphere(u);
         let wi = Vec3::from(self.axes.map(|axis| direction.dot(axis.into())));
         let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
-        let f = LaneBsdf::f(self.bsdf, view, wi.into());
+        let f = LaneBsdf::f(self.bsdf, prepared, wi.into());
         Some(BsdfSample::new(wi, f, warp::UNIFORM_SPHERE_PDF, lobe)).into()
     }
 

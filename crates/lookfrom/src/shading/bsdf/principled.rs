@@ -40,22 +40,22 @@ mod factors;
 pub mod film;
 mod gather;
 mod layers;
+mod prepared;
 mod scattering;
 pub(super) mod sheen;
 mod surface;
-mod view;
 
 use glam::Vec3;
 use lookfrom_simd::Real;
 
-use super::lanes::{Kind, LaneBsdf};
+use super::lanes::{ClassTraits, LaneBsdf};
 use super::microfacet::TrowbridgeReitz;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
 };
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use film::Film;
+use film::ThinFilm;
 pub use scattering::LocalScattering;
 
 /// glTF's surface. All weights and colours are within 0 … 1.
@@ -98,7 +98,7 @@ pub struct Principled<R: Real = f32> {
     /// Weight of the thin film on the specular reflection.
     pub iridescence: R,
     /// The thin film.
-    pub film: Film<R>,
+    pub film: ThinFilm<R>,
     /// Weights of the spectrum's lanes, of sum 1, by which lobes are chosen: positive wherever light matters.
     pub lane_weights: Spectrum<R>,
 }
@@ -125,7 +125,7 @@ impl Default for Principled {
             sheen_greatest: 0.0,
             sheen_roughness: 0.0,
             iridescence: 0.0,
-            film: Film { eta: 1.3, thickness: 400.0, wavelengths: None },
+            film: ThinFilm { eta: 1.3, thickness: 400.0, wavelengths: None },
             lane_weights: Spectrum([0.25; 4]),
         }
     }
@@ -159,7 +159,7 @@ impl Principled {
             sheen_greatest: share(self.sheen_greatest),
             sheen_roughness: share(self.sheen_roughness),
             iridescence: share(self.iridescence),
-            film: Film {
+            film: ThinFilm {
                 eta: finite(self.film.eta, 1e3).max(1.0),
                 thickness: finite(self.film.thickness, 1e6),
                 wavelengths: self.film.wavelengths,
@@ -184,7 +184,7 @@ impl ScatteringFunction for Principled {
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.scattering(wo, lobes).sample(uc, u, mode).scalar(Kind::PLAIN)
+        self.scattering(wo, lobes).sample(uc, u, mode).scalar(ClassTraits::PLAIN)
     }
 
     fn lobes(&self) -> Lobes {
@@ -257,31 +257,31 @@ impl ScatteringFunction for Principled {
 }
 
 impl<R: Real> LaneBsdf<R> for Principled<R> {
-    type View = LocalScattering<R>;
+    type Prepared = LocalScattering<R>;
 
     #[inline(always)]
-    fn kind(&self) -> Kind {
-        Kind { needs_agreement: true, ..Kind::PLAIN }
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN }
     }
     #[inline(always)]
-    fn view(&self, wo: Vector<R>) -> LocalScattering<R> {
+    fn prepare(&self, wo: Vector<R>) -> LocalScattering<R> {
         LocalScattering::new(self, wo, Lobes::ALL)
     }
     #[inline(always)]
-    fn f(&self, view: &LocalScattering<R>, wi: Vector<R>) -> Spectrum<R> {
-        view.f(wi, Mode::Radiance)
+    fn f(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> Spectrum<R> {
+        prepared.f(wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn pdf(&self, view: &LocalScattering<R>, wi: Vector<R>) -> R {
-        view.pdf(wi)
+    fn pdf(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> R {
+        prepared.pdf(wi)
     }
     #[inline(always)]
-    fn f_and_pdf(&self, view: &LocalScattering<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
-        view.f_and_pdf(wi, Mode::Radiance)
+    fn f_and_pdf(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+        prepared.f_and_pdf(wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn sample(&self, view: &LocalScattering<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        view.sample(uc, u, Mode::Radiance)
+    fn sample(&self, prepared: &LocalScattering<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        prepared.sample(uc, u, Mode::Radiance)
     }
     #[inline(always)]
     fn has_density(&self) -> R::Mask {
@@ -291,8 +291,8 @@ impl<R: Real> LaneBsdf<R> for Principled<R> {
         !self.roughness.is_smooth() | is_diffuse | has_coat | !self.sheen_color.is_black()
     }
     #[inline(always)]
-    fn diffuse_share(&self, view: &LocalScattering<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
-        view.diffuse_f(wi).share_of(f)
+    fn diffuse_share(&self, prepared: &LocalScattering<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
+        prepared.diffuse_f(wi).share_of(f)
     }
 }
 

@@ -5,7 +5,7 @@ mod clay;
 #[expect(unreachable_pub, reason = "as the table makes it")]
 mod example;
 
-use super::whitted::Whitted;
+use super::whitted::WhittedBsdf;
 use super::*;
 use crate::core::hash;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
@@ -53,8 +53,8 @@ fn rough(x: f32, y: f32) -> TrowbridgeReitz {
     TrowbridgeReitz::new(x, y)
 }
 
-fn whitted() -> Whitted {
-    Whitted {
+fn whitted() -> WhittedBsdf {
+    WhittedBsdf {
         diffuse: Spectrum([0.5, 0.2, 0.1, 0.0]),
         specular: grey(0.4),
         shininess: 30.0,
@@ -84,7 +84,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("conserving glass 0.6", Bsdf::dielectric(1.5, rough(0.6, 0.6)).with_energy(Energy::Conserved)),
         ("conserving bubble 0.3", Bsdf::dielectric(0.75, rough(0.3, 0.3)).with_energy(Energy::Conserved)),
         ("whitted", Bsdf::Whitted(whitted())),
-        ("whitted dull", Bsdf::Whitted(Whitted { shininess: 2.0, fresnel: false, ..whitted() })),
+        ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
     subjects.extend(principled::tests::subjects());
     subjects
@@ -522,7 +522,7 @@ fn numbers_of_any_size_never_become_nan() {
             estimate: lookfrom_scene::material::CoatEstimate::Unbiased,
             interior: None,
         };
-        let whitted = Whitted {
+        let whitted = WhittedBsdf {
             diffuse: lanes(41),
             specular: lanes(42),
             shininess: any_size(43, trial, 20),
@@ -550,7 +550,7 @@ fn numbers_of_any_size_never_become_nan() {
             sheen_greatest: share(92),
             sheen_roughness: share(93),
             iridescence: if trial.is_multiple_of(5) { share(94) } else { 0.0 },
-            film: principled::film::Film {
+            film: principled::film::ThinFilm {
                 eta: size(95),
                 thickness: size(96),
                 wavelengths: trial.is_multiple_of(2).then_some([450.0, 500.0, 600.0, 700.0]),

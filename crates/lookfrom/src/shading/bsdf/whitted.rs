@@ -23,7 +23,7 @@ use crate::core::warp;
 
 /// Whitted's coefficients without the ambient one, with the same names.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Whitted {
+pub struct WhittedBsdf {
     /// `k_d`.
     pub diffuse: Spectrum,
     /// `k_s`.
@@ -54,7 +54,7 @@ struct Choice {
     refraction: f32,
 }
 
-impl Whitted {
+impl WhittedBsdf {
     /// The specular directions with their weights.
     #[inline]
     fn branches(&self, wo: Vec3) -> Branches {
@@ -135,7 +135,7 @@ impl Whitted {
     }
 }
 
-impl ScatteringFunction for Whitted {
+impl ScatteringFunction for WhittedBsdf {
     fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
         self.value(wo, wi)
     }

@@ -4,8 +4,10 @@ use lookfrom_scene::material as written;
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{TextureId, VertexNormals};
 
-use super::kind::{Anisotropy, BumpMapping, Coat, Ior, MaterialKind, Metal, NormalTexture, Principled};
-use super::kind::{Roughness, Whitted};
+use super::kind::{
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
+    Roughness, WhittedMaterial,
+};
 use super::{Material, albedo, approximate, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -97,9 +99,9 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn whitted(&self, whitted: &written::Whitted) -> Whitted {
+    fn whitted(&self, whitted: &written::Whitted) -> WhittedMaterial {
         let written::Whitted { ambient, diffuse, specular, shininess, mirror, transmission, .. } = whitted;
-        Whitted {
+        WhittedMaterial {
             ambient: ambient.map(|color| self.unbounded(color)),
             diffuse: self.unbounded(*diffuse),
             specular: self.unbounded(*specular),
@@ -120,7 +122,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn coat(&self, coat: &written::Coat) -> Coat {
+    fn coat(&self, coat: &written::Coat) -> CoatMaterial {
         let roughness = rough(&coat.roughness);
         let interior = match (coat.eta, &roughness, coat.thickness) {
             (written::Ior::Value(eta), Roughness::Constant(distribution), Scalar::Value(thickness))
@@ -130,7 +132,7 @@ impl<'a> Compiler<'a> {
             }
             _ => None,
         };
-        Coat {
+        CoatMaterial {
             eta: index(coat.eta),
             roughness,
             interior,
@@ -161,13 +163,13 @@ impl<'a> Compiler<'a> {
         self.unbounded(Color::Texture(texture))
     }
 
-    fn principled(&self, look: &written::Principled) -> Principled {
+    fn principled(&self, look: &written::Principled) -> PrincipledMaterial {
         let anisotropy = look.anisotropy.map(|grain| Anisotropy {
             strength: grain.strength,
             sin_cos: libm::sincosf(grain.rotation).into(),
             texture: grain.texture.map(|texture| self.directions(texture)),
         });
-        let compiled = Principled {
+        let compiled = PrincipledMaterial {
             base_color: self.albedo(look.base_color),
             metallic: look.metallic.into(),
             roughness: look.roughness.into(),
@@ -190,7 +192,7 @@ impl<'a> Compiler<'a> {
             iridescence_thickness: look.iridescence_thickness.into(),
             template: None,
         };
-        Principled { template: principled::template(&compiled, self.textures), ..compiled }
+        PrincipledMaterial { template: principled::template(&compiled, self.textures), ..compiled }
     }
 }
 

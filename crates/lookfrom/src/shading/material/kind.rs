@@ -14,7 +14,7 @@ use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textu
 #[non_exhaustive]
 pub enum MaterialKind {
     /// Whitted's model.
-    Whitted(Box<Whitted>),
+    Whitted(Box<WhittedMaterial>),
     /// Diffuse (Lambertian) reflection.
     Diffuse {
         /// Fraction of light that is reflected.
@@ -57,7 +57,7 @@ pub enum MaterialKind {
         /// Reflectance of the base.
         reflectance: SpectrumTexture,
         /// The coat.
-        coat: Box<Coat>,
+        coat: Box<CoatMaterial>,
     },
     /// A metal under a dielectric coat.
     CoatedConductor {
@@ -66,7 +66,7 @@ pub enum MaterialKind {
         /// Roughness of the base.
         roughness: Roughness,
         /// The coat.
-        coat: Box<Coat>,
+        coat: Box<CoatMaterial>,
     },
     /// One of two materials, chosen at random at each hit.
     Mix {
@@ -76,7 +76,7 @@ pub enum MaterialKind {
         amount: FloatTexture,
     },
     /// glTF's metallic-roughness material and its extensions.
-    Principled(Box<Principled>),
+    Principled(Box<PrincipledMaterial>),
     /// Visible in its colour whatever the light, which it neither reflects nor transmits.
     Unlit {
         /// Its radiance.
@@ -95,7 +95,7 @@ pub enum MaterialKind {
 
 /// The parameters of Whitted's model, see [`lookfrom_scene::material::Whitted`].
 #[derive(Clone, Debug)]
-pub struct Whitted {
+pub struct WhittedMaterial {
     /// `k_a`; `None` means the same as `diffuse`.
     pub ambient: Option<SpectrumTexture>,
     /// `k_d`.
@@ -167,7 +167,7 @@ impl Roughness {
 
 /// A dielectric layer over a base, and the medium between.
 #[derive(Clone, Debug)]
-pub struct Coat {
+pub struct CoatMaterial {
     /// Index of refraction.
     pub eta: Ior,
     /// Roughness of its outer surface.
@@ -214,7 +214,7 @@ pub struct NormalTexture {
 
 /// glTF 2.0's metallic-roughness material with its extensions, see [`lookfrom_scene::material::Principled`].
 #[derive(Clone, Debug)]
-pub struct Principled {
+pub struct PrincipledMaterial {
     /// The metal's reflectance at normal incidence; the albedo or tint of the non-metallic part.
     pub base_color: SpectrumTexture,
     /// 0 is a dielectric, 1 a metal.

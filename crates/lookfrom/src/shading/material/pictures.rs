@@ -1,7 +1,7 @@
 //! The pictures that a material's scattering function depends on, to be looked up before it is evaluated, and whether it
 //! varies over the surface at all.
 
-use super::{BumpMapping, Coat, MaterialKind, Metal, Roughness};
+use super::{BumpMapping, CoatMaterial, MaterialKind, Metal, Roughness};
 use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, Textures};
 
 /// The pictures of a material, and whether it may vary over the surface.
@@ -80,7 +80,7 @@ impl Walk<'_> {
         }
     }
 
-    fn coat(&mut self, coat: &Coat) {
+    fn coat(&mut self, coat: &CoatMaterial) {
         self.roughness(&coat.roughness);
         self.number(coat.thickness);
         self.number(coat.g);

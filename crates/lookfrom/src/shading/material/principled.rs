@@ -9,12 +9,12 @@
 
 use glam::Vec3;
 
-use super::kind::Principled as PrincipledMaterial;
+use super::kind::PrincipledMaterial;
 use super::{Evaluator, Frame, MaterialKind, ShadingContext, bump};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled::Principled;
-use crate::shading::bsdf::principled::film::Film;
+use crate::shading::bsdf::principled::film::ThinFilm;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
@@ -163,7 +163,7 @@ impl Evaluator<'_> {
             } else {
                 self.share(look.iridescence)
             },
-            film: Film {
+            film: ThinFilm {
                 eta: look.iridescence_ior,
                 thickness: self.float(look.iridescence_thickness),
                 wavelengths: self.wavelengths(),
@@ -180,7 +180,7 @@ impl Evaluator<'_> {
             base_color: self.albedo(&look.base_color),
             metallic: self.share(look.metallic),
             roughness: TrowbridgeReitz::new(alpha, alpha),
-            film: Film { wavelengths: self.wavelengths(), ..template.film },
+            film: ThinFilm { wavelengths: self.wavelengths(), ..template.film },
             lane_weights: self.lane_weights(),
             ..*template
         }

@@ -16,7 +16,7 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::kind::Whitted;
+use super::kind::WhittedMaterial;
 use crate::core::math;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
@@ -61,7 +61,12 @@ pub struct Branches<R: Real = f32> {
 
 impl Coefficients {
     /// The material's coefficients at a point.
-    pub fn at(material: &Whitted, textures: &Textures, point: &TexturePoint, mode: &SpectralMode) -> Self {
+    pub fn at(
+        material: &WhittedMaterial,
+        textures: &Textures,
+        point: &TexturePoint,
+        mode: &SpectralMode,
+    ) -> Self {
         let color = |texture: &SpectrumTexture| textures.spectrum(texture, point, mode);
         let diffuse = color(&material.diffuse);
         Self {

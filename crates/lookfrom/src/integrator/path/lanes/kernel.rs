@@ -100,9 +100,9 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         scattered: &mut Scattered,
     ) {
         let Self { width, surfaces, bsdf, beta, streams, task } = *self;
-        let (paths, kind) = (task.paths, bsdf.kind());
+        let (paths, traits) = (task.paths, bsdf.traits());
         let (zero, one) = (width.splat(0.0), width.splat(1.0));
-        let view = bsdf.view(surfaces.wo);
+        let prepared = bsdf.prepare(surfaces.wo);
         let exits = surfaces.exits();
 
         // Sample one light.
@@ -119,22 +119,22 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
             };
             let u = streams.two_with_pixel(dimension::LIGHT);
             sample_lights(&mut scattered.lights, &at, u, scattered.has_density);
-            self.connect(&view, &exits, &scattered.lights, &mut scattered.connections);
+            self.connect(&prepared, &exits, &scattered.lights, &mut scattered.connections);
         }
 
         // Go on in one direction.
-        let [which_lobe, _] = match kind.needs_lobe {
+        let [which_lobe, _] = match traits.needs_lobe {
             true => streams.two(dimension::LOBE),
             false => [zero; 2],
         };
         let mut sample =
-            bsdf.sample(&view, which_lobe, streams.two_with_pixel(dimension::DIRECTION)).if_useful();
+            bsdf.sample(&prepared, which_lobe, streams.two_with_pixel(dimension::DIRECTION)).if_useful();
         let wi = surfaces.render(sample.wi);
-        if kind.needs_agreement {
+        if traits.needs_agreement {
             sample.is_valid = sample.is_valid & surfaces.agrees(wi);
         }
-        let mis_pdf = match kind.pdf_is_proportional {
-            true => bsdf.pdf(&view, surfaces.local(wi)),
+        let mis_pdf = match traits.pdf_is_proportional {
+            true => bsdf.pdf(&prepared, surfaces.local(wi)),
             false => sample.pdf,
         };
         let cos = Float::abs(wi.dot(surfaces.n));
@@ -162,7 +162,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         scattered.wi = store(wi);
         scattered.f = store_spectrum(sample.f);
         scattered.pdf = sample.pdf.column();
-        scattered.pdf_is_proportional = kind.pdf_is_proportional;
+        scattered.pdf_is_proportional = traits.pdf_is_proportional;
         scattered.mis_pdf = Float::select(sample.is_specular, zero.like(f32::INFINITY), mis_pdf).column();
         scattered.eta = sample.eta.column();
         scattered.cos = cos.column();
@@ -181,7 +181,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
     #[inline(always)]
     fn connect(
         &self,
-        view: &B::View,
+        prepared: &B::Prepared,
         exits: &Exits<'_, W::Real>,
         lights: &LightSamples,
         connections: &mut Connections,
@@ -190,11 +190,11 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         let zero = width.splat(0.0);
         let wi = load(width, &lights.wi);
         let local = surfaces.local(wi);
-        let (mut f, bsdf_pdf) = bsdf.f_and_pdf(view, local);
+        let (mut f, bsdf_pdf) = bsdf.f_and_pdf(prepared, local);
         if task.wants_shares {
-            connections.diffuse = store_spectrum(bsdf.diffuse_share(view, local, f));
+            connections.diffuse = store_spectrum(bsdf.diffuse_share(prepared, local, f));
         }
-        if bsdf.kind().needs_agreement {
+        if bsdf.traits().needs_agreement {
             f = Spectrum::select(surfaces.agrees(wi), f, Spectrum::splat(zero));
         }
         let f = f * Float::abs(local.z);

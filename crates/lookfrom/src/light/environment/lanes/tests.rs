@@ -39,7 +39,7 @@ fn eight_at_once_are_eight_one_by_one() {
     let sky = SkyImage {
         image: 0,
         scale: [1.0, 2.0, 0.5],
-        layout: Layout::LatitudeLongitude,
+        layout: MapLayout::LatitudeLongitude,
         world_from_light: Mat3::from_rotation_x(0.7) * Mat3::from_rotation_y(2.0),
         complete: choice.clone(),
         compensated: choice,

@@ -8,7 +8,7 @@ use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::principled::Principled;
-use crate::shading::bsdf::principled::film::Film;
+use crate::shading::bsdf::principled::film::ThinFilm;
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
@@ -57,14 +57,14 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
         let wi = gather(simd, &by_lane!(lane => query[lane].wi.to_array()));
         let load = |values: [f32; LANES]| f32x8::load_array(simd, values);
         let u = [load(by_lane!(lane => query[lane].u[0])), load(by_lane!(lane => query[lane].u[1]))];
-        let view = bsdf.view(wo);
-        let sample = bsdf.sample(&view, load(by_lane!(lane => query[lane].uc)), u).if_useful();
-        let (f, pdf) = (scatter_spectrum(bsdf.f(&view, wi)), bsdf.pdf(&view, wi));
-        let both = bsdf.f_and_pdf(&view, wi);
+        let prepared = bsdf.prepare(wo);
+        let sample = bsdf.sample(&prepared, load(by_lane!(lane => query[lane].uc)), u).if_useful();
+        let (f, pdf) = (scatter_spectrum(bsdf.f(&prepared, wi)), bsdf.pdf(&prepared, wi));
+        let both = bsdf.f_and_pdf(&prepared, wi);
         let both = (scatter_spectrum(both.0), both.1);
         let (sampled_f, sampled_wi) = (scatter_spectrum(sample.f), scatter(sample.wi));
         let mask = |mask: lookfrom_simd::mask32x8<S>, lane: usize| mask.to_bitmask() & 1 << lane != 0;
-        let kind = bsdf.kind();
+        let traits = bsdf.traits();
         std::array::from_fn(|lane| {
             let scalar = mask(sample.is_valid, lane).then(|| BsdfSample {
                 wi: sampled_wi[lane].into(),
@@ -76,7 +76,7 @@ impl<B: RowBsdf> Kernel for Eight<'_, B> {
                     mask(sample.is_transmission, lane),
                 ),
                 eta: sample.eta[lane],
-                pdf_is_proportional: kind.pdf_is_proportional,
+                pdf_is_proportional: traits.pdf_is_proportional,
             });
             let values = Values::new(f[lane], pdf[lane], scalar);
             assert_eq!(both.0[lane].0.map(bits), values.f);
@@ -213,7 +213,7 @@ fn principled(index: u64) -> Bsdf {
             sheen_greatest: greatest(sheen_color),
             sheen_roughness: share(139, index),
             iridescence: if has(140) { share(141, index) } else { 0.0 },
-            film: Film {
+            film: ThinFilm {
                 eta: 1.0 + any(142, index, 3),
                 thickness: any(143, index, 11),
                 wavelengths: is_spectral.then_some(lambda),

@@ -3,7 +3,7 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::view::View;
+use super::prepared::PreparedSurface;
 use crate::shading::bsdf::Lobes;
 
 /// Probabilities of the lobes.
@@ -20,30 +20,30 @@ pub(super) struct Choice<R: Real> {
 
 impl<R: Real> Choice<R> {
     #[inline(always)]
-    pub(super) fn new(view: &View<R>, lobes: Lobes) -> Self {
-        let surface = &view.surface;
-        let (zero, one) = (view.wo.z.like(0.0), view.wo.z.like(1.0));
-        let coat = match &view.coat {
+    pub(super) fn new(prepared: &PreparedSurface<R>, lobes: Lobes) -> Self {
+        let surface = &prepared.surface;
+        let (zero, one) = (prepared.wo.z.like(0.0), prepared.wo.z.like(1.0));
+        let coat = match &prepared.coat {
             Some(coat) => coat.taken,
             None => zero,
         };
-        let (sheen, of_sheen) = match &view.sheen {
-            Some(sheen) => (sheen.taken, sheen.albedo(view.wo.z) * view.weigh(sheen.color)),
+        let (sheen, of_sheen) = match &prepared.sheen {
+            Some(sheen) => (sheen.taken, sheen.albedo(prepared.wo.z) * prepared.weigh(sheen.color)),
             None => (zero, zero),
         };
         let below = (one - coat) * (one - sheen);
-        let facet = surface.facet(Float::min(view.wo.z, one), view.is_inside);
-        let all = view.mirror.all() * below;
+        let facet = surface.facet(Float::min(prepared.wo.z, one), prepared.is_inside);
+        let all = prepared.mirror.all() * below;
         let [mirrored, passed] =
-            lobes.allowed([view.weigh(facet.mirrored) * all, view.weigh(facet.passed) * all]);
-        let through = view.is_inside.like(true);
+            lobes.allowed([prepared.weigh(facet.mirrored) * all, prepared.weigh(facet.passed) * all]);
+        let through = prepared.is_inside.like(true);
         let passes = surface.leaf.gt(zero) | surface.has_glass();
         let mut matte_through = zero;
         if passes.any() {
-            let albedo = view.weigh(view.matte_albedo(through));
+            let albedo = prepared.weigh(prepared.matte_albedo(through));
             matte_through = R::select(passes, albedo * below, zero);
         }
-        let matte = view.weigh(view.matte_albedo(!through)) * below;
+        let matte = prepared.weigh(prepared.matte_albedo(!through)) * below;
         let [matte, matte_through] = lobes.allowed([matte, matte_through]);
         let [sheen, _] = lobes.allowed([of_sheen * (one - coat), zero]);
         let [coat, _] = lobes.allowed([coat, zero]);

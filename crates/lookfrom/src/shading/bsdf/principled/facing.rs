@@ -2,7 +2,7 @@
 
 use lookfrom_simd::{Mask, Real};
 
-use super::view::{View, is_below};
+use super::prepared::{PreparedSurface, is_below};
 use crate::core::vector::Vector;
 use crate::shading::bsdf::across;
 use crate::shading::bsdf::dielectric::refraction_jacobian;
@@ -24,7 +24,7 @@ pub(super) struct Facing<R: Real> {
 /// which then leaves mirrored at the surface. It is `None` where no surface is a rough body.
 pub(super) type Facings<R> = (Facing<R>, Option<Facing<R>>);
 
-impl<R: Real> View<R> {
+impl<R: Real> PreparedSurface<R> {
     /// The facet that reflects `wo` to `wi`, or refracts it there (`through`).
     #[inline(always)]
     fn facet(&self, wi: Vector<R>, through: R::Mask) -> Facing<R> {

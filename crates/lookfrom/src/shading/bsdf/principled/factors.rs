@@ -1,8 +1,8 @@
 //! The factors of a principled BSDF's microfacets, for the inspector, and its diffuse part.
 
 use super::facing::Facing;
+use super::prepared::is_below;
 use super::scattering::LocalScattering;
-use super::view::is_below;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::{MicrofacetFactors, across, is_grazing};
@@ -10,17 +10,17 @@ use crate::shading::bsdf::{MicrofacetFactors, across, is_grazing};
 impl LocalScattering {
     /// As [`crate::shading::bsdf::Bsdf::factors`].
     pub(in crate::shading::bsdf) fn factors(&self, wi: Vector<f32>) -> Vec<MicrofacetFactors> {
-        let view = self.view();
-        let (wo, surface) = (view.wo, &view.surface);
+        let prepared = self.prepared();
+        let (wo, surface) = (prepared.wo, &prepared.surface);
         if is_grazing(wo) || is_grazing(wi) {
             return Vec::new();
         }
-        let mirrored = |w: Vector<f32>| if view.is_inside { across(w) } else { w };
+        let mirrored = |w: Vector<f32>| if prepared.is_inside { across(w) } else { w };
         let wi = mirrored(wi);
         let through = is_below(wi);
-        let (below_coat, below_sheen) = view.below(wi);
+        let (below_coat, below_sheen) = prepared.below(wi);
         let is_rough_body = surface.is_rough_body();
-        let (first, back) = view.facets(wi);
+        let (first, back) = prepared.facets(wi);
         let of_facet = |facing: &Facing<f32>, to: Vector<f32>| MicrofacetFactors {
             boundary: "specular",
             refracts: false,
@@ -42,7 +42,7 @@ impl LocalScattering {
             // A thin sheet transmits what a reflector would reflect, to the other side.
             let up = Vector { z: wi.z.abs(), ..wi };
             let glass = if is_rough_body { 0.0 } else { surface.glass };
-            let facet = surface.facet_with(glass, first.cos, view.is_inside);
+            let facet = surface.facet_with(glass, first.cos, prepared.is_inside);
             all.push(MicrofacetFactors {
                 g: Some(surface.roughness.g(wo, up)),
                 fresnel: facet.mirrored,
@@ -57,20 +57,20 @@ impl LocalScattering {
                 if !facing.exists {
                     continue;
                 }
-                let pane = surface.pane(facing.cos, view.is_inside);
+                let pane = surface.pane(facing.cos, prepared.is_inside);
                 let plain = of_facet(&facing, to);
                 all.push(MicrofacetFactors {
                     boundary: "glass",
                     refracts: through,
                     fresnel: pane.mirrored,
                     part: if through { pane.passed * surface.base } else { pane.mirrored },
-                    eta: if through { view.relative_eta() } else { 1.0 },
+                    eta: if through { prepared.relative_eta() } else { 1.0 },
                     weight: plain.weight * surface.glass,
                     ..plain
                 });
             }
         }
-        if let Some(coat) = view.coat.as_ref().filter(|_| !through)
+        if let Some(coat) = prepared.coat.as_ref().filter(|_| !through)
             && let Some(factors) = coat.factors(wi)
         {
             all.push(MicrofacetFactors { wm: mirrored(factors.wm.into()).into(), ..factors });

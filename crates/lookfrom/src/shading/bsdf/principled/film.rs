@@ -16,7 +16,7 @@ use crate::core::spectrum::Spectrum;
 
 /// A film over a surface, air above it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Film<R = f32> {
+pub struct ThinFilm<R = f32> {
     /// Index of refraction, at least 1.
     pub eta: R,
     /// Thickness in nm.
@@ -91,7 +91,7 @@ impl<R: Real> Inside<R> {
     }
 }
 
-impl<R: Real> Film<R> {
+impl<R: Real> ThinFilm<R> {
     /// The reflectance at a cosine, for a surface that has the reflectance `f0` at normal incidence
     /// without the film; always within 0 … 1. Not inlined, since it is needed in many places.
     #[inline(never)]

@@ -3,7 +3,7 @@
 use lookfrom_simd::{Simd, f32x8, prelude::*};
 
 use super::Principled;
-use super::film::Film;
+use super::film::ThinFilm;
 use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -49,10 +49,10 @@ impl<S: Simd> Principled<f32x8<S>> {
 }
 
 #[inline(always)]
-fn gather_films<S: Simd>(simd: S, films: &[Film; LANES]) -> Film<f32x8<S>> {
+fn gather_films<S: Simd>(simd: S, films: &[ThinFilm; LANES]) -> ThinFilm<f32x8<S>> {
     let lambda = by_lane!(lane => Spectrum(films[lane].wavelengths.unwrap_or_default()));
     let wavelengths = gather_spectrum(simd, &lambda);
-    Film {
+    ThinFilm {
         eta: f32x8::load_array(simd, by_lane!(lane => films[lane].eta)),
         thickness: f32x8::load_array(simd, by_lane!(lane => films[lane].thickness)),
         wavelengths: (!wavelengths.is_black()).any_true().then_some(wavelengths.0),

@@ -5,9 +5,9 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::Principled;
 use super::choice::Choice;
 use super::facing::{Facing, Facings};
+use super::prepared::{PreparedSurface, is_below};
 use super::sheen;
 use super::surface::Facet;
-use super::view::{View, is_below};
 use crate::core::optics;
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::spectrum::Spectrum;
@@ -21,7 +21,7 @@ use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
 ///
 /// Methods that are needed twice, or are long, are not inlined: compilers would take minutes.
 pub struct LocalScattering<R: Real = f32> {
-    view: View<R>,
+    prepared: PreparedSurface<R>,
     choice: Choice<R>,
     lobes: Lobes,
     /// False for a grazing ω_o.
@@ -34,8 +34,8 @@ impl<R: Real> LocalScattering<R> {
         wo.z.at_level(
             #[inline(always)]
             || {
-                let view = View::new(look, wo);
-                Self { choice: Choice::new(&view, lobes), view, lobes, is_usable: !is_grazing(wo) }
+                let prepared = PreparedSurface::new(look, wo);
+                Self { choice: Choice::new(&prepared, lobes), prepared, lobes, is_usable: !is_grazing(wo) }
             },
         )
     }
@@ -43,7 +43,7 @@ impl<R: Real> LocalScattering<R> {
     /// The direction in the frame where `wo` is above, or from there.
     #[inline(always)]
     fn towards(&self, w: Vector<R>) -> Vector<R> {
-        Vector::select(self.view.is_inside, across(w), w)
+        Vector::select(self.prepared.is_inside, across(w), w)
     }
 
     /// As [`crate::shading::bsdf::Bsdf::f`].
@@ -54,7 +54,7 @@ impl<R: Real> LocalScattering<R> {
             || {
                 let is_usable = self.is_usable & !is_grazing(wi);
                 let wi = self.towards(wi);
-                let f = self.f_by(wi, mode, &self.view.facets(wi));
+                let f = self.f_by(wi, mode, &self.prepared.facets(wi));
                 Spectrum::select(is_usable, f, Spectrum::splat(wi.z.like(0.0)))
             },
         )
@@ -68,7 +68,7 @@ impl<R: Real> LocalScattering<R> {
             || {
                 let is_usable = self.is_usable & !is_grazing(wi);
                 let wi = self.towards(wi);
-                R::select(is_usable, self.pdf_by(wi, &self.view.facets(wi)), wi.z.like(0.0))
+                R::select(is_usable, self.pdf_by(wi, &self.prepared.facets(wi)), wi.z.like(0.0))
             },
         )
     }
@@ -88,7 +88,7 @@ impl<R: Real> LocalScattering<R> {
         wi.z.at_level(
             #[inline(always)]
             || {
-                let facets = self.view.facets(wi);
+                let facets = self.prepared.facets(wi);
                 let f = self.f_by(wi, mode, &facets);
                 let (zero, is_black) = (wi.z.like(0.0), f.is_black());
                 if is_black.all() {
@@ -106,7 +106,7 @@ impl<R: Real> LocalScattering<R> {
             #[inline(always)]
             || {
                 let is_usable = self.is_usable & !is_grazing(wi);
-                let f = self.view.diffuse_f(self.towards(wi));
+                let f = self.prepared.diffuse_f(self.towards(wi));
                 Spectrum::select(is_usable, f, Spectrum::splat(wi.z.like(0.0)))
             },
         )
@@ -116,7 +116,7 @@ impl<R: Real> LocalScattering<R> {
     fn f_by(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
         wi.z.at_level(
             #[inline(always)]
-            || self.view.f_by(wi, mode, facets),
+            || self.prepared.f_by(wi, mode, facets),
         )
     }
 
@@ -133,7 +133,7 @@ impl<R: Real> LocalScattering<R> {
                 if let Some(back) = &facets.1 {
                     self.add_facet(&mut pdf, through, back);
                 }
-                if let Some(coat) = &self.view.coat {
+                if let Some(coat) = &self.prepared.coat {
                     pdf = pdf + R::select(through, zero, choice.coat * coat.pdf(wi));
                 }
                 let pdf = pdf + R::select(through, zero, choice.sheen * sheen::PDF);
@@ -159,7 +159,7 @@ impl<R: Real> LocalScattering<R> {
     /// reflectance there, unless transmission is specular.
     #[inline(always)]
     fn mirrors_at(&self, cos: R) -> (R, R::Mask) {
-        let View { surface, wo, is_inside, .. } = &self.view;
+        let PreparedSurface { surface, wo, is_inside, .. } = &self.prepared;
         let (zero, one) = (cos.like(0.0), cos.like(1.0));
         let has_glass = surface.has_glass();
         let may_reflect = has_glass.like(self.lobes.is_reflection());
@@ -168,7 +168,7 @@ impl<R: Real> LocalScattering<R> {
         }
         let cos = R::select(surface.passes_sharply(), Float::min(wo.z, one), cos);
         let Facet { mirrored, passed } = surface.facet(cos, *is_inside);
-        let [r, t] = self.lobes.allowed([self.view.weigh(mirrored), self.view.weigh(passed)]);
+        let [r, t] = self.lobes.allowed([self.prepared.weigh(mirrored), self.prepared.weigh(passed)]);
         let mirrors = R::select(has_glass, r / (r + t), one);
         (mirrors, has_glass.choose((r + t).gt(zero), may_reflect))
     }
@@ -205,7 +205,7 @@ impl<R: Real> LocalScattering<R> {
             eta: one,
             is_specular: no,
             // What is scattered between facets is no body's.
-            is_diffuse: (is_diffuse & self.view.surface.has_matte()) | is_sheen,
+            is_diffuse: (is_diffuse & self.prepared.surface.has_matte()) | is_sheen,
             is_transmission: no,
             is_valid: choice.exists & self.is_usable,
         };
@@ -223,7 +223,7 @@ impl<R: Real> LocalScattering<R> {
         let is_spread = sample.is_valid & !sample.is_specular;
         if is_spread.any() {
             let (f, pdf) = self.both(sample.wi, mode);
-            let eta = R::select(is_facet & sample.is_transmission, self.view.relative_eta(), one);
+            let eta = R::select(is_facet & sample.is_transmission, self.prepared.relative_eta(), one);
             sample.f = Spectrum::select(sample.is_specular, sample.f, f);
             sample.pdf = R::select(sample.is_specular, sample.pdf, pdf);
             sample.eta = R::select(sample.is_specular, sample.eta, eta);
@@ -235,7 +235,7 @@ impl<R: Real> LocalScattering<R> {
     #[inline(always)]
     fn sample_coat(&self, sample: &mut DirectionSample<R>, u: [R; 2], is_coat: R::Mask) {
         // There is a coat where its probability is not 0.
-        let Some(coat) = &self.view.coat else { return };
+        let Some(coat) = &self.prepared.coat else { return };
         let (wi, is_above) = coat.sample(u);
         let is_sharp = is_coat & coat.is_sharp();
         sample.wi = Vector::select(is_coat, wi, sample.wi);
@@ -247,7 +247,7 @@ impl<R: Real> LocalScattering<R> {
 
     #[inline(always)]
     fn sample_facet(&self, sample: &mut DirectionSample<R>, u: [R; 2], uc: R, is_facet: R::Mask, mode: Mode) {
-        let View { surface, wo, .. } = &self.view;
+        let PreparedSurface { surface, wo, .. } = &self.prepared;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         let probability = self.choice.facet;
         let is_smooth = surface.is_smooth();
@@ -276,12 +276,12 @@ impl<R: Real> LocalScattering<R> {
     /// The direction into which a facet scatters `wo`, and whether it is on the intended side.
     #[inline(always)]
     fn off_facet(&self, wm: Vector<R>, reflects: R::Mask) -> (Vector<R>, R::Mask) {
-        let (wo, surface) = (self.view.wo, &self.view.surface);
+        let (wo, surface) = (self.prepared.wo, &self.prepared.surface);
         let zero = wo.z.like(0.0);
         let mirrored = optics::reflect(wo, wm);
         let (mut wi, mut exists) = (mirrored, reflects.like(true));
         if !reflects.all() {
-            let eta = self.view.relative_eta();
+            let eta = self.prepared.relative_eta();
             let (refracted, is_refracted) = optics::refract(wo, wm, eta);
             let is_straight = surface.passes_sharply() & Float::eq(eta, eta.like(1.0));
             let passed = Vector::select(surface.is_solid, refracted, across(mirrored));
@@ -298,20 +298,20 @@ impl<R: Real> LocalScattering<R> {
     /// The value of specular reflection or transmission to `wi`, and the relative index.
     #[inline(always)]
     fn sharp(&self, wi: Vector<R>, mode: Mode) -> (Spectrum<R>, R) {
-        let View { surface, wo, is_inside, .. } = &self.view;
+        let PreparedSurface { surface, wo, is_inside, .. } = &self.prepared;
         let one = wi.z.like(1.0);
         let through = is_below(wi);
         let facet = surface.facet(Float::min(wo.z, one), *is_inside);
-        let (coat, sheen) = self.view.below(wi);
+        let (coat, sheen) = self.prepared.below(wi);
         let part = Spectrum::select(through, facet.passed, facet.mirrored);
-        let eta = R::select(through, self.view.relative_eta(), one);
+        let eta = R::select(through, self.prepared.relative_eta(), one);
         (part * radiance_scale(coat * sheen / Float::abs(wi.z), eta, mode), eta)
     }
 }
 
 impl LocalScattering {
     /// The part that depends on ω_o alone.
-    pub(super) fn view(&self) -> &View<f32> {
-        &self.view
+    pub(super) fn prepared(&self) -> &PreparedSurface<f32> {
+        &self.prepared
     }
 }

@@ -3,7 +3,7 @@
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::Principled;
-use super::film::Film;
+use super::film::ThinFilm;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -34,7 +34,7 @@ pub(super) struct Surface<R: Real> {
     pub(super) eta: R,
     pub(super) is_solid: R::Mask,
     /// Its weight and itself; `None` where no surface has one.
-    film: Option<(R, Film<R>)>,
+    film: Option<(R, ThinFilm<R>)>,
     /// The dielectric's mean reflectance with the film.
     filmed: Spectrum<R>,
     /// The mean albedo of the specular layer, and the mean fraction that it leaves for the body below.

@@ -21,7 +21,7 @@ fn of(parameters: Principled) -> Bsdf {
 pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
     let base = Principled { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Principled::default() };
     let glass = Principled { transmission: 1.0, roughness: rough(0.3), ..base };
-    let film = Film { eta: 1.8, thickness: 500.0, wavelengths: None };
+    let film = ThinFilm { eta: 1.8, thickness: 500.0, wavelengths: None };
     let sheen = Principled {
         sheen_color: Spectrum([0.9, 0.4, 0.2, 0.1]),
         sheen_greatest: 0.9,
@@ -186,7 +186,7 @@ fn nothing_gives_more_than_it_gets() {
             sheen_greatest: if any(17) < 0.5 { 0.999 } else { 1.0 },
             sheen_roughness: any(18),
             iridescence: often(19),
-            film: Film { eta: 1.0 + any(60), thickness: 1000.0 * any(61), wavelengths: None },
+            film: ThinFilm { eta: 1.0 + any(60), thickness: 1000.0 * any(61), wavelengths: None },
             ..Principled::default()
         };
         let bare = Principled { sheen_color: Spectrum::BLACK, sheen_greatest: 0.0, ..parameters };
@@ -325,7 +325,7 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
                     re * re + im * im
                 };
                 let lambda = [450.0, 520.0, 600.0, 680.0];
-                let film = Film { eta, thickness, wavelengths: Some(lambda) };
+                let film = ThinFilm { eta, thickness, wavelengths: Some(lambda) };
                 let got = film.fresnel(cos, grey(f0));
                 for (got, nm) in got.0.into_iter().zip(lambda) {
                     let expected = airy(f64::from(nm));
@@ -335,7 +335,7 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
                     );
                 }
                 // In RGB mode: the integral, of an equal-energy illuminant white-balanced.
-                let seen = Film { wavelengths: None, ..film }.fresnel(cos, grey(f0)).rgb();
+                let seen = ThinFilm { wavelengths: None, ..film }.fresnel(cos, grey(f0)).rgb();
                 let expected = DenselySampledSpectrum::from_samples(std::array::from_fn(|k| {
                     airy(360.0 + k as f64) as f32
                 }))
@@ -357,7 +357,7 @@ fn invalid_parameters_do_no_harm() {
     let kept = Principled::default().clamped();
     assert_eq!(kept.base_color, grey(1.0));
     assert!((kept.f0.0[0] - fresnel::dielectric(1.0, 1.5)).abs() < 1e-5);
-    let film = Film { eta: 1.3, thickness: 400.0, wavelengths: Some([400.0, 500.5, 600.0, 780.25]) };
+    let film = ThinFilm { eta: 1.3, thickness: 400.0, wavelengths: Some([400.0, 500.5, 600.0, 780.25]) };
     assert_eq!(Principled { film, ..Principled::default() }.clamped().film, film);
     let nonsense =
         Principled { metallic: f32::NAN, eta: f32::NAN, base_color: grey(f32::NAN), ..Principled::default() };

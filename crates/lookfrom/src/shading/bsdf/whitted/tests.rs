@@ -5,7 +5,7 @@ use crate::shading::bsdf::tests::{direction, number, numbers, uniform_direction}
 use crate::shading::bsdf::{Bsdf, Mode};
 use crate::shading::material::Coefficients;
 
-fn pair(trial: u64) -> (Whitted, Coefficients) {
+fn pair(trial: u64) -> (WhittedBsdf, Coefficients) {
     let spectrum = |k: u64| Spectrum(std::array::from_fn(|lane| number(80 + k, trial * 4 + lane as u64)));
     let black_or = |k: u64| if number(90 + k, trial) < 0.3 { Spectrum::BLACK } else { spectrum(k) };
     let coefficients = Coefficients {
@@ -19,7 +19,7 @@ fn pair(trial: u64) -> (Whitted, Coefficients) {
         fresnel: trial.is_multiple_of(2),
     };
     let Coefficients { diffuse, specular, shininess, mirror, transmission, ior, fresnel, .. } = coefficients;
-    (Whitted { diffuse, specular, shininess, mirror, transmission, ior, fresnel }, coefficients)
+    (WhittedBsdf { diffuse, specular, shininess, mirror, transmission, ior, fresnel }, coefficients)
 }
 
 fn close(a: Spectrum, b: Spectrum) -> bool {
@@ -89,7 +89,7 @@ fn branches_as_the_tree_of_rays_does() {
 #[test]
 fn ways_on_are_chosen_as_often_as_they_say() {
     let (whitted, _) = pair(0);
-    let whitted = Whitted {
+    let whitted = WhittedBsdf {
         diffuse: Spectrum([0.3; 4]),
         specular: Spectrum([0.5; 4]),
         shininess: 50.0,

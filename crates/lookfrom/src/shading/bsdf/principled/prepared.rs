@@ -17,7 +17,7 @@ use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::{Mode, across};
 
 /// A surface with the terms that depend on `wo` alone.
-pub(super) struct View<R: Real> {
+pub(super) struct PreparedSurface<R: Real> {
     pub(super) wo: Vector<R>,
     pub(super) is_inside: R::Mask,
     pub(super) surface: Surface<R>,
@@ -44,7 +44,7 @@ pub(super) fn is_below<R: Real>(wi: Vector<R>) -> R::Mask {
     wi.z.lt(wi.z.like(0.0))
 }
 
-impl<R: Real> View<R> {
+impl<R: Real> PreparedSurface<R> {
     #[inline(always)]
     pub(super) fn new(look: &Principled<R>, from: Vector<R>) -> Self {
         let is_inside = is_below(from);
@@ -54,7 +54,7 @@ impl<R: Real> View<R> {
         let mirror = surface.mirror(wo);
         let black = Spectrum::splat(cos.like(0.0));
         let left = if surface.has_matte().any() { surface.left(cos, mirror) } else { black };
-        let mut view = Self {
+        let mut prepared = Self {
             wo,
             is_inside,
             mirror,
@@ -65,8 +65,8 @@ impl<R: Real> View<R> {
             lane_weights: look.lane_weights,
             surface,
         };
-        view.again = view.again();
-        view
+        prepared.again = prepared.again();
+        prepared
     }
 
     /// The weight of a coloured lobe in the choice among lobes.
