@@ -50,10 +50,12 @@ pub use crate::light::derivation::Derivation;
 
 /// Traces one sample and reports all steps of its computation.
 pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
-    trace(renderer, id, true)
+    let mut inspection = trace(renderer, id, true);
+    inspection.segments = segments::segments(&inspection);
+    inspection
 }
 
-/// The same without the tests of primitives, which take most of the time.
+/// The same without segments to draw, and without the tests of primitives, which take most of the time.
 fn inspect_without_tests(renderer: &Renderer, id: SampleId) -> Inspection {
     trace(renderer, id, false)
 }
@@ -96,7 +98,6 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         adds_up: film.map(f32::to_bits) == traced.rgb.map(f32::to_bits),
     };
     inspection.color8 = pixel::color8(&renderer.view().image, &inspection);
-    inspection.segments = segments::segments(&inspection);
     inspection.contributions = expression::largest(&inspection);
     inspection
 }

@@ -131,7 +131,7 @@ pub struct Path<S = ()> {
     pub blurred: bool,
     /// State in the automaton of the picture's light-path expressions.
     pub light_path: LightPathState,
-    /// What the integrator keeps of it.
+    /// State of the integrator's own.
     pub state: S,
 }
 

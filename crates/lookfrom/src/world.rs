@@ -242,24 +242,14 @@ impl World {
     #[inline]
     pub(crate) fn texture_point_on_mesh<'a>(
         &self,
-        mesh: &'a Mesh,
+        mesh: &Mesh,
         hit: &Hit,
         (position, n): ([f64; 3], Vec3),
         uv: [f32; 2],
     ) -> TexturePoint<'a> {
-        let Hit { primitive, u, v, .. } = *hit;
-        let point = TexturePoint {
-            uv: uv.into(),
-            world: self.origin + DVec3::from_array(position),
-            color: mesh.color(primitive as usize, u, v),
-            n,
-            ..TexturePoint::NOWHERE
-        };
-        if !mesh.has_vertex_data() {
-            return point;
-        }
-        let VertexData { more_uvs, opacity } = mesh.vertex_data(primitive as usize, u, v);
-        TexturePoint { more_uvs, opacity, ..point }
+        let world = self.origin + DVec3::from_array(position);
+        let point = TexturePoint { uv: uv.into(), world, n, ..TexturePoint::NOWHERE };
+        mesh.completed(point, hit.primitive as usize, hit.u, hit.v)
     }
 
     /// The alpha test: whether the surface exists where a ray hit it. Stochastic for alpha between 0 and 1, by `u ∈ [0,

@@ -8,7 +8,7 @@ use lookfrom_bvh::Point;
 use super::triangle::{Tangent, TrianglePoints, Triangles};
 use super::{MaterialBinding, SurfacePoint};
 use crate::core::vector::Vector;
-use crate::shading::texture::MORE_UV_SETS;
+use crate::shading::texture::{MORE_UV_SETS, TexturePoint};
 
 /// Triangles of one shape.
 #[derive(Clone, Debug)]
@@ -98,6 +98,23 @@ impl Mesh {
         let weights = [1.0 - u - v, u, v];
         let vertices = self.triangles[index].map(|vertex| vertex as usize);
         std::array::from_fn(|c| (0..3).map(|k| weights[k] * self.colors[vertices[k]][c]).sum())
+    }
+
+    /// A texture point at such a point, completed by the mesh's own colour and vertex data there.
+    #[inline]
+    pub(crate) fn completed<'a>(
+        &self,
+        at: TexturePoint<'a>,
+        index: usize,
+        u: f32,
+        v: f32,
+    ) -> TexturePoint<'a> {
+        let at = TexturePoint { color: self.color(index, u, v), ..at };
+        if !self.has_vertex_data() {
+            return at;
+        }
+        let VertexData { more_uvs, opacity } = self.vertex_data(index, u, v);
+        TexturePoint { more_uvs, opacity, ..at }
     }
 
     /// The area of a triangle.

@@ -18,10 +18,10 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
     pub(in crate::integrator) boundary: Boundary<'a>,
 }
 
-/// What a ray that leaves through a surface gets into.
+/// The media on the other side of a surface.
 #[derive(Clone, Copy)]
 pub(in crate::integrator) enum Boundary<'a> {
-    /// What the surface separates.
+    /// Those that the surface separates.
     Surface(&'a SurfaceInteraction),
     /// A bare surface: the body of its material, if it is one, or out of it where the path has met it from inside.
     Bare {
@@ -30,7 +30,7 @@ pub(in crate::integrator) enum Boundary<'a> {
         /// Whether the path has met the outside.
         front: bool,
     },
-    /// What the path was in.
+    /// The same as on this side.
     None,
 }
 
@@ -41,12 +41,12 @@ impl<S> Departure<'_, S> {
         matches!(self.boundary, Boundary::Surface(surface) if surface.crosses(wi))
     }
 
-    /// The direction back along the path, where the surface is at hand.
+    /// The media around a ray that leaves to the side from which the path has come.
     #[inline(always)]
-    pub(in crate::integrator) fn wo(&self) -> Vec3 {
+    pub(in crate::integrator) fn interior_beside(&self, world: &World) -> InteriorStack {
         match self.boundary {
-            Boundary::Surface(surface) => surface.wo,
-            _ => Vec3::ZERO,
+            Boundary::Surface(surface) => self.interior(world, surface.wo, false),
+            Boundary::Bare { .. } | Boundary::None => self.path.interior,
         }
     }
 

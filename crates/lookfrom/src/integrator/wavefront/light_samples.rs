@@ -143,21 +143,6 @@ impl LightSamples {
         (self.is_valid, self.is_delta, self.at_point, self.on_surface) = (0, 0, 0, 0);
     }
 
-    /// Samples the light that all lanes have chosen ([`LightSamples::choose_all`]).
-    #[inline(always)]
-    pub(in crate::integrator) fn sample_chosen<S: Simd>(
-        &mut self,
-        simd: S,
-        world: &World,
-        at: &Receivers<'_, f32x8<S>>,
-        u: [f32x8<S>; 2],
-    ) {
-        self.clear();
-        if !self.sample_delta(simd, world, at) {
-            self.sample(simd, world, at, u, (1 << LANES) - 1);
-        }
-    }
-
     /// Samples the chosen lights in the lanes of a mask. Not inlined, since all classes of BSDFs need it.
     #[inline(never)]
     pub(in crate::integrator) fn sample<S: Simd>(

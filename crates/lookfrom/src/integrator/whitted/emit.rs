@@ -1,4 +1,4 @@
-//! What follows from shaded hits, path by path: events, light, shadow rays and the branches of the tree.
+//! Events, light, shadow rays and branches of the tree from shaded hits, path by path (Whitted 1980).
 
 use lookfrom_bvh::Hit;
 
@@ -77,7 +77,7 @@ impl Shaded {
         output: &mut StepOutput<'_, P>,
     ) {
         let departure = &path_hit.departure;
-        let interior = departure.interior(world, departure.wo(), false);
+        let interior = departure.interior_beside(world);
         for from in self.lights[..self.light_count].iter().filter(|from| from.lit & 1 << lane != 0) {
             let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
             let light = (from.light, from.contribution[lane]);
@@ -101,14 +101,18 @@ impl Shaded {
         }
         let (ray, beta) = (rays.rays[lane], rays.beta[lane]);
         if tree.cut(path, beta).is_none() {
-            let wi = if crosses { ray.direction.into() } else { path_hit.departure.wo() };
+            let departure = &path_hit.departure;
+            let interior = match branch {
+                Branch::Refracted => departure.interior(world, ray.direction.into(), true),
+                Branch::Mirrored => departure.interior_beside(world),
+            };
             let light_path = output.scattered(path, [true, false, crosses]);
             output.paths.push(Path {
                 ray,
                 beta,
                 depth: path.depth + 1,
                 address: path.address << 1 | u64::from(crosses),
-                interior: path_hit.departure.interior(world, wi, crosses),
+                interior,
                 light_path,
                 ..*path
             });

@@ -22,7 +22,7 @@ pub(in crate::integrator) struct Shaded {
     pub(super) branches: [BranchRays; 2],
     /// Bit i for lane i: whether the ray hit the outside.
     pub(super) front: u32,
-    /// What a probe is told.
+    /// Events for a probe.
     pub(super) told: Option<Told>,
 }
 

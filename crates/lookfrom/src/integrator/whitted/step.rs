@@ -263,7 +263,7 @@ impl Kernel for BareKernel<'_> {
                 SampleStreams::new(simd, &by_lane!(lane => &alone[lane])).two_with_pixel(light)
             },
             #[inline(always)]
-            |samples, at, u| samples.sample_chosen(simd, world, at, u),
+            |samples, at, u| samples.sample(simd, world, at, u, (1 << LANES) - 1),
             shaded,
         );
     }

@@ -20,7 +20,7 @@ use crate::core::parallel;
 use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::light::toward;
-use crate::primitive::{Mesh, VertexData};
+use crate::primitive::Mesh;
 use crate::shading::texture::TexturePoint;
 
 /// Triangles of a smaller approximate solid angle are sampled by area: distances and angles vary little over them, and
@@ -171,7 +171,7 @@ impl MeshLight {
         index: u32,
         place: Vec2,
     ) -> TexturePoint<'a> {
-        with_vertices(&self.mesh, at, index as usize, place)
+        self.mesh.completed(at, index as usize, place.x, place.y)
     }
 
     /// The shading normal at a point of a triangle.
@@ -284,14 +284,8 @@ fn brightness(
 ) -> f64 {
     let uvs = mesh.corner_uvs(index);
     let uv = (1.0 - place.x - place.y) * uvs[0] + place.x * uvs[1] + place.y * uvs[2];
-    let at = with_vertices(mesh, TexturePoint { uv, ..TexturePoint::NOWHERE }, index, place);
+    let at = mesh.completed(TexturePoint { uv, ..TexturePoint::NOWHERE }, index, place.x, place.y);
     f64::from(emission_spectrum(&at).max(0.0))
-}
-
-fn with_vertices<'a>(mesh: &Mesh, at: TexturePoint<'a>, index: usize, place: Vec2) -> TexturePoint<'a> {
-    let color = mesh.color(index, place.x, place.y);
-    let VertexData { more_uvs, opacity } = mesh.vertex_data(index, place.x, place.y);
-    TexturePoint { color, more_uvs, opacity, ..at }
 }
 
 impl Triangle {
