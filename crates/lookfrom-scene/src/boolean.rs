@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use manifold_rust::manifold::Manifold;
-use manifold_rust::types::{Error as Status, MeshGLP, OpType, WindingRule};
+use manifold_rust::types::{BooleanEngine, Error as Status, MeshGLP, OpType, WindingRule};
 
 use crate::budget::Reservation;
 use crate::error::Result;
@@ -112,13 +112,23 @@ impl Solid {
             let pair = |pair: &[Self]| match pair {
                 [a, b] => {
                     let _memory = reserve((a.0.num_tri() + b.0.num_tri()) as u64)?;
-                    Ok(Self(a.0.boolean(&b.0, operation)))
+                    Ok(a.combined_with(b, operation))
                 }
                 _ => Ok(pair[0].clone()),
             };
             solids = solids.chunks(2).map(pair).collect::<Result<_>>()?;
         }
         Ok(solids.pop().unwrap_or_else(|| Self(Manifold::empty())))
+    }
+
+    /// The boolean of two solids. Where sides of both are flush, the fast one may leave what is in both twice, with triangles that are
+    /// the same (and of which a scene would keep one): then it is made anew with rational numbers.
+    fn combined_with(&self, other: &Self, operation: OpType) -> Self {
+        let fast = self.0.boolean(&other.0, operation);
+        if has_equal_triangles(&fast) {
+            return Self(self.0.boolean_with_engine(&other.0, operation, BooleanEngine::Robust));
+        }
+        Self(fast)
     }
 
     /// The remaining parts of the surfaces, each with its number, facing outward. Attributes that a surface did not have are empty.
@@ -132,6 +142,25 @@ impl Solid {
         });
         surfaces.filter(|(_, mesh)| !mesh.triangles.is_empty()).collect()
     }
+}
+
+/// True if two triangles have the same corners, as `f32`, in the same order.
+fn has_equal_triangles(solid: &Manifold) -> bool {
+    let solid = solid.as_impl();
+    let mut triangles: Vec<[[u32; 3]; 3]> = (0..solid.num_tri())
+        .map(|triangle| {
+            let mut corners = [0, 1, 2].map(|corner| {
+                let vertex = solid.halfedge[3 * triangle + corner].start_vert;
+                let place = solid.vert_pos[vertex as usize];
+                position(&[place.x, place.y, place.z]).to_array().map(f32::to_bits)
+            });
+            let first = (0..3).min_by_key(|&corner| corners[corner]).unwrap_or(0);
+            corners.rotate_left(first);
+            corners
+        })
+        .collect();
+    triangles.sort_unstable();
+    triangles.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 /// The vertices that some triangles use, and these triangles.
