@@ -122,7 +122,7 @@ impl Solid {
     }
 
     /// The boolean of two solids. Where sides of both are flush, the fast one may leave what is in both twice, with triangles that are
-    /// the same (and of which a scene would keep one): then it is made anew with rational numbers.
+    /// the same: then it is made anew with rational numbers.
     fn combined_with(&self, other: &Self, operation: OpType) -> Self {
         let fast = self.0.boolean(&other.0, operation);
         if has_equal_triangles(&fast) {

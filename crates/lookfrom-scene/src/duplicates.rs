@@ -1,6 +1,9 @@
 //! Exact duplicates: triangles of a mesh, spheres of a cloud and instances that are the same in every number. A ray tests all that lie in
 //! one place, and sees one of them: a file of a million points at the origin would take a million tests a ray.
 //!
+//! Surfaces of solids stay as they are: where one touches itself, rounding can make two of its triangles the same, and it is closed
+//! by both.
+//!
 //! Triangles are the same whichever corner comes first, but not the other way round. Few duplicates among many cost little: a sample
 //! tells whether to search for them.
 
@@ -17,7 +20,7 @@ const SAMPLES: usize = 4096;
 
 /// Keeps the first of equal elements in each mesh and cloud, and among the instances, with a note.
 pub(crate) fn remove(scene: &mut Scene, file: &Location, context: &mut LoadContext<'_>) {
-    let triangles = scene.meshes.iter_mut().map(of_mesh).sum();
+    let triangles = scene.meshes.iter_mut().filter(|mesh| !mesh.is_of_solid).map(of_mesh).sum();
     let in_objects = scene.objects.iter_mut().flat_map(|object| &mut object.shapes);
     let spheres = scene.shapes.iter_mut().chain(in_objects).map(of_cloud).sum();
     let instances = of_instances(&mut scene.instances);

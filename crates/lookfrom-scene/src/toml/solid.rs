@@ -63,7 +63,8 @@ impl Reader<'_, '_> {
         let mut parts = Vec::new();
         for (number, surface) in surfaces {
             let mut part = build.parts[number as usize].clone();
-            part.geometry = self.mesh(table, Mesh { name: SOLID.to_owned(), ..surface })?;
+            part.geometry =
+                self.mesh(table, Mesh { name: SOLID.to_owned(), is_of_solid: true, ..surface })?;
             part.world_from_object = DMat4::IDENTITY;
             parts.push(part);
         }
