@@ -1,0 +1,5 @@
+"""Rays against meshes: exact, watertight, on all cores."""
+
+from ._lookfrom import Error
+
+__all__ = ["Error"]

@@ -1,0 +1,3 @@
+"""The compiled module. Its users are the other modules of this package, which check what they pass."""
+
+class Error(ValueError): ...
