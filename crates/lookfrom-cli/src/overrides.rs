@@ -1,9 +1,23 @@
 //! From command-line arguments to the options of a session.
 
+use lookfrom::render::StopCriteria;
 use lookfrom::session::Options;
 use lookfrom_scene::image::Image;
 
-use crate::args::{Common, Overrides};
+use crate::args::{Common, Overrides, RenderArguments};
+
+impl RenderArguments {
+    /// The session options of a render, with the environment map of `--environment`.
+    pub(crate) fn options(&self, environment: Option<&Image>) -> Options {
+        Options {
+            stop: StopCriteria { time: self.time, noise: self.noise },
+            fireflies: self.fireflies,
+            film: self.keep.film,
+            part: self.keep.part,
+            ..self.overrides.options(&self.common, environment)
+        }
+    }
+}
 
 impl Overrides {
     /// The session options, with the environment map of `--environment`.

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom::render::StopCriteria;
 use lookfrom::session::{Exposure, Format, Options, Series, Session, Sheet};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::image::{Animation, Image};
@@ -374,12 +373,5 @@ fn keep_inputs(path: &Path, targets: &[Target], inputs: &Inputs) -> Result<(), F
 
 /// The options of a session for one target.
 pub(crate) fn options(arguments: &RenderArguments, target: &Target, environment: Option<&Image>) -> Options {
-    Options {
-        stop: StopCriteria { time: arguments.time, noise: arguments.noise },
-        fireflies: arguments.fireflies,
-        format: Some(target.format()),
-        film: arguments.keep.film,
-        part: arguments.keep.part,
-        ..arguments.overrides.options(&arguments.common, environment)
-    }
+    Options { format: Some(target.format()), ..arguments.options(environment) }
 }

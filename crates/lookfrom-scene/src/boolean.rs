@@ -4,6 +4,8 @@
 //! solids meshes again. A triangle of a result is a piece of a triangle of an operand and has its normals, texture coordinates
 //! and colours, interpolated.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGLP, OpType, WindingRule};
@@ -75,8 +77,8 @@ impl Solid {
             Status::NoError if !(may_cross && manifold.has_self_intersections()) => Ok(Self(manifold)),
             Status::NoError if manifold.num_tri() > MOST_CROSSING => Err(Flaw::Crossing),
             Status::NoError => {
-                let united = manifold.rebuild_solid(WindingRule::Positive);
-                if united.is_empty() { Err(Flaw::Crossing) } else { Ok(Self(united)) }
+                let united = exactly(|| manifold.rebuild_solid(WindingRule::Positive));
+                united.filter(|united| !united.is_empty()).map(Self).ok_or(Flaw::Crossing)
             }
             Status::NonFiniteVertex => Err(Flaw::Far),
             _ => Err(Flaw::Open),
@@ -125,10 +127,9 @@ impl Solid {
     /// the same: then it is made anew with rational numbers.
     fn combined_with(&self, other: &Self, operation: OpType) -> Self {
         let fast = self.0.boolean(&other.0, operation);
-        if has_equal_triangles(&fast) {
-            return Self(self.0.boolean_with_engine(&other.0, operation, BooleanEngine::Robust));
-        }
-        Self(fast)
+        let is_right = !has_equal_triangles(&fast);
+        let exact = || exactly(|| self.0.boolean_with_engine(&other.0, operation, BooleanEngine::Robust));
+        Self(if is_right { fast } else { exact().unwrap_or(fast) })
     }
 
     /// The remaining parts of the surfaces, each with its number, facing outward. Attributes that a surface did not have are empty.
@@ -142,6 +143,12 @@ impl Solid {
         });
         surfaces.filter(|(_, mesh)| !mesh.triangles.is_empty()).collect()
     }
+}
+
+/// What the engine of rational numbers makes; `None` where it gives up, which it does by a panic: one in 170,000 heaps of random
+/// triangles leaves it no direction in which to count what a ray crosses.
+fn exactly(make: impl FnOnce() -> Manifold) -> Option<Manifold> {
+    catch_unwind(AssertUnwindSafe(make)).ok()
 }
 
 /// True if two triangles have the same corners, as `f32`, in the same order.
