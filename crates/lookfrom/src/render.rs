@@ -10,6 +10,7 @@ mod cost;
 mod driver;
 mod footprint;
 mod interior;
+mod labels;
 mod progress;
 mod sensor;
 mod start;
@@ -33,8 +34,8 @@ use crate::core::spectrum::Spectrum;
 pub use crate::film::SampleId;
 use crate::film::{FEATURE_SAMPLES, FilmTile, SampleSums};
 use crate::integrator::{
-    BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, Probe, Queues, Scratch, StepOutput,
-    resolve_shadows,
+    BatchStreams, Event, Integrator, LightPathState, LightPaths, Path, PathState, Probe, Queues, Scratch,
+    StepOutput, resolve_shadows,
 };
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
@@ -47,6 +48,7 @@ use start::Start;
 use transport::Transport;
 
 pub use driver::FEWEST_SAMPLES;
+pub use labels::Label;
 pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
@@ -272,6 +274,22 @@ impl Renderer {
         &self.view.image
     }
 
+    /// The path that begins with a ray of the camera, of one sample in RGB.
+    fn root<S: PathState>(&self, ray: Ray) -> Path<S> {
+        Path {
+            ray,
+            beta: SpectralMode::Rgb.one(),
+            slot: 0,
+            depth: 0,
+            address: Path::ROOT,
+            interior: self.interior,
+            origin_primitive: OriginPrimitive::NONE,
+            blurred: false,
+            light_path: LightPathState::default(),
+            state: S::default(),
+        }
+    }
+
     /// Computes samples. The result for a sample does not depend on the others.
     pub fn trace(&self, ids: &[SampleId]) -> (Vec<Traced>, Rays) {
         let mut batch = Batch::default();
@@ -314,16 +332,10 @@ impl Renderer {
         output.queues.layers.resize(layers, Spectrum::BLACK);
         let modes = &output.queues.modes;
         output.paths.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
-            ray: *ray,
             beta: modes[slot].one(),
             slot: slot as u32,
-            depth: 0,
-            address: Path::ROOT,
-            interior: self.interior,
-            origin_primitive: OriginPrimitive::NONE,
-            blurred: false,
             light_path,
-            state: I::State::default(),
+            ..self.root(*ray)
         }));
 
         let streams = BatchStreams { sampler: &self.sampler, ids };

@@ -12,6 +12,7 @@
 //! # Ok::<(), lookfrom::scene::Error>(())
 //! ```
 
+mod change;
 mod edit;
 mod encode;
 mod exposure;
@@ -112,8 +113,6 @@ pub struct Session {
 /// A scene that was read or made, with its memory and the warnings of its reader.
 struct Given {
     scene: Scene,
-    /// Whether the session keeps it.
-    is_kept: bool,
     memory: Vec<Reservation>,
     warnings: Vec<Warning>,
 }
@@ -199,14 +198,7 @@ impl Session {
         let scene = load::scene(path, &mut context)?;
         let LoadContext { warnings, kept: memory, .. } = context;
         let identity = options.film.then(|| Identity::of_files(digested, path, options));
-        Self::prepare(
-            Given { scene, is_kept: false, memory, warnings },
-            path,
-            source,
-            identity,
-            started,
-            options,
-        )
+        Self::prepare(Given { scene, memory, warnings }, path, source, identity, started, options)
     }
 
     /// A session of a scene that was made or read elsewhere.
@@ -215,15 +207,10 @@ impl Session {
     /// As [`Session::open`] and [`Scene::validate`].
     pub fn of_scene(scene: Scene, options: &Options) -> Result<Self> {
         scene.validate()?;
-        Self::of_valid_scene(scene, false, options)
-    }
-
-    /// A session of a valid scene, which may be kept.
-    fn of_valid_scene(scene: Scene, is_kept: bool, options: &Options) -> Result<Self> {
         let identity = options.film.then(|| Identity::of_scene(&scene, options));
         let memory = options.budget.reserve(scene.bytes(), "the scene", &Location::default())?;
         Self::prepare(
-            Given { scene, is_kept, memory: vec![memory], warnings: Vec::new() },
+            Given { scene, memory: vec![memory], warnings: Vec::new() },
             Path::new(""),
             Source::Elsewhere,
             identity,
@@ -233,7 +220,7 @@ impl Session {
     }
 
     fn prepare(
-        Given { mut scene, is_kept, memory, mut warnings }: Given,
+        Given { mut scene, memory, mut warnings }: Given,
         path: &Path,
         source: Source,
         identity: Option<Identity>,
@@ -255,9 +242,9 @@ impl Session {
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene, bounds);
-        let of_kept = if is_kept { scene.bytes() } else { 0 };
+        let of_kept = if options.keep_scene { scene.bytes() } else { 0 };
         let of_kept = options.budget.reserve(of_kept, "the scene that is kept", &Location::default())?;
-        let kept = is_kept.then(|| Arc::new(scene.clone()));
+        let kept = options.keep_scene.then(|| Arc::new(scene.clone()));
         let (world, mut memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
         memory.push(of_kept);
         let renderer = Renderer::new(Arc::new(world), view, settings).map_err(in_file(path))?;

@@ -158,6 +158,11 @@ impl World {
         &self.lights
     }
 
+    /// Names of materials, shapes and lights.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
     /// The light sampler.
     pub fn light_choice(&self) -> &LightChoice {
         &self.light_choice

@@ -32,12 +32,11 @@ impl Session {
     /// # Errors
     /// As [`Session::of_scene`].
     pub fn keeping(scene: Scene, options: &Options) -> Result<Self> {
-        scene.validate()?;
-        Self::of_valid_scene(scene, true, options)
+        Self::of_scene(scene, &Options { keep_scene: true, ..options.clone() })
     }
 
     /// The scene as it was compiled, with what was added to it and its materials and lights of now, if it is kept
-    /// ([`Session::keeping`]). What can be changed otherwise is not in it: [`Session::camera`], [`Session::image`],
+    /// ([`Options::keep_scene`]). What can be changed otherwise is not in it: [`Session::camera`], [`Session::image`],
     /// [`Session::settings`].
     pub fn scene(&self) -> Option<&Scene> {
         self.kept.as_deref()
@@ -47,7 +46,7 @@ impl Session {
     /// material.
     ///
     /// # Errors
-    /// `Request` where the scene is not kept ([`Session::keeping`]); as [`Scene::validate`]; `Limit`
+    /// `Request` where the scene is not kept ([`Options::keep_scene`]); as [`Scene::validate`]; `Limit`
     /// where there is no memory for a second world ([`Options::budget`]), until the first is gone. Then nothing has changed.
     pub fn set_material(&mut self, id: MaterialId, mut material: Material) -> Result<()> {
         let count = self.scene().map_or(usize::MAX, |scene| scene.materials.len());
@@ -70,7 +69,7 @@ impl Session {
     /// Changes the scene by exchanging a part of it; where that fails, it is exchanged again.
     fn exchange(&mut self, mut exchange: impl FnMut(&mut Scene)) -> Result<()> {
         let Some(mut kept) = self.kept.take() else {
-            let message = "this session does not keep its scene: make it by `Session::keeping`";
+            let message = "this session does not keep its scene: enable it by the option `keep_scene`";
             return Err(options::unsuitable(message.to_owned()));
         };
         exchange(Arc::make_mut(&mut kept));

@@ -15,7 +15,7 @@ use lookfrom_scene::settings::{
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
-    Budget, Error, ErrorKind, Files, ImportOptions, LoadContext, Location, Result, Scene, Variables,
+    Budget, Error, ErrorKind, Files, ImportOptions, LoadContext, Location, Result, Variables,
 };
 
 use super::{Exposure, Format};
@@ -105,6 +105,9 @@ pub struct Options {
     pub stop: StopCriteria,
     /// Treatment of fireflies, pixels that single samples make far too bright.
     pub fireflies: Fireflies,
+    /// Whether the session keeps the scene beside its world: so that its materials and lights can be changed
+    /// ([`Session::set_material`](super::Session::set_material)).
+    pub keep_scene: bool,
     /// The format that the picture will be encoded in, if it is known: AOVs that it cannot hold are not computed.
     pub format: Option<Format>,
     /// Number of threads; `None` is one per processor.
@@ -262,15 +265,13 @@ impl Options {
         viewpoint
     }
 
-    /// Applies the options to the camera of a scene that has one.
+    /// Applies the options to a camera, of a scene whose middle is this point; returns whether they change it.
     ///
     /// # Errors
     /// `Request` for a field of view where rays are parallel, and for a new position or direction of a camera that
     /// shears or reflects.
-    pub(super) fn apply_to_camera(&self, scene: &mut Scene) -> Result<()> {
+    pub(super) fn apply_to_camera(&self, camera: &mut Camera, middle: DVec3) -> Result<bool> {
         let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up_of_camera().is_some();
-        let middle = scene.bounds().center();
-        let Some(camera) = &mut scene.camera else { return Ok(()) };
         if let Some(degrees) = self.fov {
             let Projection::Perspective { fov } = &mut camera.projection else {
                 return Err(unsuitable(
@@ -285,7 +286,7 @@ impl Options {
             // Errors of the camera from here on have no line in a file.
             camera.at = Location { file: OPTIONS.into(), ..Location::default() };
         }
-        Ok(())
+        Ok(moved || self.fov.is_some())
     }
 
     /// The up vector of a camera that no view frames: straight from above, what is up in the world is not in the picture.
@@ -385,9 +386,8 @@ mod tests {
         assert!(resized(&beyond, image(11, 10, None)).is_ok());
     }
 
-    fn moved(of: &Options, camera: Camera) -> Result<Camera> {
-        let mut scene = Scene { camera: Some(camera), ..Scene::default() };
-        of.apply_to_camera(&mut scene).map(|()| scene.camera.unwrap())
+    fn moved(of: &Options, mut camera: Camera) -> Result<Camera> {
+        of.apply_to_camera(&mut camera, DVec3::ZERO).map(|_| camera)
     }
 
     #[test]

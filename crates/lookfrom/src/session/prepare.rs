@@ -89,7 +89,10 @@ pub(super) fn prepare(
         Some(turntable) => turntable.frame(scene, &viewpoint),
         None => studio::frame(scene, up, &viewpoint, options.framed),
     }
-    options.apply_to_camera(scene)?;
+    let middle = scene.bounds().center();
+    if let Some(camera) = &mut scene.camera {
+        options.apply_to_camera(camera, middle)?;
+    }
     if let Some(environment) = &options.environment {
         studio::surround(scene, environment.clone(), up);
     }

@@ -6,6 +6,7 @@ use lookfrom::scene::Location;
 use lookfrom::scene::light::{Light, Power};
 use lookfrom::scene::material::{BumpMapping, Material};
 use lookfrom::scene::scene::MaterialId;
+use lookfrom::session::Exposure;
 
 use crate::support::{SMALL, scene};
 
@@ -120,4 +121,50 @@ fn what_is_refused_changes_nothing() {
     assert!(without.scene().is_none());
     let refused = without.set_lights(Vec::new()).expect_err("it is not kept");
     assert_eq!(refused.kind, ErrorKind::Request);
+}
+
+/// What changes without the scene is as if it had been asked for from the start.
+#[test]
+fn options_change_the_picture_and_the_camera() {
+    let with = |options: &Options| Session::of_scene(room(), options).expect("a scene");
+    let mut session = with(&Options::default());
+    for options in [
+        Options { width: Some(20), samples: Some(8), seed: Some(3), ..Options::default() },
+        Options { exposure: Some(Exposure::Stops(1.0)), depth: Some(2), ..Options::default() },
+        Options { integrator: Some(Integrator::Whitted), part: Some([2, 2]), ..Options::default() },
+    ] {
+        let mut changed = session.clone();
+        changed.change(&options).expect("it suits");
+        assert_eq!(picture(&changed), picture(&with(&options)), "{options:?}");
+        assert_eq!(changed.image().exposure, options.exposure.map_or(0.0, |_| 1.0));
+    }
+
+    // From elsewhere, with other rounding.
+    let elsewhere =
+        Options { lookfrom: Some(DVec3::new(3.0, 3.0, 4.0)), fov: Some(30.0), ..Options::default() };
+    session.change(&elsewhere).expect("it suits");
+    let (changed, anew) = (picture(&session), picture(&with(&elsewhere)));
+    let mean = |picture: &lookfrom::film::Picture| {
+        picture.pixels.iter().flatten().sum::<f32>() / picture.pixels.len() as f32
+    };
+    assert!((mean(&changed) / mean(&anew) - 1.0).abs() < 0.02, "{} {}", mean(&changed), mean(&anew));
+    assert_eq!(session.camera().look(DVec3::ZERO), with(&elsewhere).camera().look(DVec3::ZERO));
+
+    // What does not suit changes nothing.
+    let before = picture(&session);
+    for options in [
+        Options { floor: true, ..Options::default() },
+        Options { fov: Some(60.0), part: Some([1, 2]), samples: Some(1), ..Options::default() },
+        Options {
+            width: Some(1 << 20),
+            height: Some(1 << 20),
+            lookfrom: Some(DVec3::ONE),
+            ..Options::default()
+        },
+        Options { turn: Some(30.0), ..Options::default() },
+    ] {
+        let error = session.change(&options).expect_err("it does not suit");
+        assert_eq!(error.kind, ErrorKind::Request, "{error}");
+        assert_eq!(picture(&session), before);
+    }
 }

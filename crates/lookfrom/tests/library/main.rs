@@ -20,6 +20,7 @@ mod inspect_lights;
 mod inspect_microfacets;
 mod inspect_numbers;
 mod inspect_segments;
+mod labels;
 mod layers;
 mod light_paths;
 mod media;

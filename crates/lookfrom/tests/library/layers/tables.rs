@@ -9,6 +9,7 @@ pub(super) const CRATES: &[(&str, &str)] = &[
     ("lookfrom", "lookfrom-bvh lookfrom-scene lookfrom-simd lookfrom-test-data"),
     ("lookfrom-view", "lookfrom lookfrom-scene"),
     ("lookfrom-cli", "lookfrom lookfrom-scene lookfrom-view"),
+    ("lookfrom-py", "lookfrom lookfrom-bvh lookfrom-cli lookfrom-scene lookfrom-view"),
 ];
 
 /// The modules of `lookfrom`, each with those that it may use. Rows name only rows above them, so that there is no circle.
@@ -169,6 +170,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "interrupt output report scenes terminal",
             "args naming",
             "compare develop files film help overrides prepare",
+            "keywords",
             "bench completions farm info inspect man merge progress view",
             "picture",
             "render",

@@ -1,0 +1,97 @@
+//! Options that change a session's picture and its camera, for which no scene is read and no tree is built.
+
+use lookfrom_scene::camera::Camera;
+use lookfrom_scene::settings::Allocation;
+use lookfrom_scene::{CameraChoice, ImportOptions, Result};
+
+use super::options::{MOST_SAMPLES, unsuitable};
+use super::{Exposure, Fireflies, Options, Session};
+
+impl Session {
+    /// Changes what options give: size, samples and how they are taken, camera, development, stop criteria. What they leave open stays
+    /// as it is. The picture is that of a session with all of these options, with two exceptions: the world stays where the first
+    /// camera was, so that another camera's picture may round differently; and the light of a studio stays, whatever is up.
+    ///
+    /// ```no_run
+    /// use lookfrom::session::{Options, Session};
+    ///
+    /// let mut session = Session::open("scene.toml", &Options::default())?;
+    /// for x in 0..10 {
+    ///     session.change(&Options { lookfrom: Some((f64::from(x), 1.0, 5.0).into()), ..Options::default() })?;
+    ///     session.render(&())?.save(format!("{x}.png"))?;
+    /// }
+    /// # Ok::<(), lookfrom::scene::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// `Request` for options that need the scene read again ([`Options::of_scene`]), or do not suit it; as [`Session::set_camera`],
+    /// [`Session::set_image`] and [`Session::set_settings`]. Then nothing has changed.
+    pub fn change(&mut self, options: &Options) -> Result<()> {
+        if let Some(option) = options.of_scene() {
+            return Err(unsuitable(format!("{option} needs the scene read again: make a new session")));
+        }
+        let mut changed = self.clone();
+        let (mut image, mut settings) = (self.image().clone(), self.settings().clone());
+        options.apply_to_settings(&mut image, &mut settings)?;
+        let has_limit = options.stop.time.is_some() || options.stop.noise.is_some();
+        if has_limit {
+            changed.stop = options.stop;
+            if options.samples.is_none() {
+                settings.samples = MOST_SAMPLES;
+            }
+        }
+        if options.stop.noise.is_some() {
+            settings.allocation = Allocation::Uniform;
+        }
+        let range = options.range(&settings)?;
+        if options.samples.is_some() || options.part.is_some() {
+            changed.first_sample = range.start;
+            settings.samples = range.end;
+        }
+        if options.fireflies != Fireflies::Keep {
+            changed.fireflies = options.fireflies;
+        }
+        if options.threads.is_some() {
+            changed.threads = options.threads;
+        }
+        changed.set_settings(settings)?;
+        changed.set_image(image)?;
+        if let Some(degrees) = options.turn {
+            changed.set_turn(degrees)?;
+        }
+        let mut camera: Camera = changed.camera().clone();
+        if options.apply_to_camera(&mut camera, self.info.bounds.center())? {
+            changed.set_camera(camera)?;
+        }
+        if options.exposure == Some(Exposure::Auto) {
+            changed.expose()?;
+        }
+        *self = changed;
+        Ok(())
+    }
+}
+
+impl Options {
+    /// The name of an option among these that chooses or changes the scene, and not only its picture and camera.
+    pub fn of_scene(&self) -> Option<&'static str> {
+        let ImportOptions { animation, at, variant, scene, camera, subdivision } = &self.import;
+        let asked = [
+            ("film", self.film),
+            ("light_sampler", self.light_sampler.is_some()),
+            ("view", self.view.is_some()),
+            ("azimuth", self.azimuth.is_some()),
+            ("elevation", self.elevation.is_some()),
+            ("environment", self.environment.is_some()),
+            ("rotate_environment", self.rotate_environment.is_some()),
+            ("floor", self.floor),
+            ("animation", animation.is_some()),
+            ("at", at.is_some()),
+            ("variant", variant.is_some()),
+            ("scene", scene.is_some()),
+            ("camera", *camera != CameraChoice::First),
+            ("subdivide", *subdivision > 0),
+            ("variables", !self.variables.values.is_empty()),
+        ];
+        asked.into_iter().find(|(_, is_asked)| *is_asked).map(|(name, _)| name)
+    }
+}
