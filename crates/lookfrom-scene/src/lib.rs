@@ -32,6 +32,7 @@ pub mod load;
 pub mod material;
 pub mod medium;
 pub mod model;
+pub mod npy;
 pub mod obj;
 mod packed;
 mod parallel;

@@ -2,6 +2,7 @@
 //!
 //! One program for all files, since each would link the readers for itself.
 
+mod arrays;
 mod gltf;
 mod gltf_corpus;
 mod gltf_hostile;

@@ -123,7 +123,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "shape texture",
             "composite scene text",
             "builder chain count duplicates model",
-            "boolean ies stl subdivision validate",
+            "boolean ies npy stl subdivision validate",
             "obj ply",
             "pbrt studio",
             "gltf",
