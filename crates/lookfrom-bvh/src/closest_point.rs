@@ -17,7 +17,7 @@ use crate::item::Leaf;
 use crate::nearest::{Nearest, nearest_on_triangle};
 use crate::node::{Child, Content, WIDTH};
 use crate::ray::NONE;
-use crate::sphere::Sphere;
+use crate::unrounded::{InTree, Shapes, Unrounded};
 use crate::vector::{dot, subtract, wide};
 
 /// Relative margin for the rounding of distances: 2⁻²⁰.
@@ -55,7 +55,33 @@ pub struct ClosestPoint {
     pub instance: u32,
 }
 
-impl ClosestPoint {
+/// The nearest point of some geometry in double precision, as [`Bvh::closest_point_unrounded`] finds it.
+///
+/// ```
+/// # use lookfrom_bvh::ClosestPointF64;
+/// fn reach(nearest: &ClosestPointF64) -> f64 {
+///     nearest.distance
+/// }
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClosestPointF64 {
+    /// Its position in the world.
+    pub position: [f64; 3],
+    /// Its distance from the query point, not negative.
+    pub distance: f64,
+    /// First coordinate. Of a triangle: β, the weight of its second corner. Of a sphere: 0.
+    pub u: f64,
+    /// Second coordinate. Of a triangle: γ, the weight of its third corner. Of a sphere: 0.
+    pub v: f64,
+    /// Number of the primitive in its geometry.
+    pub primitive: u32,
+    /// Number of the geometry in its tree.
+    pub geometry: u32,
+    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
+    pub instance: u32,
+}
+
+impl ClosestPointF64 {
     /// The order of points at equal distance: as for hits at equal t.
     fn rank(&self) -> (u32, u32, u32) {
         (self.instance.wrapping_add(1), self.geometry, self.primitive)
@@ -63,6 +89,14 @@ impl ClosestPoint {
 
     fn precedes(&self, other: &Self) -> bool {
         self.distance < other.distance || (self.distance == other.distance && self.rank() < other.rank())
+    }
+}
+
+impl From<ClosestPointF64> for ClosestPoint {
+    fn from(fine: ClosestPointF64) -> Self {
+        let ClosestPointF64 { position, distance, u, v, primitive, geometry, instance } = fine;
+        let [distance, u, v] = [distance, u, v].map(|x| x as f32);
+        Self { position: position.map(|x| x as f32), distance, u, v, primitive, geometry, instance }
     }
 }
 
@@ -88,7 +122,43 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
-        self.search_points(point, max_distance, false)
+        self.search_points(InTree, wide(point), max_distance.into(), false).map(Into::into)
+    }
+
+    /// [`Self::closest_point`] in double precision, on shapes as they were before they were rounded for the tree.
+    ///
+    /// Distances are right to about 10⁻¹⁵ of the distance and of the triangle's or sphere's size.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Triangles, Unrounded};
+    /// struct Thirds([[f64; 3]; 3]);
+    /// impl Unrounded for Thirds {
+    ///     fn triangle(&self, _: u32, _: u32, _: u32) -> [[f64; 3]; 3] {
+    ///         self.0
+    ///     }
+    ///     fn sphere(&self, _: u32, _: u32, _: u32) -> ([f64; 3], f64) {
+    ///         ([0.0; 3], 0.0)
+    ///     }
+    ///     fn error(&self) -> f64 {
+    ///         1e-7
+    ///     }
+    /// }
+    /// let z = 1.0 / 3.0;
+    /// let thirds = Thirds([[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
+    /// let positions = thirds.0.map(|p| p.map(|x| x as f32));
+    /// let mut builder = Builder::new();
+    /// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2]] });
+    /// let nearest = builder.build()?.closest_point_unrounded([0.25, 0.5, 0.0], f64::INFINITY, &thirds).unwrap();
+    /// assert_eq!(nearest.distance, z);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_point_unrounded(
+        &self,
+        point: [f64; 3],
+        max_distance: f64,
+        shapes: &impl Unrounded,
+    ) -> Option<ClosestPointF64> {
+        self.search_points(shapes, point, max_distance, false)
     }
 
     /// [`Self::closest_point`] for each point, on several threads where there are many. The two slices should have
@@ -125,7 +195,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn is_near(&self, point: [f32; 3], max_distance: f32) -> bool {
-        self.search_points(point, max_distance, true).is_some()
+        self.search_points(InTree, wide(point), max_distance.into(), true).is_some()
     }
 
     /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should have equal
@@ -144,13 +214,19 @@ impl Bvh {
         for_each(points, near, |_, &point, near| *near = self.is_near(point, max_distance));
     }
 
-    fn search_points(&self, point: [f32; 3], max_distance: f32, any: bool) -> Option<ClosestPoint> {
-        let usable = point.iter().all(|x| x.abs() <= LARGEST_COORDINATE) && max_distance >= 0.0;
+    fn search_points<S: Shapes>(
+        &self,
+        shapes: S,
+        point: [f64; 3],
+        max_distance: f64,
+        any: bool,
+    ) -> Option<ClosestPointF64> {
+        let usable = point.iter().all(|x| x.abs() <= f64::from(LARGEST_COORDINATE)) && max_distance >= 0.0;
         if !usable || self.nodes.is_empty() {
             return None;
         }
-        let (point, queue) = (wide(point), BinaryHeap::new());
-        let mut search = Search { outer: self, point, max_distance, any, best: None, queue };
+        let queue = BinaryHeap::new();
+        let mut search = Search { outer: self, shapes, point, max_distance, any, best: None, queue };
         search.queue.push(QueueEntry { distance: 0.0, child: Child::ROOT, place: NONE });
         search.run();
         search.best
@@ -187,17 +263,18 @@ impl PartialEq for QueueEntry {
 
 impl Eq for QueueEntry {}
 
-struct Search<'a> {
+struct Search<'a, S> {
     outer: &'a Bvh,
+    shapes: S,
     point: [f64; 3],
-    max_distance: f32,
+    max_distance: f64,
     /// True if any point that is near enough suffices.
     any: bool,
-    best: Option<ClosestPoint>,
+    best: Option<ClosestPointF64>,
     queue: BinaryHeap<QueueEntry>,
 }
 
-impl Search<'_> {
+impl<S: Shapes> Search<'_, S> {
     fn run(&mut self) {
         while let Some(QueueEntry { distance, child, place }) = self.queue.pop() {
             if distance > self.end() || (self.any && self.best.is_some()) {
@@ -217,7 +294,7 @@ impl Search<'_> {
                         if bounds.is_empty() {
                             continue;
                         }
-                        let distance = space.distance_to_box(&bounds);
+                        let distance = space.distance_to_box(&bounds) - self.shapes.error();
                         if distance <= self.end() {
                             self.queue.push(QueueEntry { distance, child: node.child(slot), place });
                         }
@@ -226,14 +303,19 @@ impl Search<'_> {
                 Content::Triangles(block) => {
                     let block = &bvh.triangles[block];
                     for lane in 0..block.count() {
-                        let nearest = nearest_on_triangle(&space.corners(&block.corners(lane)));
-                        self.offer(&space, block.ids(lane), nearest);
+                        let (geometry, primitive) = block.ids(lane);
+                        let ids = [space.instance, geometry, primitive];
+                        let corners = self.shapes.triangle(ids, block.corners(lane));
+                        self.offer(ids, nearest_on_triangle(&corners.map(|p| space.offset(p))));
                     }
                 }
                 Content::Leaf(leaf) => match bvh.leaves[leaf] {
                     Leaf::Spheres { first, count } => {
                         for item in &bvh.spheres[first as usize..(first + count) as usize] {
-                            self.offer(&space, (item.geometry, item.primitive), space.sphere(&item.shape));
+                            let ids = [space.instance, item.geometry, item.primitive];
+                            let (center, radius) =
+                                self.shapes.sphere(ids, (item.shape.center, item.shape.radius));
+                            self.offer(ids, space.sphere(center, radius));
                         }
                     }
                     Leaf::Procedurals { .. } => {}
@@ -250,21 +332,15 @@ impl Search<'_> {
 
     /// Boxes beyond this distance are ignored.
     fn end(&self) -> f64 {
-        f64::from(self.best.map_or(self.max_distance, |best| best.distance)) * ROOM
+        self.best.map_or(self.max_distance, |best| best.distance) * ROOM
     }
 
     /// Replaces the best point if a primitive's nearest point is nearer.
-    fn offer(&mut self, space: &Space<'_>, (geometry, primitive): (u32, u32), nearest: Nearest) {
-        let offset = nearest.offset;
-        let found = ClosestPoint {
-            position: [0, 1, 2].map(|axis| (self.point[axis] + offset[axis]) as f32),
-            distance: nearest.distance as f32,
-            u: nearest.u as f32,
-            v: nearest.v as f32,
-            primitive,
-            geometry,
-            instance: space.instance,
-        };
+    fn offer(&mut self, [instance, geometry, primitive]: [u32; 3], nearest: Nearest) {
+        let Nearest { offset, u, v, .. } = nearest;
+        let position = [0, 1, 2].map(|axis| self.point[axis] + offset[axis]);
+        let distance = self.shapes.distance(nearest.distance);
+        let found = ClosestPointF64 { position, distance, u, v, primitive, geometry, instance };
         if found.distance <= self.max_distance && self.best.is_none_or(|best| found.precedes(&best)) {
             self.best = Some(found);
         }
@@ -290,13 +366,9 @@ impl<'a> Space<'a> {
     }
 
     /// A point of the space relative to the query point.
-    fn offset(&self, p: [f32; 3]) -> [f64; 3] {
-        let p = self.map.map_or(wide(p), |map| map.vector(wide(p)));
+    fn offset(&self, p: [f64; 3]) -> [f64; 3] {
+        let p = self.map.map_or(p, |map| map.vector(p));
         [0, 1, 2].map(|axis| p[axis] + self.origin[axis])
-    }
-
-    fn corners(&self, corners: &[[f32; 3]; 3]) -> [[f64; 3]; 3] {
-        corners.map(|corner| self.offset(corner))
     }
 
     /// Lower bound of the distances within a box.
@@ -328,9 +400,8 @@ impl<'a> Space<'a> {
         dot(outside, outside).sqrt()
     }
 
-    fn sphere(&self, sphere: &Sphere) -> Nearest {
-        let center = self.offset(sphere.center);
-        let radius = f64::from(sphere.radius);
+    fn sphere(&self, center: [f64; 3], radius: f64) -> Nearest {
+        let center = self.offset(center);
         if let Some(map) = self.map {
             return nearest_on_ellipsoid(center, &map.matrix, radius);
         }

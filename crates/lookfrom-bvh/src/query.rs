@@ -278,6 +278,31 @@ impl<O: Observer> Query<'_, O> {
         R::all_hits(&self.settings, ray, hits, &mut self.observer);
     }
 
+    /// [`Self::all_hits`], but only those where the ray crosses a surface, each once: where it meets an edge or corner that
+    /// triangles share it crosses those that it would hit if it were moved aside by an infinitely small amount. That is one of
+    /// two triangles on different sides of the ray, and both or neither of two on the same side, whose edge it touches.
+    /// So a line crosses a closed mesh an even number of times, and a ray crosses it an odd number of times if and only if it
+    /// starts inside.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Builder, Ray, Triangles};
+    /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mut builder = Builder::new();
+    /// builder.triangles(Triangles { positions: &positions, indices: &[[0, 1, 2], [0, 2, 3]] });
+    /// let bvh = builder.build()?;
+    /// let through_the_diagonal = Ray::new([0.5, 0.5, 1.0], [0.0, 0.0, -1.0]);
+    /// let mut hits = Vec::new();
+    /// bvh.query().all_hits(&through_the_diagonal, &mut hits);
+    /// assert_eq!(hits.len(), 2);
+    /// bvh.query().crossings(&through_the_diagonal, &mut hits);
+    /// assert_eq!(hits.len(), 1);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn crossings<R: TraceRay>(mut self, ray: &R, hits: &mut Vec<R::Hit>) {
+        self.settings.crossings = true;
+        self.all_hits(ray, hits);
+    }
+
     /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent [`Ray`]s
     /// are traced in packets. The two slices should have equal lengths; the surplus of the longer one is ignored.
     ///

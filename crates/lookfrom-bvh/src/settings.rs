@@ -11,6 +11,8 @@ pub struct Settings<'a> {
     /// `None` where masks are ignored.
     pub(crate) mask: Option<u32>,
     pub(crate) faces: Faces,
+    /// True if only crossings count: see [`Query::crossings`](crate::Query::crossings).
+    pub(crate) crossings: bool,
     /// The origin primitive of rays for which `origins` has none.
     pub(crate) origin: OriginPrimitive,
     pub(crate) origins: &'a [OriginPrimitive],
@@ -26,12 +28,19 @@ pub(crate) enum VisibilityKind {
 impl<'a> Settings<'a> {
     /// Settings that see the whole tree.
     pub(crate) const fn new(bvh: &'a Bvh) -> Self {
-        Self { bvh, mask: None, faces: Faces::Both, origin: OriginPrimitive::NONE, origins: &[] }
+        Self {
+            bvh,
+            mask: None,
+            faces: Faces::Both,
+            crossings: false,
+            origin: OriginPrimitive::NONE,
+            origins: &[],
+        }
     }
 
     /// The simplest kind of visibility that suffices.
     pub(crate) fn visibility_kind(&self) -> VisibilityKind {
-        if self.mask.is_some() || self.faces != Faces::Both {
+        if self.mask.is_some() || self.faces != Faces::Both || self.crossings {
             VisibilityKind::Masked
         } else if self.origins.is_empty() && self.origin == OriginPrimitive::NONE {
             VisibilityKind::Everything

@@ -145,6 +145,7 @@ impl<O: Observer> Traversal<'_, O> {
                 && !self.visibility.is_origin(instance, ids)
                 && let Some(met) = triangle::intersect_exact(ray, &corners, block.extent(lane))
                 && self.visibility.faces().shows(|| triangle::is_front(ray, &corners))
+                && (!self.visibility.crossings() || triangle::is_crossed(ray, &corners))
             {
                 self.report([met.t, met.u, met.v], ids, instance);
             }
@@ -161,6 +162,9 @@ impl<O: Observer> Traversal<'_, O> {
                         continue;
                     }
                     let Some([t1, t2]) = sphere::intersect_exact(ray, &item.shape) else { continue };
+                    if self.visibility.crossings() && t1 == t2 {
+                        continue;
+                    }
                     let faces = self.visibility.faces();
                     if faces.shows(|| true) {
                         self.report([t1, 0.0, 0.0], ids, instance);

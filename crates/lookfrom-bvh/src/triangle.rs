@@ -103,6 +103,28 @@ pub(crate) fn is_front<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -
     (u + v + w > 0.0) == (along > 0.0)
 }
 
+/// True if a ray that hits a triangle crosses it: it would still hit it if it were moved aside by an infinitely small amount,
+/// the same for all triangles. So at an edge it crosses one of two triangles that lie on different sides of it, and both or
+/// neither of two on the same side: Edelsbrunner, Muecke (1990), "Simulation of Simplicity".
+#[cold]
+#[inline(never)]
+pub(crate) fn is_crossed<T: Rounded>(ray: &ExactRay<T>, corners: &[[f32; 3]; 3]) -> bool {
+    let Sheared { corners: [a, b, c], edges: [u, v, w], .. } = Sheared::new(ray, corners);
+    let is_left = |edge: f64, p: [f64; 3], q: [f64; 3]| {
+        if edge != 0.0 {
+            edge > 0.0
+        } else if p[1] != q[1] {
+            // Moved by ε along the first axis, …
+            p[1] > q[1]
+        } else {
+            // … and by ε² along the second.
+            p[0] < q[0]
+        }
+    };
+    let sides = [is_left(u, c, b), is_left(v, a, c), is_left(w, b, a)];
+    sides == [true; 3] || sides == [false; 3]
+}
+
 /// An intersection before it is rounded.
 struct Meeting<T> {
     determinant: T,

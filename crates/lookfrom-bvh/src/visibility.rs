@@ -55,6 +55,12 @@ pub(crate) trait Visibility<'a>: Copy {
         Faces::Both
     }
 
+    /// True if the ray sees only what it crosses, not what it touches.
+    #[inline(always)]
+    fn crossings(&self) -> bool {
+        false
+    }
+
     /// True if a triangle, in an instance or not, is the ray's origin primitive.
     #[inline(always)]
     fn is_origin(&self, instance: u32, triangle: (u32, u32)) -> bool {
@@ -100,6 +106,7 @@ impl Visibility<'_> for ExceptOrigin {
 pub(crate) struct Masked<'a> {
     mask: Option<u32>,
     faces: Faces,
+    crossings: bool,
     origin: OriginPrimitive,
     outer: &'a Bvh,
     /// The masks of the current tree.
@@ -112,8 +119,8 @@ impl<'a> Visibility<'a> for Masked<'a> {
 
     #[inline(always)]
     fn of(settings: &Settings<'a>, number: usize) -> Self {
-        let &Settings { bvh, mask, faces, .. } = settings;
-        Self { mask, faces, origin: settings.origin_of(number), outer: bvh, masks: &bvh.masks }
+        let &Settings { bvh, mask, faces, crossings, .. } = settings;
+        Self { mask, faces, crossings, origin: settings.origin_of(number), outer: bvh, masks: &bvh.masks }
     }
 
     #[inline(always)]
@@ -142,6 +149,11 @@ impl<'a> Visibility<'a> for Masked<'a> {
     fn faces(&self) -> Faces {
         self.faces
     }
+
+    #[inline(always)]
+    fn crossings(&self) -> bool {
+        self.crossings
+    }
 }
 
 /// The lanes that a ray sees among the given ones. Lanes that the ray misses may be wrong, because they have
@@ -156,7 +168,9 @@ pub(crate) fn shown<'a, V: Visibility<'a>>(
     let is_shown = |&lane: &usize| {
         let (geometry, primitive) = block.ids(lane);
         let is_front = || triangle::is_front(ray, &block.corners(lane));
-        visibility.shows(geometry, primitive) && visibility.faces().shows(is_front)
+        visibility.shows(geometry, primitive)
+            && visibility.faces().shows(is_front)
+            && (!visibility.crossings() || triangle::is_crossed(ray, &block.corners(lane)))
     };
     lanes.filter(is_shown).fold(0, |shown, lane| shown | 1 << lane)
 }

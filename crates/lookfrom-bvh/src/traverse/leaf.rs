@@ -44,6 +44,9 @@ fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
             continue;
         }
         let Some([t1, t2]) = sphere::intersect_exact(ray, &item.shape) else { continue };
+        if V::SELECTS && state.visibility.crossings() && t1 == t2 {
+            continue;
+        }
         let roots = if t1 < t2 { &[t1, t2][..] } else { &[t1][..] };
         for (root, &t) in roots.iter().enumerate() {
             if t > ray.t_min

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use lookfrom_bvh::{Affine, Builder, Bvh, ClosestPoint, NONE, Quality, Sphere, Triangles};
+use lookfrom_bvh::{Affine, Builder, Bvh, ClosestPoint, NONE, Quality, Sphere, Triangles, Unrounded};
 
 use crate::testing::Random;
 
@@ -197,4 +197,55 @@ fn what_cannot_be_asked_is_none() {
     let touching = bvh.closest_point([0.25, 0.25, 0.0], 0.0).unwrap();
     assert_eq!((touching.distance, touching.instance), (0.0, NONE));
     assert!(bvh.closest_point([0.0, 0.0, 2.0], 2.0).is_some(), "the end counts");
+}
+
+/// Corners in f64, and as the tree has them.
+struct Fine(Vec<[[f64; 3]; 3]>);
+
+impl Unrounded for Fine {
+    fn triangle(&self, _: u32, _: u32, primitive: u32) -> [[f64; 3]; 3] {
+        self.0[primitive as usize]
+    }
+
+    fn sphere(&self, _: u32, _: u32, _: u32) -> ([f64; 3], f64) {
+        unreachable!("there are none")
+    }
+
+    fn error(&self) -> f64 {
+        2.0_f64.powi(-22)
+    }
+}
+
+#[test]
+fn unrounded_shapes_decide_in_f64() {
+    let mut random = Random::new(77);
+    for _ in 0..30 {
+        // Triangles nearer to each other than f32 can tell.
+        let mut fine = Fine(Vec::new());
+        for _ in 0..40 {
+            let center = random.near([0.0; 3], 0.5);
+            let size = random.size(-3, 0);
+            let corners = [0; 3].map(|_| random.near(center, 0.5 * size).map(f64::from));
+            for _ in 0..3 {
+                let shift = 1e-9 * f64::from(random.unit());
+                fine.0.push(corners.map(|p| p.map(|x| x + shift)));
+            }
+        }
+        let rounded: Vec<Corners> =
+            fine.0.iter().map(|corners| corners.map(|p| p.map(|x| x as f32))).collect();
+        let bvh = tree(&rounded, &[], Quality::Balanced);
+        let alone = |number: usize, point: [f64; 3]| {
+            let one = Fine(vec![fine.0[number]]);
+            tree(&[rounded[number]], &[], Quality::Fast)
+                .closest_point_unrounded(point, f64::INFINITY, &one)
+                .unwrap()
+        };
+        for _ in 0..20 {
+            let point = random.near([0.0; 3], 1.0).map(|x| f64::from(x) + 1e-10);
+            let found = bvh.closest_point_unrounded(point, f64::INFINITY, &fine).unwrap();
+            let least = (0..fine.0.len()).map(|i| alone(i, point).distance).fold(f64::INFINITY, f64::min);
+            assert_eq!(found.distance, least);
+            assert!(bvh.closest_point_unrounded(point, least * 0.999, &fine).is_none());
+        }
+    }
 }

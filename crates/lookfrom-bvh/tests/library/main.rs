@@ -6,6 +6,7 @@ mod brute_force;
 mod build;
 mod closest_point;
 mod counts;
+mod crossings;
 mod double;
 mod extremes;
 mod hit_points;
