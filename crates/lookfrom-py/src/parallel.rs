@@ -1,0 +1,80 @@
+//! Work on several threads, without the GIL, that Ctrl-C stops.
+//!
+//! Threads live as long as the call that started them. So nothing is left that a fork would lose: a process that was forked
+//! off calls as its parent does.
+
+use std::num::NonZero;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use pyo3::prelude::*;
+
+/// How often the calling thread looks for signals.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// The number of threads for a call that asks for `threads`: 0 stands for all cores.
+pub(crate) fn thread_count(threads: usize) -> usize {
+    match threads {
+        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        _ => threads,
+    }
+}
+
+/// Works on each item once, on up to `threads` threads, of which the calling one is the first. `start` makes the worker of a
+/// thread, with its memory.
+///
+/// # Errors
+/// An exception of a signal's handler, such as `KeyboardInterrupt`; some items are then left.
+// Of `check_signals` itself no closure can be made, for reasons of lifetimes.
+#[allow(clippy::redundant_closure_for_method_calls)]
+pub(crate) fn for_each<T: Send, W: FnMut(T)>(
+    py: Python<'_>,
+    threads: usize,
+    items: impl ExactSizeIterator<Item = T> + Send,
+    start: impl Fn() -> W + Sync,
+) -> PyResult<()> {
+    py.detach(|| {
+        let threads = thread_count(threads).min(items.len());
+        let items = Mutex::new(items);
+        let stopped = AtomicBool::new(false);
+        let next = || {
+            let mut items = items.lock().unwrap_or_else(PoisonError::into_inner);
+            if stopped.load(Ordering::Relaxed) { None } else { items.next() }
+        };
+        thread::scope(|scope| {
+            for _ in 1..threads {
+                let work = || {
+                    let mut work = start();
+                    while let Some(item) = next() {
+                        work(item);
+                    }
+                };
+                // Where there are no more threads, fewer do the work.
+                let _ = thread::Builder::new().spawn_scoped(scope, work);
+            }
+            let mut work = start();
+            let mut looked = Instant::now();
+            while let Some(item) = next() {
+                work(item);
+                if looked.elapsed() > BETWEEN_LOOKS {
+                    if let Err(interrupt) = Python::attach(|py| py.check_signals()) {
+                        stopped.store(true, Ordering::Relaxed);
+                        return Err(interrupt);
+                    }
+                    looked = Instant::now();
+                }
+            }
+            Ok(())
+        })
+    })
+}
+
+/// Runs a function that divides its work by `rayon`, on threads of its own, without the GIL.
+pub(crate) fn in_pool<R: Send>(py: Python<'_>, threads: usize, run: impl FnOnce() -> R + Send) -> R {
+    py.detach(|| match rayon::ThreadPoolBuilder::new().num_threads(thread_count(threads)).build() {
+        Ok(pool) => pool.install(run),
+        Err(_) => run(),
+    })
+}
