@@ -9,12 +9,17 @@ use pyo3::prelude::*;
 mod arrays;
 mod error;
 mod parallel;
+mod pictures;
 mod rays;
 
 #[pymodule]
 mod _lookfrom {
     #[pymodule_export]
     use crate::error::Error;
+    #[pymodule_export]
+    use crate::pictures::command::{keyword_list, run_command};
+    #[pymodule_export]
+    use crate::pictures::{Film, Page, Picture, SceneError, Session};
     #[pymodule_export]
     use crate::rays::Tree;
 }

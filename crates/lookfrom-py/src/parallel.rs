@@ -78,3 +78,45 @@ pub(crate) fn in_pool<R: Send>(py: Python<'_>, threads: usize, run: impl FnOnce(
         Err(_) => run(),
     })
 }
+
+/// Runs a function that divides its work by `rayon`, on threads of its own, without the GIL; meanwhile the calling thread looks for
+/// signals and calls `look`, several times a second. Where either raises, `stop` is called, and the result is still waited for.
+pub(crate) fn watched<R: Send>(
+    py: Python<'_>,
+    threads: usize,
+    run: impl FnOnce() -> R + Send,
+    mut look: impl FnMut() -> PyResult<()>,
+    stop: impl Fn(),
+) -> (R, PyResult<()>) {
+    let caller = thread::current();
+    let mut told = Ok(());
+    let result = thread::scope(|scope| {
+        let work = scope.spawn(|| {
+            let _ending = Ending(caller);
+            match rayon::ThreadPoolBuilder::new().num_threads(thread_count(threads)).build() {
+                Ok(pool) => pool.install(run),
+                Err(_) => run(),
+            }
+        });
+        while !work.is_finished() {
+            py.detach(|| thread::park_timeout(BETWEEN_LOOKS));
+            if told.is_ok() {
+                told = py.check_signals().and_then(|()| look());
+                if told.is_err() {
+                    stop();
+                }
+            }
+        }
+        work.join()
+    });
+    (result.unwrap_or_else(|panic| std::panic::resume_unwind(panic)), told)
+}
+
+/// Wakes the calling thread at the end of the work, also by a panic.
+struct Ending(thread::Thread);
+
+impl Drop for Ending {
+    fn drop(&mut self) {
+        self.0.unpark();
+    }
+}

@@ -116,7 +116,9 @@ def each(value: ArrayLike, name: str, shape: Shape) -> NDArray[np.float64]:
         raise Error(f"{name} has shape {array.shape}, but there are rays of shape {shape}") from None
 
 
-def rows_together(first: tuple[str, ArrayLike], second: tuple[str, ArrayLike]) -> tuple[Floats, Floats, Shape]:
+def rows_together(
+    first: tuple[str, ArrayLike], second: tuple[str, ArrayLike]
+) -> tuple[Floats, Floats, Shape]:
     """Two arrays of shape (..., 3) as rows, with one row for all broadcast without a copy; and the shape that results have."""
     a, b = vectors(first[1], first[0]), vectors(second[1], second[0])
     try:

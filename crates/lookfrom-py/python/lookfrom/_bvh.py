@@ -217,7 +217,9 @@ class Bvh(Open3dMethods):
         rows, shape = _arrays.points(points, "points")
         if not max_distance >= 0.0:
             raise Error(f"max_distance is {max_distance}, but it must not be negative or NaN")
-        positions, arrays = self._tree.closest_points(rows, float(max_distance), _arrays.thread_count(threads))
+        positions, arrays = self._tree.closest_points(
+            rows, float(max_distance), _arrays.thread_count(threads)
+        )
         return ClosestPoints(self, positions, arrays, shape)
 
     def signed_distance(self, points: ArrayLike, *, threads: int | None = None) -> NDArray[np.float64]:
@@ -304,7 +306,9 @@ class Bvh(Open3dMethods):
         parts: list[Triangles | Spheres | Instance] = []
         for number in range(len(self._tree.shapes)):
             points, other, masks = self._tree.geometry(number)
-            parts.append(Triangles(points, other, masks) if other.ndim == 2 else Spheres(points, other, masks))
+            parts.append(
+                Triangles(points, other, masks) if other.ndim == 2 else Spheres(points, other, masks)
+            )
         return (*parts, *self._instances)
 
     def __copy__(self) -> Bvh:

@@ -62,7 +62,9 @@ def pinhole_rays(
     if intrinsics is not None:
         k = _arrays.numbers(intrinsics, "intrinsics").astype(np.float64)
         if k.shape != (3, 3) or k[2].tolist() != [0.0, 0.0, 1.0] or k[1, 0] != 0.0 or not k[0, 0] * k[1, 1]:
-            raise Error(f"intrinsics is {k.tolist()}, but [[fx, skew, cx], [0, fy, cy], [0, 0, 1]] is expected")
+            raise Error(
+                f"intrinsics is {k.tolist()}, but [[fx, skew, cx], [0, fy, cy], [0, 0, 1]] is expected"
+            )
         y = (np.arange(height) - k[1, 2]) / k[1, 1]
         x = (np.arange(width) - k[0, 2] - k[0, 1] * y[:, None]) / k[0, 0]
     else:

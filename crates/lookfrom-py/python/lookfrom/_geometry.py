@@ -53,7 +53,11 @@ class Spheres:
     def _item(self, name: str) -> tuple[Any, ...]:
         centers, _ = _arrays.points(self.centers, f"{name}centers")
         _arrays.finite(centers, f"{name}centers")
-        return centers, _radii(self.radii, f"{name}radii", len(centers)), _masks(self.masks, name, len(centers))
+        return (
+            centers,
+            _radii(self.radii, f"{name}radii", len(centers)),
+            _masks(self.masks, name, len(centers)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +81,11 @@ class Instance:
         if matrix.shape == (4, 4) and matrix[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
             raise Error(f"the last row of {name}matrix is {matrix[3].tolist()}, but 0 0 0 1 is expected")
         _arrays.finite(matrix, f"{name}matrix")
-        return self.bvh._tree, matrix[:3], None if self.mask is None else _arrays.bits(self.mask, f"{name}mask")
+        return (
+            self.bvh._tree,
+            matrix[:3],
+            None if self.mask is None else _arrays.bits(self.mask, f"{name}mask"),
+        )
 
 
 def _radii(value: float | ArrayLike, name: str, count: int) -> NDArray[np.float64]:

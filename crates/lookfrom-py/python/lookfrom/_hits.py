@@ -223,5 +223,3 @@ class Statistics:
     """Primitives that no ray can hit: triangles without area, spheres without radius."""
     memory: int
     """Bytes, of the tree and its geometry, without the trees of instances."""
-
-

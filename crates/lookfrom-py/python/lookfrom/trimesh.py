@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays
 from ._bvh import Bvh
 
+# A ray that starts on a face hits it, as with trimesh.
+_START = np.nextafter(0.0, -1.0)
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -25,7 +28,7 @@ class RayMeshIntersector:
     scale_to_box: has no effect: queries are always relative to the mesh's box.
     threads: at most so many for each query; None for all cores.
 
-    Rays whose direction is zero or not finite hit nothing, as with trimesh.
+    As with trimesh, rays that start on a face hit it, and rays whose direction is zero or not finite hit nothing.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True, *, threads: int | None = None) -> None:
@@ -33,6 +36,10 @@ class RayMeshIntersector:
         self._scale_to_box = scale_to_box
         self._threads = threads
         self._built: tuple[int, Bvh] | None = None
+
+    @property
+    def _how(self) -> dict[str, Any]:
+        return {"t_min": _START, "invalid": "miss", "threads": self._threads}
 
     @property
     def bvh(self) -> Bvh:
@@ -97,7 +104,7 @@ class RayMeshIntersector:
         """
         origins, directions, bvh = *_rays(ray_origins, ray_directions), self.bvh
         if multiple_hits:
-            hits = bvh.all_hits(origins, directions, crossings=True, invalid="miss", threads=self._threads)
+            hits = bvh.all_hits(origins, directions, crossings=True, **self._how)
             index_tri, index_ray = hits.triangle.astype(np.int64), hits.ray
             chosen: Any = slice(None)
             if max_hits is not None:
@@ -106,17 +113,17 @@ class RayMeshIntersector:
                 return index_tri[chosen], index_ray[chosen]
             return index_tri[chosen], index_ray[chosen], hits.points[chosen]
         if not return_locations:
-            first = bvh.closest_primitives(origins, directions, invalid="miss", threads=self._threads)
+            first = bvh.closest_primitives(origins, directions, **self._how)
             index_ray = np.flatnonzero(first >= 0)
             return first[index_ray].astype(np.int64), index_ray
-        closest = bvh.closest_hits(origins, directions, invalid="miss", threads=self._threads)
+        closest = bvh.closest_hits(origins, directions, **self._how)
         index_ray = np.flatnonzero(closest.hit)
         return closest.triangle[index_ray].astype(np.int64), index_ray, closest.points[index_ray]
 
     def intersects_first(self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any) -> Integers:
         """The first face that each ray hits: int64 of shape (n,), -1 for a miss."""
         origins, directions = _rays(ray_origins, ray_directions)
-        first = self.bvh.closest_primitives(origins, directions, invalid="miss", threads=self._threads)
+        first = self.bvh.closest_primitives(origins, directions, **self._how)
         return first.astype(np.int64)
 
     def intersects_any(
@@ -124,7 +131,7 @@ class RayMeshIntersector:
     ) -> NDArray[np.bool_]:
         """Whether each ray hits the mesh: bool of shape (n,)."""
         origins, directions = _rays(ray_origins, ray_directions)
-        return self.bvh.occluded(origins, directions, invalid="miss", threads=self._threads)
+        return self.bvh.occluded(origins, directions, **self._how)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Whether points, shape (n, 3), are inside the mesh: bool of shape (n,), as `Bvh.contains`. Points that are not finite

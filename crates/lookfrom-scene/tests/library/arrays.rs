@@ -5,7 +5,8 @@ use std::path::Path;
 use lookfrom_scene::{Budget, Error, LoadContext, Memory, Scene, load};
 
 fn array(kind: &str, shape: [usize; 2], data: Vec<u8>) -> Vec<u8> {
-    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, {}), }}", shape[0], shape[1]);
+    let header =
+        format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, {}), }}", shape[0], shape[1]);
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((header.len() as u16).to_le_bytes());
     bytes.extend(header.into_bytes());
@@ -55,7 +56,12 @@ fn arrays_that_make_no_mesh_are_told() {
         ("positions = { npz = \"p.npy\" }\ntriangles = []", &[], &[], "npz"),
         ("positions = { npy = \"scene.toml\" }\ntriangles = []", &[], &[], "no array of NumPy"),
         (&format!("{BOTH}\nuvs = {{ npy = \"p.npy\" }}"), &POSITIONS, &TRIANGLES, "expected (n, 2)"),
-        (&format!("{BOTH}\nnormals = {{ npy = \"t.npy\" }}"), &POSITIONS, &TRIANGLES, "`normals` has 2 values"),
+        (
+            &format!("{BOTH}\nnormals = {{ npy = \"t.npy\" }}"),
+            &POSITIONS,
+            &TRIANGLES,
+            "`normals` has 2 values",
+        ),
         (&format!("{BOTH}\ncolors = {{ npy = \"p.npy\" }}"), &[[-1.0; 3]; 4], &TRIANGLES, "negative"),
     ] {
         let error = read(mesh, positions, triangles).unwrap_err();

@@ -156,6 +156,21 @@ impl Developed {
         write(format, &self.picture, &self.layers_with(film), &self.development, &self.header, out)
     }
 
+    /// The further channels that an EXR of the picture has, with the number of each pixel: AOVs, layers of light-path expressions and
+    /// the light before denoising, of its film.
+    pub fn channels(&self, film: &Film) -> Vec<(String, Vec<f32>)> {
+        let layers = self.layers_with(Some(film));
+        let (width, height) = (self.picture.width, self.picture.height);
+        let numbers = || vec![0.0; width as usize * height as usize];
+        let mut channels: Vec<_> = layers.names().into_iter().map(|name| (name, numbers())).collect();
+        for row in 0..height {
+            layers.row(row, width, &mut |channel, x, number| {
+                channels[channel].1[row as usize * width as usize + x as usize] = number;
+            });
+        }
+        channels
+    }
+
     /// Its own further channels, or those of its film.
     pub(super) fn layers_with<'a>(&'a self, film: Option<&'a Film>) -> Layers<'a> {
         match film {

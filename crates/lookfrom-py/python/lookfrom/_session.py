@@ -1,0 +1,276 @@
+"""Sessions: a scene that is read once and rendered as often as one likes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _lookfrom, _toml
+from ._camera import Camera
+from ._inspect import Inspection, PixelInspection, from_json
+from ._labels import Labels
+from ._lookfrom import Error
+from ._picture import Film, Picture
+from ._scene import Scene, image_file
+from ._words import words
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._words import Options
+
+# Called with the samples so far and in all, of all pixels.
+Progress = Callable[[int, int], object]
+
+
+class SceneWarning(UserWarning):
+    """A scene is rendered, but the picture may differ from what its file means."""
+
+
+class Session:
+    """A scene that is read and compiled once, to be rendered with any camera and settings.
+
+    scene: the name of a scene or model (.toml, .pbrt, .gltf, .glb, .obj, .ply, .stl), a Scene, a dictionary in its words, a mesh of
+        trimesh, or the bytes of a self-contained file, whose format `name` tells ("model.glb").
+    keep: whether the session keeps the scene beside what is compiled, so that `set_material` and `set_lights` can change it; it
+        takes the memory of its meshes once more.
+    options: those of the command `lookfrom render`: see `Options` and `lookfrom.options()`. `environment` may also be an array,
+        float of shape (h, w, 3).
+
+    Raises SceneError, which has file, line and column, where the scene cannot be read or the options do not suit it; Error for
+    options that do not exist or make no sense. What the readers doubt is a SceneWarning.
+
+    A session may be used by several threads at once, and after a fork; it can be copied and pickled (then it is read again).
+    """
+
+    def __init__(
+        self, scene: Any, *, name: str = "", keep: bool = False, **options: Unpack[Options]
+    ) -> None:
+        self._source = _source(scene, name)
+        self._keep = keep
+        self._options: dict[str, Any] = dict(options)
+        self._native = self._opened(self._options)
+        for text in self.warnings:
+            warnings.warn(text, SceneWarning, stacklevel=2)
+
+    def _opened(self, options: Mapping[str, Any]) -> _lookfrom.Session:
+        path, files = self._source
+        given = dict(options)
+        environment = given.get("environment")
+        if isinstance(environment, np.ndarray):
+            extension, content = image_file(environment)
+            given["environment"] = f"environment.{extension}"
+            files = {**files, given["environment"]: content}
+        return _lookfrom.Session(path, files, words(given), self._keep)
+
+    def render(self, *, progress: bool | Progress = False, film: Film | None = None) -> Picture:
+        """Renders the picture.
+
+        progress: True for a bar, where tqdm is installed; or a function that is called with the samples so far and in all, several
+            times a second.
+        film: a film of this session's picture (which needs film=True), whose samples are not rendered again.
+
+        The GIL is released. Ctrl-C stops it: the KeyboardInterrupt has the picture of the samples so far as `picture`. An exception
+        of `progress` does the same. Raises SceneError where there is not enough memory.
+        """
+        native = None if film is None else film._native
+        if progress is True:
+            with _Bar() as bar:
+                return _finished(lambda: self._native.render(native, bar))
+        return _finished(lambda: self._native.render(native, progress or None))
+
+    def set(self, **options: Unpack[Options]) -> None:
+        """Changes options; others stay. Nothing is read or built for another size, crop, samples, camera (lookfrom, lookat, up, fov),
+        exposure, tonemap, background, integrator, depth, seed, filter, layers, noise or time; for others the scene is read again.
+
+        Raises as Session; then nothing has changed.
+        """
+        merged: dict[str, Any] = {**self._options, **options}
+        if options.get("size") is not None:
+            merged.update(width=options.get("width"), height=options.get("height"))
+        elif options.get("width") is not None or options.get("height") is not None:
+            merged.update(size=None)
+        is_array = isinstance(options.get("environment"), np.ndarray)
+        # What was given before cannot be taken back without reading.
+        is_taken_back = any(value is None or value is False for value in options.values())
+        if is_array or is_taken_back or self._native.change(words(options)) is not None:
+            self._native = self._opened(merged)
+        self._options = merged
+
+    def set_material(self, material: str, **words: Any) -> None:
+        """Replaces a material of this name, by the words of `[materials.NAME]`: set_material("paint", type="diffuse", reflectance=0.5).
+
+        Only what depends on materials is compiled again, no tree is built. Raises Error for a name that no material has, and SceneError for
+        words that make no material, and for textures, which a session cannot be given. Needs keep=True.
+        """
+        self._native.set_material(material, _toml.document({"materials": {material: words}}))
+
+    def set_lights(self, lights: Iterable[Mapping[str, Any]]) -> None:
+        """Replaces all lights that are no shapes, the studio of a model included, by the words of `[[light]]`. As `set_material`."""
+        self._native.set_lights(_toml.document({"light": [dict(light) for light in lights]}))
+
+    @property
+    def camera(self) -> Camera:
+        """The camera as matrices."""
+        told = self._native.camera()
+        width, height, _, _ = self._native.settings()
+        vectors = {name: np.array(told[name], np.float64) for name in ("lookfrom", "right", "up", "forward")}
+        return Camera(
+            projection=told["projection"],
+            width=width,
+            height=height,
+            **vectors,
+            lens_radius=told["lens_radius"],
+            focus_distance=told["focus_distance"],
+            _plane_from_pixel=np.array(told["pixel"], np.float64),
+        )
+
+    def labels(self) -> Labels:
+        """What is seen at the middle of each pixel: ids, depth, positions, normals, for data sets."""
+        camera = self.camera
+        arrays = self._native.labels()
+        shape = (camera.height, camera.width)
+        position = arrays["position"].reshape(*shape, 3)
+        axis = camera.forward / np.linalg.norm(camera.forward)
+        with np.errstate(invalid="ignore"):
+            depth = (position - camera.lookfrom) @ axis
+        depth[np.isnan(depth)] = np.inf
+        shapes, materials = self._native.names()
+        return Labels(
+            shape=arrays["shape"].reshape(shape),
+            instance=arrays["instance"].reshape(shape),
+            material=arrays["material"].reshape(shape),
+            primitive=arrays["primitive"].reshape(shape),
+            depth=depth,
+            position=position,
+            normal=arrays["normal"].reshape(*shape, 3),
+            shape_names=shapes,
+            material_names=materials,
+            camera=camera,
+        )
+
+    def inspect(self, x: int, y: int, sample: int = 0) -> Inspection:
+        """Every step of the computation of one sample of a pixel: matrices, tests of primitives, roots, the tree of rays, and the additions
+        that make its light, bit for bit. x, y: column and row from the top left.
+
+        Raises IndexError for a pixel or sample that the picture does not have.
+        """
+        text = self._native.inspect(x, y, sample)
+        lines = (self._native.inspect_text, self._native.inspect_svg)
+        return from_json(Inspection, text, *(lambda line=line: line(x, y, sample) for line in lines))
+
+    def inspect_pixel(self, x: int, y: int) -> PixelInspection:
+        """All samples of a pixel, and how far each is from the others."""
+        return from_json(PixelInspection, self._native.inspect(x, y, None))
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Columns and rows of the picture."""
+        width, height, _, _ = self._native.settings()
+        return width, height
+
+    @property
+    def samples(self) -> int:
+        """Samples per pixel."""
+        return self._native.settings()[2]
+
+    @property
+    def exposure(self) -> float:
+        """Exposure in stops, also where it was chosen by what is seen."""
+        return self._native.settings()[3]
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+        """The lowest and the highest corner of the scene's bounding box; None where it is empty."""
+        return self._native.bounds()
+
+    @property
+    def materials(self) -> list[str]:
+        """Names of the materials."""
+        return self._native.names()[1]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the readers doubted."""
+        return [text for text, is_note in self._native.warnings() if not is_note]
+
+    @property
+    def notes(self) -> list[str]:
+        """What the readers chose or left out without harm."""
+        return [text for text, is_note in self._native.warnings() if is_note]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"source": self._source, "keep": self._keep, "options": self._options}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._source, self._keep, self._options = state["source"], state["keep"], state["options"]
+        self._native = self._opened(self._options)
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"Session({self._source[0]!r}, {width}×{height}, {self.samples} samples)"
+
+
+def render(scene: Any, *, name: str = "", progress: bool | Progress = False, **options: Unpack[Options]) -> Picture:
+    """The picture of a scene: `Session(scene, ...).render()`. A model without lights stands in a studio; without a camera it is framed."""
+    return Session(scene, name=name, **options).render(progress=progress)
+
+
+def _source(scene: Any, name: str) -> tuple[str, dict[str, bytes]]:
+    """The name of a scene's file, and the files that are in memory."""
+    if isinstance(scene, str | os.PathLike):
+        return os.fspath(scene), {}
+    if isinstance(scene, bytes | bytearray | memoryview):
+        if not Path(name).suffix:
+            raise Error(f"name is {name!r}, but the bytes of a file need one that tells their format, such as \"model.glb\"")
+        return name, {name: bytes(scene)}
+    if isinstance(scene, Mapping):
+        scene = Scene(scene)
+    elif hasattr(scene, "vertices") and hasattr(scene, "faces"):
+        built = Scene()
+        built.trimesh(scene)
+        scene = built
+    if isinstance(scene, Scene):
+        return scene._in_memory()
+    raise TypeError(
+        f"a scene is a name, a Scene, a dictionary, a mesh of trimesh or the bytes of a file, but not {type(scene).__name__}"
+    )
+
+
+def _finished(render: Callable[[], _lookfrom.Picture]) -> Picture:
+    try:
+        return Picture(render())
+    except BaseException as stop:
+        native = getattr(stop, "picture", None)
+        if isinstance(native, _lookfrom.Picture):
+            stop.picture = Picture(native)  # type: ignore[attr-defined]
+        raise
+
+
+class _Bar:
+    """A bar of tqdm, or nothing where it is not installed."""
+
+    def __init__(self) -> None:
+        self._bar: Any = None
+
+    def __enter__(self) -> _Bar:
+        try:
+            from tqdm.auto import tqdm
+        except ImportError:
+            return self
+        self._bar = tqdm(total=0, unit="sample", unit_scale=True)
+        return self
+
+    def __call__(self, done: int, total: int) -> None:
+        if self._bar is not None:
+            self._bar.total = max(total, done)
+            self._bar.update(done - self._bar.n)
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()

@@ -1,0 +1,93 @@
+//! Films: the exact sums of samples, in memory and in files.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use lookfrom::scene::{Budget, Disk, Error, ErrorKind, LoadContext, Location, Result as SceneResult};
+use lookfrom::session::FilmFile;
+use pyo3::prelude::*;
+
+use super::command::{Words, asked};
+use super::error::raised;
+use super::picture::Picture;
+
+/// The film of a picture.
+#[pyclass(frozen, module = "lookfrom._lookfrom")]
+pub(crate) struct Film {
+    file: Arc<FilmFile>,
+}
+
+#[pymethods]
+impl Film {
+    /// Reads a film's file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let read = py.detach(|| -> SceneResult<FilmFile> {
+            let budget = Budget::default();
+            let bytes = LoadContext::within(&budget, &Disk).read(&path)?;
+            FilmFile::read(&bytes, &path, &budget)
+        });
+        Ok(Self::new(read.map_err(|error| raised(py, &error, &Disk))?))
+    }
+
+    /// A copy with the samples of another film of the same picture.
+    fn merged(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
+        let (mut file, other) = (FilmFile::clone(&self.file()), other.file());
+        let merged = py.detach(|| file.merge(&other));
+        merged.map_err(|error| raised(py, &error, &Disk))?;
+        Ok(Self::new(file))
+    }
+
+    /// Writes the file, with its picture.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let file = self.file();
+        let written = py.detach(|| {
+            let mut out = std::io::Cursor::new(Vec::new());
+            file.write(&file.develop(&file.provenance.development), &mut out)?;
+            std::fs::write(&path, out.into_inner())
+                .map_err(|error| Error::new(ErrorKind::Io, &Location::file(&path), error.to_string()))
+        });
+        written.map_err(|error| raised(py, &error, &Disk))
+    }
+
+    /// The picture, developed as it was to be, or otherwise.
+    fn develop(&self, py: Python<'_>, words: Words) -> PyResult<Picture> {
+        let asked = asked(words)?;
+        let file = self.file();
+        let mut development = file.provenance.development;
+        let options = asked.options;
+        if let Some(lookfrom::session::Exposure::Stops(stops)) = options.exposure {
+            development.exposure = stops;
+        }
+        development.tonemap = options.tonemap.unwrap_or(development.tonemap);
+        development.background = options.background.unwrap_or(development.background);
+        development.denoise = options.denoise.unwrap_or(development.denoise);
+        if options.fireflies != lookfrom::session::Fireflies::Keep {
+            development.fireflies = options.fireflies;
+        }
+        Ok(Picture::of_film(&file, py.detach(|| file.develop(&development))))
+    }
+
+    /// Columns and rows, samples of all pixels together, and whether all are there that were to be.
+    fn told(&self) -> (u32, u32, u64, bool) {
+        let file = self.file();
+        let FilmFile { film, provenance } = &*file;
+        (film.width(), film.height(), film.ledger().total(), provenance.is_complete(film))
+    }
+
+    /// The scene and the keywords of the command that it is of.
+    fn origin(&self) -> (Option<String>, Vec<String>) {
+        let file = self.file();
+        (file.provenance.scene.clone(), file.provenance.arguments.clone())
+    }
+}
+
+impl Film {
+    pub(super) fn new(file: FilmFile) -> Self {
+        Self { file: Arc::new(file) }
+    }
+
+    pub(super) fn file(&self) -> Arc<FilmFile> {
+        self.file.clone()
+    }
+}

@@ -1,0 +1,274 @@
+//! Sessions.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use lookfrom::inspect::{self, SvgView};
+use lookfrom::render::{Progress, SampleId, TileDone};
+use lookfrom::scene::image;
+use lookfrom::scene::scene::MaterialId;
+use lookfrom::scene::{LoadContext, Result as SceneResult, Warning, WarningGroup, WarningKind, json};
+use lookfrom::session::{self, FilmFile, Finished, Options};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use super::command::{Words, asked};
+use super::error::{raised, worded};
+use super::files::Overlay;
+use super::film::Film;
+use super::picture::Picture;
+use super::{labels, parts, view};
+use crate::error::Error;
+use crate::parallel;
+
+/// A scene that is ready to be rendered. Calls that change it replace it whole, so that a render that is under way in another
+/// thread goes on with what it began with.
+#[pyclass(frozen, module = "lookfrom._lookfrom")]
+pub(crate) struct Session {
+    files: Overlay,
+    /// The arguments of `lookfrom render` that open the same session.
+    typed: Vec<String>,
+    inner: Mutex<session::Session>,
+}
+
+#[pymethods]
+impl Session {
+    /// Reads a scene from a file, or by its name among files in memory, and compiles it.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        files: HashMap<PathBuf, Vec<u8>>,
+        words: Words,
+        keep_scene: bool,
+    ) -> PyResult<Self> {
+        let asked = asked(words)?;
+        let (is_on_disk, files) = (!files.contains_key(&path), Overlay::new(files));
+        let threads = asked.options.threads.unwrap_or(0);
+        let opened = parallel::in_pool(py, threads, || -> SceneResult<session::Session> {
+            let environment = asked
+                .environment
+                .as_deref()
+                .map(|path| image::read(path, &mut LoadContext::within(&asked.options.budget, &files)));
+            let options =
+                Options { environment: environment.transpose()?, keep_scene, ..asked.options.clone() };
+            match is_on_disk {
+                // So it can be read again for a camera far away.
+                true => session::Session::open(&path, &options),
+                false => session::Session::read(&path, &files, &options),
+            }
+        });
+        let inner = Mutex::new(opened.map_err(|error| raised(py, &error, &files))?);
+        Ok(Self { files, typed: asked.typed, inner })
+    }
+
+    /// Changes options, for which nothing is read. Returns the name of an option for which the scene must be read again; then
+    /// nothing has changed.
+    fn change(&self, py: Python<'_>, words: Words) -> PyResult<Option<&'static str>> {
+        let asked = asked(words)?;
+        let of_scene = asked.options.of_scene().or(asked.environment.is_some().then_some("environment"));
+        if of_scene.is_some() {
+            return Ok(of_scene);
+        }
+        self.exchange(py, 0, |session| session.change(&asked.options))?;
+        Ok(None)
+    }
+
+    /// Renders the picture, or goes on with a film. `look` is called now and then with the samples so far and in all, of all
+    /// pixels. An exception of it, or of a signal's handler, stops the render; it has the picture so far as `picture`.
+    fn render(
+        &self,
+        py: Python<'_>,
+        film: Option<PyRef<'_, Film>>,
+        look: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Picture> {
+        let session = self.now();
+        let film = film.map(|film| film.file());
+        let heard = Heard::default();
+        let render = || -> SceneResult<Finished> {
+            match film {
+                Some(film) => session.resume(FilmFile::clone(&film), &heard),
+                None => session.render(&heard),
+            }
+        };
+        let tell = || match &look {
+            None => Ok(()),
+            Some(look) => {
+                let [done, total] = [&heard.done, &heard.total].map(|count| count.load(Ordering::Relaxed));
+                look.call1((done, total)).map(|_| ())
+            }
+        };
+        let (finished, told) = parallel::watched(py, 0, render, tell, || heard.cancel());
+        let finished = finished.map_err(|error| raised(py, &error, &self.files))?;
+        let picture = Picture::of_finished(finished, self.provenance(&session));
+        match told {
+            Ok(()) => Ok(picture),
+            Err(stop) => {
+                stop.value(py).setattr("picture", Py::new(py, picture)?)?;
+                Err(stop)
+            }
+        }
+    }
+
+    /// What is seen at the middle of each pixel: arrays by name.
+    fn labels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let session = self.now();
+        let labels = parallel::in_pool(py, 0, || session.renderer().labels());
+        labels::arrays(py, &labels)
+    }
+
+    /// Names of shapes and of materials, by index.
+    fn names(&self) -> (Vec<String>, Vec<String>) {
+        labels::names(self.now().renderer())
+    }
+
+    /// The camera.
+    fn camera<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        view::described(py, self.now().renderer().view().camera())
+    }
+
+    /// Columns and rows of the picture, samples per pixel, exposure in stops.
+    fn settings(&self) -> (u32, u32, u32, f32) {
+        let session = self.now();
+        let image = session.image();
+        (image.width, image.height, session.settings().samples, image.exposure)
+    }
+
+    /// The bounding box of what the file has, lowest and highest corner; `None` where it is empty.
+    fn bounds(&self) -> Option<([f64; 3], [f64; 3])> {
+        let bounds = self.now().info().bounds;
+        (!bounds.is_empty()).then(|| (bounds.min.to_array(), bounds.max.to_array()))
+    }
+
+    /// Warnings and notes of the readers, each with whether it is a mere note.
+    fn warnings(&self) -> Vec<(String, bool)> {
+        let session = self.now();
+        let told = |warning: &Warning| warning.clone().worded(worded);
+        let groups = WarningGroup::of(&session.warnings().iter().map(told).collect::<Vec<_>>());
+        groups.iter().map(|group| (group.to_string(), group.kind() != WarningKind::Warning)).collect()
+    }
+
+    /// Replaces a material by that of a text in the scene format.
+    fn set_material(&self, py: Python<'_>, name: &str, text: &str) -> PyResult<()> {
+        let known = self.names().1;
+        let Some(index) = known.iter().position(|other| other == name) else {
+            return Err(Error::new_err(format!(
+                "there is no material {name:?}; the scene has {}",
+                known.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
+            )));
+        };
+        let material = parts::material(text).map_err(|error| raised(py, &error, &parts::files(text)))?;
+        self.exchange(py, 0, |session| session.set_material(MaterialId(index as u32), material))
+    }
+
+    /// Replaces all lights that are no shapes by those of a text in the scene format.
+    fn set_lights(&self, py: Python<'_>, text: &str) -> PyResult<()> {
+        let lights = parts::lights(text).map_err(|error| raised(py, &error, &parts::files(text)))?;
+        self.exchange(py, 0, |session| session.set_lights(lights))
+    }
+
+    /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).
+    fn inspect(&self, py: Python<'_>, x: u32, y: u32, sample: Option<u32>) -> PyResult<String> {
+        let session = self.checked(x, y, sample)?;
+        let report = parallel::in_pool(py, 0, || -> SceneResult<String> {
+            let renderer = session.renderer();
+            Ok(match sample {
+                Some(sample) => json::line(&inspect::inspect(renderer, SampleId { pixel: [x, y], sample })),
+                None => json::line(&inspect::inspect_pixel(renderer, [x, y], 0..session.settings().samples)?),
+            })
+        });
+        report.map_err(|error| raised(py, &error, &self.files))
+    }
+
+    /// The same report as text for people.
+    fn inspect_text(&self, py: Python<'_>, x: u32, y: u32, sample: u32) -> PyResult<String> {
+        let session = self.checked(x, y, Some(sample))?;
+        let id = SampleId { pixel: [x, y], sample };
+        Ok(py.detach(|| inspect::inspect(session.renderer(), id).to_string()))
+    }
+
+    /// A drawing of the sample's rays, as SVG.
+    fn inspect_svg(&self, py: Python<'_>, x: u32, y: u32, sample: u32) -> PyResult<String> {
+        let session = self.checked(x, y, Some(sample))?;
+        let id = SampleId { pixel: [x, y], sample };
+        let drawn = py.detach(|| {
+            let renderer = session.renderer();
+            inspect::svg(renderer, &inspect::inspect(renderer, id), SvgView::default())
+        });
+        drawn.map_err(|error| raised(py, &error, &self.files))
+    }
+}
+
+impl Session {
+    /// The session as it is now.
+    fn now(&self) -> session::Session {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Changes a copy of the session, and replaces the session by it if that succeeds.
+    fn exchange(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        change: impl FnOnce(&mut session::Session) -> SceneResult<()> + Send,
+    ) -> PyResult<()> {
+        let mut session = self.now();
+        let changed = parallel::in_pool(py, threads, || change(&mut session));
+        changed.map_err(|error| raised(py, &error, &self.files))?;
+        *self.inner.lock().unwrap_or_else(PoisonError::into_inner) = session;
+        Ok(())
+    }
+
+    /// The session, if it has this sample of this pixel.
+    fn checked(&self, x: u32, y: u32, sample: Option<u32>) -> PyResult<session::Session> {
+        let session = self.now();
+        let (width, height) = (session.image().width, session.image().height);
+        if x >= width || y >= height {
+            let message = format!("pixel ({x}, {y}) is outside of the picture of {width} × {height} pixels");
+            return Err(PyIndexError::new_err(message));
+        }
+        let samples = session.settings().samples;
+        if let Some(sample) = sample.filter(|sample| *sample >= samples) {
+            let message = format!("there is no sample {sample}: a pixel has {samples}, counted from 0");
+            return Err(PyIndexError::new_err(message));
+        }
+        Ok(session)
+    }
+
+    /// What films of this session are of, if it keeps them.
+    fn provenance(&self, session: &session::Session) -> Option<session::Provenance> {
+        let mut provenance = session.provenance().ok()?;
+        let scene = Path::new(session.name());
+        provenance.scene = scene.is_file().then(|| scene.display().to_string());
+        provenance.arguments.clone_from(&self.typed);
+        Some(provenance)
+    }
+}
+
+/// Hears how far a render is, and can end it.
+#[derive(Default)]
+struct Heard {
+    done: AtomicU64,
+    total: AtomicU64,
+    is_cancelled: Arc<AtomicBool>,
+}
+
+impl Heard {
+    fn cancel(&self) {
+        self.is_cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Progress for Heard {
+    fn tile(&self, done: TileDone) {
+        self.done.fetch_max(done.done, Ordering::Relaxed);
+        self.total.store(done.total, Ordering::Relaxed);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.is_cancelled.load(Ordering::Relaxed)
+    }
+}
