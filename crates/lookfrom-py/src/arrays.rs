@@ -50,6 +50,23 @@ impl Rows<'_> {
         }
     }
 
+    #[inline]
+    pub(crate) fn row(&self, number: usize) -> [f64; 3] {
+        match self {
+            Self::Double(view) => [0, 1, 2].map(|axis| view[[number, axis]]),
+            Self::Single(view) => [0, 1, 2].map(|axis| f64::from(view[[number, axis]])),
+        }
+    }
+
+    /// Replaces the content of `out` by the rows at some places after `first`.
+    pub(crate) fn pick(&self, first: usize, places: &[u32], out: &mut Vec<[f64; 3]>) {
+        out.clear();
+        match self {
+            Self::Double(view) => pick(view, first, places, |x| x, out),
+            Self::Single(view) => pick(view, first, places, f64::from, out),
+        }
+    }
+
     /// Replaces the content of `out` by `count` rows from `first` on.
     pub(crate) fn read(&self, first: usize, count: usize, out: &mut Vec<[f64; 3]>) {
         out.clear();
@@ -71,6 +88,22 @@ impl Rows<'_> {
     }
 }
 
+fn pick<T: Copy>(
+    view: &ArrayView2<'_, T>,
+    first: usize,
+    places: &[u32],
+    widen: impl Fn(T) -> f64,
+    out: &mut Vec<[f64; 3]>,
+) {
+    let numbers = places.iter().map(|&place| first + place as usize);
+    if let Some(flat) = view.as_slice() {
+        let (rows, _) = flat.as_chunks::<3>();
+        out.extend(numbers.map(|number| rows[number].map(&widen)));
+    } else {
+        out.extend(numbers.map(|number| [0, 1, 2].map(|axis| widen(view[[number, axis]]))));
+    }
+}
+
 fn read<T: Copy>(
     view: &ArrayView2<'_, T>,
     first: usize,
@@ -79,8 +112,8 @@ fn read<T: Copy>(
     out: &mut Vec<[f64; 3]>,
 ) {
     if let Some(flat) = view.as_slice() {
-        let rows = flat[3 * first..3 * (first + count)].chunks_exact(3);
-        out.extend(rows.map(|row| [widen(row[0]), widen(row[1]), widen(row[2])]));
+        let (rows, _) = flat[3 * first..3 * (first + count)].as_chunks::<3>();
+        out.extend(rows.iter().map(|row| row.map(&widen)));
     } else {
         out.extend((first..first + count).map(|row| [0, 1, 2].map(|axis| widen(view[[row, axis]]))));
     }

@@ -12,6 +12,7 @@ mod closest;
 mod frame;
 mod geometry;
 mod inside;
+mod order;
 mod points;
 mod python;
 mod queries;

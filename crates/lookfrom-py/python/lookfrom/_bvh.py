@@ -349,6 +349,7 @@ class Bvh(Open3dMethods):
             None if mask is None else _arrays.bits(mask, "mask"),
             _arrays.one_of(faces, "faces", "both", "front", "back"),
             _arrays.one_of(invalid, "invalid", "raise", "miss") == "raise",
+            shape[-1] if len(shape) > 1 else 0,
             _arrays.thread_count(threads),
         ), shape
 

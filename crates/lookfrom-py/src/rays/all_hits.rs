@@ -13,10 +13,12 @@ impl Caster<'_> {
             self.find_all(number, crossings, &mut hits);
             let (ray, relation) = (self.chunk.world_ray(number), &self.chunk.relations[number]);
             fine.clear();
+            hits.iter().for_each(|hit| self.tree.fetch_face(hit));
+            hits.iter().for_each(|hit| self.tree.fetch_vertices(hit));
             let refined = hits.iter().map(|hit| refine(self.tree, &ray, hit, relation.t(hit.t)));
             fine.extend(refined.filter(|hit| relation.is_inside(hit.t)));
             fine.sort_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
-            take(number, &fine);
+            take(self.chunk.place(number), &fine);
         }
         self.hits = hits;
     }
@@ -31,7 +33,7 @@ impl Caster<'_> {
                 relation.is_surely_inside(hit.t)
                     || relation.is_inside(refine(self.tree, &ray, hit, relation.t(hit.t)).t)
             };
-            take(number, hits.iter().filter(is_inside).count());
+            take(self.chunk.place(number), hits.iter().filter(is_inside).count());
         }
         self.hits = hits;
     }

@@ -116,8 +116,8 @@ pub(super) fn quality(name: &str) -> PyResult<Quality> {
     }
 }
 
-/// Rays, and what they see: origins, directions, ends of the ranges, mask, faces, whether rays that make no sense are errors,
-/// number of threads.
+/// Rays, and what they see: origins, directions, ends of the ranges, mask, faces, whether rays that make no sense are errors, the
+/// width of a picture, number of threads.
 #[derive(FromPyObject)]
 pub(super) struct RaysArgument<'py>(
     Vectors<'py>,
@@ -127,6 +127,7 @@ pub(super) struct RaysArgument<'py>(
     Option<u32>,
     String,
     bool,
+    usize,
     pub(super) usize,
 );
 
@@ -137,7 +138,13 @@ impl RaysArgument<'_> {
         if origins.len() != count {
             return Err(PyTypeError::new_err(format!("{} origins for {count} directions", origins.len())));
         }
-        Ok(Rays { origins, directions, t_min: numbers(&self.2, count)?, t_max: numbers(&self.3, count)? })
+        Ok(Rays {
+            origins,
+            directions,
+            t_min: numbers(&self.2, count)?,
+            t_max: numbers(&self.3, count)?,
+            width: self.7,
+        })
     }
 
     pub(super) fn selection(&self) -> PyResult<Selection> {
@@ -161,12 +168,7 @@ impl RaysArgument<'_> {
 
 /// Which of the numbers of a ray make no sense.
 fn senseless_ray(rays: &Rays<'_>, number: usize) -> String {
-    let row = |rows: crate::arrays::Rows<'_>| {
-        let mut one = Vec::new();
-        rows.read(number, 1, &mut one);
-        one[0]
-    };
-    let (origin, direction) = (row(rays.origins), row(rays.directions));
+    let (origin, direction) = (rays.origins.row(number), rays.directions.row(number));
     let is_finite = |v: [f64; 3]| v.iter().all(|x| x.is_finite());
     let [t_min, t_max] = [rays.t_min[number], rays.t_max[number]];
     let remedy = "invalid=\"miss\" makes such rays miss";

@@ -23,10 +23,15 @@ impl<'a> Caster<'a> {
     /// The closest hit of each ray of the chunk, in order.
     pub(super) fn closest_hits(&mut self, mut take: impl FnMut(usize, FineHit)) {
         self.trace();
-        for number in 0..self.hits.len() {
-            let hit = &self.hits[number];
+        for (number, hit) in self.hits.iter().enumerate() {
+            if let Some(later) = self.hits.get(number + 2 * AHEAD) {
+                self.tree.fetch_face(later);
+            }
+            if let Some(later) = self.hits.get(number + AHEAD) {
+                self.tree.fetch_vertices(later);
+            }
             let fine = if hit.is_hit() { self.decide(number, hit) } else { FineHit::MISS };
-            take(number, fine);
+            take(self.chunk.place(number), fine);
         }
     }
 
@@ -39,7 +44,7 @@ impl<'a> Caster<'a> {
                 let fine = self.decide(number, hit);
                 ids = [fine.primitive, fine.geometry, fine.instance];
             }
-            take(number, ids);
+            take(self.chunk.place(number), ids);
         }
     }
 
@@ -111,7 +116,10 @@ impl<'a> Caster<'a> {
         self.found.resize(whole.len(), false);
         self.selection.of(&self.tree.bvh).occluded_many(&self.chunk.rays, &mut self.found);
         for (number, &[t_min, t_max]) in whole.iter().enumerate() {
-            take(number, self.found[number] || self.is_occluded_near_ends(number, [t_min, t_max]));
+            take(
+                self.chunk.place(number),
+                self.found[number] || self.is_occluded_near_ends(number, [t_min, t_max]),
+            );
         }
     }
 
@@ -143,6 +151,9 @@ impl<'a> Caster<'a> {
         end.t_min < BEYOND && (end.t_max - end.t_min > SHORT || (0..3).all(is_near))
     }
 }
+
+/// How many hits ahead primitives are fetched to the cache.
+const AHEAD: usize = 8;
 
 /// No kernel's ray reaches a tree after this.
 const BEYOND: f32 = 64.0;

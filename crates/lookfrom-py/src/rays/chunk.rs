@@ -4,8 +4,6 @@
 //! rounding; hits near the ends are then decided in f64. Rays from far away start near the tree, so that their rounding, too, is
 //! relative to the tree's size. Rays from one point, such as those of a camera, start there, since the kernel is faster then.
 
-use std::ops::Range;
-
 use lookfrom_bvh::Ray;
 use numpy::ndarray::ArrayView1;
 
@@ -33,6 +31,8 @@ pub(super) struct Rays<'a> {
     pub(super) directions: Rows<'a>,
     pub(super) t_min: ArrayView1<'a, f64>,
     pub(super) t_max: ArrayView1<'a, f64>,
+    /// Rays in a row of a picture; 0 where they are none.
+    pub(super) width: usize,
 }
 
 /// How a kernel's ray relates to the ray in the world.
@@ -77,6 +77,8 @@ impl Relation {
 /// The memory of a thread for its chunks.
 #[derive(Default)]
 pub(super) struct Chunk {
+    /// Where the results of the rays go, counted from the start of their share.
+    places: Vec<u32>,
     origins: Vec<[f64; 3]>,
     directions: Vec<[f64; 3]>,
     pub(super) rays: Vec<Ray>,
@@ -84,25 +86,38 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    /// Prepares some of the rays. Returns the number of the first that makes no sense, if there is one; it hits nothing.
-    pub(super) fn prepare(&mut self, tree: &Tree, rays: &Rays<'_>, range: Range<usize>) -> Option<usize> {
-        let count = range.len();
-        rays.origins.read(range.start, count, &mut self.origins);
-        rays.directions.read(range.start, count, &mut self.directions);
+    /// Prepares the rays at some places after `first`. Returns the number of the first that makes no sense, if there is one; it
+    /// hits nothing.
+    pub(super) fn prepare(
+        &mut self,
+        tree: &Tree,
+        rays: &Rays<'_>,
+        first: usize,
+        places: &[u32],
+    ) -> Option<usize> {
+        self.places.clear();
+        self.places.extend_from_slice(places);
+        rays.origins.pick(first, places, &mut self.origins);
+        rays.directions.pick(first, places, &mut self.directions);
         self.rays.clear();
         self.relations.clear();
         let start_together = self.start_together(tree);
         let mut senseless = None;
-        for (number, (&origin, &direction)) in self.origins.iter().zip(&self.directions).enumerate() {
-            let ends = [rays.t_min, rays.t_max].map(|ends| ends[range.start + number]);
+        for ((&origin, &direction), &place) in self.origins.iter().zip(&self.directions).zip(places) {
+            let number = first + place as usize;
+            let ends = [rays.t_min[number], rays.t_max[number]];
             if !makes_sense(origin, direction, ends) {
-                senseless = senseless.or(Some(range.start + number));
+                senseless = Some(senseless.unwrap_or(number).min(number));
             }
             let (ray, relation) = prepare(tree, origin, direction, ends, start_together);
             self.rays.push(ray);
             self.relations.push(relation);
         }
         senseless
+    }
+
+    pub(super) fn place(&self, number: usize) -> usize {
+        self.places[number] as usize
     }
 
     pub(super) fn world_ray(&self, number: usize) -> WorldRay {

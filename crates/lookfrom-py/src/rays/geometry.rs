@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::Affine;
+use prefetch_index::prefetch_index;
 
 use super::frame::Bounds;
 use super::tree::Tree;
@@ -62,6 +63,19 @@ impl Geometry {
             Self::Spheres { centers, radii } => {
                 Primitive::Sphere { center: centers[number], radius: radii[number] }
             }
+        }
+    }
+
+    pub(super) fn fetch_face(&self, number: usize) {
+        match self {
+            Self::Triangles { faces, .. } => prefetch_index(faces, number),
+            Self::Spheres { centers, .. } => prefetch_index(centers, number),
+        }
+    }
+
+    pub(super) fn fetch_vertices(&self, number: usize) {
+        if let Self::Triangles { vertices, faces } = self {
+            faces[number].iter().for_each(|&index| prefetch_index(vertices, index as usize));
         }
     }
 

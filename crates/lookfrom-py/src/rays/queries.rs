@@ -11,6 +11,7 @@ use super::arguments::{RaysArgument, Senseless};
 use super::cast::Caster;
 use super::chunk::CHUNK;
 use super::inside::Boundary;
+use super::order::Shares;
 use super::refine::FineHit;
 use super::tree::Tree;
 use crate::arrays::{Numbers, Rows, Vectors, numbers, zeros};
@@ -67,10 +68,10 @@ fn hit_arrays<'py>(py: Python<'py>, tree: &Tree, count: usize) -> PyResult<HitAr
 /// Calls a function with the content of arrays of hits.
 fn with_slices<R>(arrays: &HitArrays<'_>, run: impl FnOnce(HitsOut<'_>) -> PyResult<R>) -> PyResult<R> {
     let (t, u, v, primitive, geometry, instance) = arrays;
-    let [mut t, mut u, mut v] = [t, u, v].map(numpy::PyArrayMethods::readwrite);
+    let [mut t, mut u, mut v] = [t, u, v].map(PyArrayMethods::readwrite);
     let mut primitive = primitive.readwrite();
     let [mut geometry, mut instance] =
-        [geometry, instance].map(|array| array.as_ref().map(numpy::PyArrayMethods::readwrite));
+        [geometry, instance].map(|array| array.as_ref().map(PyArrayMethods::readwrite));
     let numbers = [t.as_slice_mut()?, u.as_slice_mut()?, v.as_slice_mut()?];
     run(HitsOut {
         numbers,
@@ -86,13 +87,13 @@ fn some_or_empty<'a>(array: &'a mut Option<PyReadwriteArray1<'_, i32>>) -> PyRes
 }
 
 /// An array in chunks; empty ones, as many as are asked for, of an array that is empty.
-fn pieces<T>(array: &mut [T]) -> impl Iterator<Item = &mut [T]> {
-    array.chunks_mut(CHUNK).chain(iter::repeat_with(Default::default))
+fn pieces<T>(array: &mut [T], size: usize) -> impl Iterator<Item = &mut [T]> {
+    array.chunks_mut(size).chain(iter::repeat_with(Default::default))
 }
 
-fn hit_pieces<'a>(out: HitsOut<'a>) -> impl Iterator<Item = HitsOut<'a>> {
-    let [t, u, v] = out.numbers.map(pieces);
-    let [primitive, geometry, instance] = out.ids.map(pieces);
+fn hit_pieces<'a>(out: HitsOut<'a>, size: usize) -> impl Iterator<Item = HitsOut<'a>> {
+    let [t, u, v] = out.numbers.map(|array| pieces(array, size));
+    let [primitive, geometry, instance] = out.ids.map(|array| pieces(array, size));
     t.zip(u).zip(v).zip(primitive).zip(geometry).zip(instance).map(
         |(((((t, u), v), primitive), geometry), instance)| HitsOut {
             numbers: [t, u, v],
@@ -101,27 +102,32 @@ fn hit_pieces<'a>(out: HitsOut<'a>) -> impl Iterator<Item = HitsOut<'a>> {
     )
 }
 
-/// The chunks of `count` rays, each with what it fills.
-fn chunks<T>(count: usize, pieces: impl Iterator<Item = T>) -> Vec<(Range<usize>, T)> {
-    let ranges = (0..count).step_by(CHUNK).map(|first| first..(first + CHUNK).min(count));
+/// `count` rays or points in pieces, each with what it fills.
+fn shares<T>(count: usize, size: usize, pieces: impl Iterator<Item = T>) -> Vec<(Range<usize>, T)> {
+    let ranges = (0..count).step_by(size).map(|first| first..(first + size).min(count));
     ranges.zip(pieces).collect()
 }
 
-/// Casts rays: `work` does one chunk, which is prepared.
+/// Casts rays: `work` does a chunk of them, which is prepared, and fills some of the piece of their share.
 fn cast<T: Send>(
     py: Python<'_>,
     tree: &Tree,
     argument: &RaysArgument<'_>,
+    shares: Shares,
     pieces: impl Iterator<Item = T>,
-    work: impl Fn(&mut Caster<'_>, T) + Sync,
+    work: impl Fn(&mut Caster<'_>, &mut T) + Sync,
 ) -> PyResult<()> {
     let (rays, selection, senseless) = (argument.rays()?, argument.selection()?, Senseless::new());
-    let chunks = chunks(rays.directions.len(), pieces);
-    for_each(py, argument.7, chunks.into_iter(), || {
-        let (mut caster, senseless, work) = (Caster::new(tree, selection), &senseless, &work);
-        move |(range, out)| {
-            senseless.add(caster.chunk.prepare(tree, &rays, range));
-            work(&mut caster, out);
+    let pieces = self::shares(rays.directions.len(), shares.size, pieces);
+    for_each(py, argument.8, pieces.into_iter(), || {
+        let (mut caster, mut places) = (Caster::new(tree, selection), Vec::new());
+        let (senseless, work) = (&senseless, &work);
+        move |(range, mut out)| {
+            shares.order(&range, &mut places);
+            for places in places.chunks(CHUNK) {
+                senseless.add(caster.chunk.prepare(tree, &rays, range.start, places));
+                work(&mut caster, &mut out);
+            }
         }
     })?;
     argument.check(&senseless)
@@ -133,8 +139,9 @@ pub(super) fn closest_hits<'py>(
     rays: &RaysArgument<'_>,
 ) -> PyResult<HitArrays<'py>> {
     let arrays = hit_arrays(py, tree, rays.rays()?.directions.len())?;
+    let shares = Shares::of(&rays.rays()?);
     with_slices(&arrays, |out| {
-        cast(py, tree, rays, hit_pieces(out), |caster, mut out| {
+        cast(py, tree, rays, shares, hit_pieces(out, shares.size), |caster, out| {
             caster.closest_hits(|number, hit| out.put(number, &hit));
         })
     })?;
@@ -148,7 +155,8 @@ pub(super) fn closest_primitives<'py>(
     rays: &RaysArgument<'_>,
 ) -> PyResult<Array<'py, i32>> {
     let array: Array<'_, _> = zeros(py, [rays.rays()?.directions.len()])?;
-    cast(py, tree, rays, pieces(array.readwrite().as_slice_mut()?), |caster, out| {
+    let shares = Shares::of(&rays.rays()?);
+    cast(py, tree, rays, shares, pieces(array.readwrite().as_slice_mut()?, shares.size), |caster, out| {
         caster.closest_ids(|number, [primitive, ..]| out[number] = primitive as i32);
     })?;
     Ok(array)
@@ -160,7 +168,8 @@ pub(super) fn occluded<'py>(
     rays: &RaysArgument<'_>,
 ) -> PyResult<Array<'py, bool>> {
     let array: Array<'_, _> = zeros(py, [rays.rays()?.directions.len()])?;
-    cast(py, tree, rays, pieces(array.readwrite().as_slice_mut()?), |caster, out| {
+    let shares = Shares::of(&rays.rays()?);
+    cast(py, tree, rays, shares, pieces(array.readwrite().as_slice_mut()?, shares.size), |caster, out| {
         caster.occluded(|number, is_occluded| out[number] = is_occluded);
     })?;
     Ok(array)
@@ -173,9 +182,16 @@ pub(super) fn count_hits<'py>(
     crossings: bool,
 ) -> PyResult<Array<'py, i64>> {
     let array: Array<'_, _> = zeros(py, [rays.rays()?.directions.len()])?;
-    cast(py, tree, rays, pieces(array.readwrite().as_slice_mut()?), |caster, out| {
-        caster.count_hits(crossings, |number, count| out[number] = count as i64);
-    })?;
+    cast(
+        py,
+        tree,
+        rays,
+        Shares::IN_ORDER,
+        pieces(array.readwrite().as_slice_mut()?, CHUNK),
+        |caster, out| {
+            caster.count_hits(crossings, |number, count| out[number] = count as i64);
+        },
+    )?;
     Ok(array)
 }
 
@@ -192,12 +208,19 @@ pub(super) fn all_hits<'py>(
     {
         let mut offsets = offsets.readwrite();
         let ends = &mut offsets.as_slice_mut()?[1..];
-        cast(py, tree, rays, pieces(ends).zip(&mut found), |caster, (ends, found)| {
-            caster.all_hits(crossings, |number, hits| {
-                found.extend_from_slice(hits);
-                ends[number] = hits.len() as i64;
-            });
-        })?;
+        cast(
+            py,
+            tree,
+            rays,
+            Shares::IN_ORDER,
+            pieces(ends, CHUNK).zip(&mut found),
+            |caster, (ends, found)| {
+                caster.all_hits(crossings, |number, hits| {
+                    found.extend_from_slice(hits);
+                    ends[number] = hits.len() as i64;
+                });
+            },
+        )?;
         let mut sum = 0;
         ends.iter_mut().for_each(|end| {
             sum += *end;
@@ -239,12 +262,12 @@ pub(super) fn points_and_normals<'py>(
     }
     let arrays: [Bound<'_, PyArray2<f64>>; 2] = [zeros(py, [count, 3])?, zeros(py, [count, 3])?];
     {
-        let [mut points, mut normals] = arrays.each_ref().map(numpy::PyArrayMethods::readwrite);
+        let [mut points, mut normals] = arrays.each_ref().map(PyArrayMethods::readwrite);
         let rows =
             points.as_slice_mut()?.chunks_mut(3 * CHUNK).zip(normals.as_slice_mut()?.chunks_mut(3 * CHUNK));
-        let chunks = chunks(count, rows);
+        let shares = shares(count, CHUNK, rows);
         let unknown = Senseless::new();
-        for_each(py, threads, chunks.into_iter(), || {
+        for_each(py, threads, shares.into_iter(), || {
             let (mut from, mut to, unknown) = (Vec::new(), Vec::new(), &unknown);
             move |(range, (points, normals)): (Range<usize>, (&mut [f64], &mut [f64]))| {
                 origins.read(range.start, range.len(), &mut from);
@@ -284,7 +307,7 @@ fn for_points<T: Send, M>(
     work: impl Fn(usize, [f64; 3], &mut T, &mut M) + Sync,
 ) -> PyResult<()> {
     let senseless = Senseless::new();
-    for_each(py, threads, chunks(points.len(), pieces).into_iter(), || {
+    for_each(py, threads, shares(points.len(), CHUNK, pieces).into_iter(), || {
         let (mut rows, mut memory, senseless, work) = (Vec::new(), memory(), &senseless, &work);
         move |(range, mut out): (Range<usize>, T)| {
             points.read(range.start, range.len(), &mut rows);
@@ -318,12 +341,19 @@ pub(super) fn contains<'py>(
     let boundary = known_boundary(py, tree)?;
     let array: Array<'_, _> = zeros(py, [points.len()])?;
     let mut inside = array.readwrite();
-    for_points(py, points, threads, pieces(inside.as_slice_mut()?), Vec::new, |number, point, out, hits| {
-        out[number] = match boundary {
-            None => tree.contains_by_parity(point, hits),
-            Some(boundary) => tree.winding_number(point, boundary, hits).abs() > 0.5,
-        };
-    })?;
+    for_points(
+        py,
+        points,
+        threads,
+        pieces(inside.as_slice_mut()?, CHUNK),
+        Vec::new,
+        |number, point, out, hits| {
+            out[number] = match boundary {
+                None => tree.contains_by_parity(point, hits),
+                Some(boundary) => tree.winding_number(point, boundary, hits).abs() > 0.5,
+            };
+        },
+    )?;
     drop(inside);
     Ok(array)
 }
@@ -343,7 +373,7 @@ pub(super) fn winding_numbers<'py>(
         py,
         points,
         threads,
-        pieces(windings.as_slice_mut()?),
+        pieces(windings.as_slice_mut()?, CHUNK),
         Vec::new,
         |number, point, out, hits| {
             out[number] = tree.winding_number(point, boundary, hits);
@@ -383,7 +413,7 @@ pub(super) fn closest_points<'py>(
             py,
             points,
             threads,
-            rows.zip(hit_pieces(out)),
+            rows.zip(hit_pieces(out, CHUNK)),
             || (),
             |number, point, (rows, out), ()| {
                 let (position, hit) = match tree.closest_point(point, max_distance) {

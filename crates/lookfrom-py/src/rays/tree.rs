@@ -2,7 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use lookfrom_bvh::{Affine, BuildError, Builder, Bvh, Faces, Moved, NONE, Quality, Query, Sphere, Triangles};
+use lookfrom_bvh::{
+    Affine, BuildError, Builder, Bvh, Faces, Hit, Moved, NONE, Quality, Query, Sphere, Triangles,
+};
 
 use super::frame::{Bounds, Frame};
 use super::geometry::{Geometry, Instance, Masks, Part, Primitive};
@@ -138,6 +140,22 @@ impl Tree {
 
     pub(super) fn primitive(&self, geometry: u32, primitive: u32) -> Primitive {
         self.parts[geometry as usize].geometry.primitive(primitive as usize)
+    }
+
+    /// Fetches what [`Self::fetch_vertices`] needs to the cache: to be called some time before it.
+    pub(super) fn fetch_face(&self, hit: &Hit) {
+        if hit.is_hit() {
+            let (place, _) = self.place(hit.instance);
+            place.parts[hit.geometry as usize].geometry.fetch_face(hit.primitive as usize);
+        }
+    }
+
+    /// Fetches a hit's primitive to the cache: to be called some time before it is needed.
+    pub(super) fn fetch_vertices(&self, hit: &Hit) {
+        if hit.is_hit() {
+            let (place, _) = self.place(hit.instance);
+            place.parts[hit.geometry as usize].geometry.fetch_vertices(hit.primitive as usize);
+        }
     }
 
     /// True if it has a primitive of these ids.
