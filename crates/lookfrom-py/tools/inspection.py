@@ -18,7 +18,10 @@ SCHEMA = HERE / "../../../docs/guide/inspect.schema.json"
 TARGET = HERE / "../python/lookfrom/_inspection.py"
 WIDTH = 110
 
-HEAD = '''"""What an inspection tells: one class for each object of docs/guide/inspect.schema.json, from which tools/inspection.py made this file."""
+HEAD = '''"""What an inspection tells: one class for each object of docs/guide/inspect.schema.json.
+
+Made from it by tools/inspection.py.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +64,11 @@ class Types:
                 count, most = schema.get("minItems"), schema.get("maxItems")
                 if not is_value:
                     return f"list[{item}]"
-                return f"tuple[{', '.join([item] * count)}]" if count is not None and count == most else f"tuple[{item}, ...]"
+                return (
+                    f"tuple[{', '.join([item] * count)}]"
+                    if count is not None and count == most
+                    else f"tuple[{item}, ...]"
+                )
             case "object":
                 return f"dict[str, {self.of(next(iter(schema['properties'].values())))}]"
             case "null":

@@ -39,17 +39,15 @@ class Camera:
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
-        """K, shape (3, 3), from (x/z, y/z, 1) in OpenCV's axes (x right, y down, z forward) to pixels; of an orthographic camera from
-        (x, y, 1). Raises Error for panoramas, which have none."""
+        """K, shape (3, 3), from (x/z, y/z, 1) in OpenCV's axes (x right, y down, z forward) to pixels; of an orthographic
+        camera from (x, y, 1). Raises Error for panoramas, which have none."""
         self._is_flat()
-        matrix: NDArray[np.float64] = np.linalg.inv(self._plane_from_pixel)
-        return matrix
+        return np.asarray(np.linalg.inv(self._plane_from_pixel), np.float64)
 
     def extrinsics(self, convention: Convention = "opencv") -> NDArray[np.float64]:
-        """From the world to the camera, shape (4, 4): "opencv" has x right, y down, z forward; "opengl" (and Blender, NeRF) x right, y up,
-        z backward."""
-        matrix: NDArray[np.float64] = np.linalg.inv(self.world_from_camera(convention))
-        return matrix
+        """From the world to the camera, shape (4, 4): "opencv" has x right, y down, z forward; "opengl" (and Blender, NeRF) x
+        right, y up, z backward."""
+        return np.asarray(np.linalg.inv(self.world_from_camera(convention)), np.float64)
 
     def world_from_camera(self, convention: Convention = "opencv") -> NDArray[np.float64]:
         """From the camera to the world, shape (4, 4): NeRF's `transform_matrix` is that of "opengl"."""
@@ -65,8 +63,8 @@ class Camera:
         """Where points of the world are in the picture.
 
         points: shape (..., 3).
-        Returns pixels, shape (..., 2): x to the right and y down from the upper left corner, and depths, shape (...): the distance
-        along the view axis, negative behind the camera. Raises Error for panoramas.
+        Returns pixels, shape (..., 2): x to the right and y down from the upper left corner, and depths, shape (...): the
+        distance along the view axis, negative behind the camera. Raises Error for panoramas.
         """
         self._is_flat()
         world: NDArray[Any] = np.asarray(points, np.float64)
@@ -74,10 +72,14 @@ class Camera:
         camera = world @ matrix[:3, :3].T + matrix[:3, 3]
         depth = camera[..., 2]
         with np.errstate(divide="ignore", invalid="ignore"):
-            plane = camera[..., :2] / depth[..., None] if self.projection == "perspective" else camera[..., :2]
+            plane = (
+                camera[..., :2] / depth[..., None] if self.projection == "perspective" else camera[..., :2]
+            )
         k = self.intrinsics
         return plane @ k[:2, :2].T + k[:2, 2], depth
 
     def _is_flat(self) -> None:
         if self.projection not in ("perspective", "orthographic"):
-            raise Error(f"this camera is {self.projection}: only perspective and orthographic ones have a matrix")
+            raise Error(
+                f"this camera is {self.projection}: only perspective and orthographic ones have a matrix"
+            )

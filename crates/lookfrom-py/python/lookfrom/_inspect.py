@@ -45,7 +45,9 @@ class Inspection(_inspection.Sample):
         for ray in self.rays:
             if ray.address == address:
                 return ray
-        raise KeyError(f"there is no ray {address}; there are {', '.join(str(ray.address) for ray in self.rays)}")
+        raise KeyError(
+            f"there is no ray {address}; there are {', '.join(str(ray.address) for ray in self.rays)}"
+        )
 
     def to_dataframe(self) -> DataFrame:
         """The rays as rows of a table of pandas, by address."""
@@ -72,7 +74,9 @@ class Inspection(_inspection.Sample):
         return self.text
 
     def __repr__(self) -> str:
-        return f"Inspection(pixel={self.pixel}, sample={self.sample}, {len(self.rays)} rays, film={self.film})"
+        return (
+            f"Inspection(pixel={self.pixel}, sample={self.sample}, {len(self.rays)} rays, film={self.film})"
+        )
 
     def _repr_svg_(self) -> str:
         return self.svg
@@ -129,8 +133,8 @@ def _decoded(item: Any, kind: Any) -> Any:
         case builtins.float:
             # Those that JSON does not have are texts there.
             return float(item)
-        case _ if dataclasses.is_dataclass(kind):
-            return kind(**{name: _decoded(item[name.rstrip("_")], of) for name, of in _hints(kind).items()})
+        case type() as made if dataclasses.is_dataclass(made):
+            return made(**{name: _decoded(item[name.rstrip("_")], of) for name, of in _hints(made).items()})
     return item
 
 

@@ -1,4 +1,7 @@
-"""What an inspection tells: one class for each object of docs/guide/inspect.schema.json, from which tools/inspection.py made this file."""
+"""What an inspection tells: one class for each object of docs/guide/inspect.schema.json.
+
+Made from it by tools/inspection.py.
+"""
 
 from __future__ import annotations
 

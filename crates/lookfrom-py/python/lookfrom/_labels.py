@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Labels:
-    """What is seen at the middle of each pixel, through the middle of the lens. Arrays have the shape (h, w), with rows from the top.
+    """What is seen at the middle of each pixel, through the middle of the lens. Arrays have the shape (h, w), with rows from
+    the top.
 
     shape, material: indices into `shape_names` and `material_names`; -1 where nothing is seen.
     instance: the instance that the shape is in; -1 outside of instances.
@@ -54,17 +55,21 @@ class Labels:
                 continue
             chosen = [index for index, other in enumerate(names) if other == name]
             if not chosen:
-                raise Error(f"there is no {kind} {name!r}; there are {', '.join(map(repr, dict.fromkeys(names)))}")
+                raise Error(
+                    f"there is no {kind} {name!r}; there are {', '.join(map(repr, dict.fromkeys(names)))}"
+                )
             mask = mask & np.isin(ids, chosen)
         return mask
 
     def flow_to(self, camera: Camera) -> NDArray[np.float32]:
-        """Optical flow: how far what each pixel shows is from there in the picture of another camera, shape (h, w, 2), in pixels to the
-        right and down; NaN where nothing is seen or it would be behind the other camera. It is that of a scene that stands still,
-        whether or not the other camera sees it."""
+        """Optical flow: how far what each pixel shows is from there in the picture of another camera, shape (h, w, 2), in
+        pixels to the right and down; NaN where nothing is seen or it would be behind the other camera. It is that of a scene
+        that stands still, whether or not the other camera sees it."""
         there, depth = camera.project(self.position)
-        here = np.stack(np.meshgrid(np.arange(self.camera.width) + 0.5, np.arange(self.camera.height) + 0.5), axis=-1)
-        flow = (there - here).astype(np.float32)
+        here = np.stack(
+            np.meshgrid(np.arange(self.camera.width) + 0.5, np.arange(self.camera.height) + 0.5), axis=-1
+        )
+        flow: NDArray[np.float32] = (there - here).astype(np.float32)
         if camera.projection == "perspective":
             flow[~(depth > 0)] = np.nan
         return flow

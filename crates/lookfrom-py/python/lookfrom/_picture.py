@@ -21,15 +21,22 @@ if TYPE_CHECKING:
     from ._words import Options
 
 # Layers by the names of their channels in an EXR, which are pbrt's.
-_NAMES = {"Albedo": "albedo", "N": "geometric_normal", "Ns": "normal", "P": "position", "Variance": "variance"}
+_NAMES = {
+    "Albedo": "albedo",
+    "N": "geometric_normal",
+    "Ns": "normal",
+    "P": "position",
+    "Variance": "variance",
+}
 
 
 class Picture(Mapping[str, "NDArray[np.float32]"]):
     """A finished picture, with rows from the top.
 
     It is a mapping of layers by name, where they were asked for: `layers="geometry"` gives albedo, normal, geometric_normal and
-    position (h, w, 3), uv (h, w, 2), depth (h, w) and variance (h, w, 3), means over the samples, in the space of the camera (x right, y up, z
-    forward); light_path={"direct": "C<RD>L"} gives a layer "direct" (h, w, 3); a denoised picture has the layer "noisy".
+    position (h, w, 3), uv (h, w, 2), depth (h, w) and variance (h, w, 3), means over the samples, in the space of the camera
+    (x right, y up, z forward); light_path={"direct": "C<RD>L"} gives a layer "direct" (h, w, 3); a denoised picture has the
+    layer "noisy".
 
     In Jupyter it shows itself.
     """
@@ -118,8 +125,8 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
         return None if film is None else Film(film)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a file in the format of its extension: .png, .jpg, .webp, .exr (with layers; with film=True the film), .hdr, .pfm, .ppm,
-        .gif. Raises Error for another one, and OSError where the file cannot be written."""
+        """Writes a file in the format of its extension: .png, .jpg, .webp, .exr (with layers; with film=True the film), .hdr,
+        .pfm, .ppm, .gif. Raises Error for another one, and OSError where the file cannot be written."""
         path = Path(path)
         path.write_bytes(self._native.encode(path.suffix[1:]))
 
@@ -153,8 +160,8 @@ class Film:
 
     @staticmethod
     def merge(films: Iterable[Film]) -> Film:
-        """The film with the samples of all, in any order. Raises SceneError for films of other pictures and samples that two of them
-        have, and ValueError where there are none."""
+        """The film with the samples of all, in any order. Raises SceneError for films of other pictures and samples that two
+        of them have, and ValueError where there are none."""
         merged: _lookfrom.Film | None = None
         for film in films:
             merged = film._native if merged is None else merged.merged(film._native)
@@ -167,15 +174,17 @@ class Film:
         return Picture(self._native.develop(words(options)))
 
     def resume(self, *, samples: int | None = None, threads: int | None = None) -> Picture:
-        """Renders the samples that it lacks, or more: `samples` per pixel in all. The scene is read again from where it was; for one that
-        was in memory, `Session.render(film=...)` goes on.
+        """Renders the samples that it lacks, or more: `samples` per pixel in all. The scene is read again from where it was;
+        for one that was in memory, `Session.render(film=...)` goes on.
 
-        Returns the finished picture, whose `film` has all. Raises SceneError where the scene has changed, and Error where it was in
-        memory.
+        Returns the finished picture, whose `film` has all. Raises SceneError where the scene has changed, and Error where it
+        was in memory.
         """
         scene, arguments = self._native.origin()
         if scene is None:
-            raise Error("the scene of this film was in memory: Session.render(film=...) of the same scene goes on with it")
+            raise Error(
+                "the scene of this film was in memory: Session.render(film=...) of the same scene goes on with it"
+            )
         typed = words({"film": True, "samples": samples, "threads": threads})
         for argument in arguments:
             name, is_valued, value = argument.removeprefix("--").partition("=")

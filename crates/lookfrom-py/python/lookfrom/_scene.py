@@ -143,12 +143,12 @@ class Scene:
         lists = {"positions": positions, "triangles": faces, "normals": normals, "uvs": uvs, "colors": colors}
         given = {name: _rows(name, value) for name, value in lists.items() if value is not None}
         if colors is not None and "material" not in words:
-            words["material"] = self.material("vertex colors", type="diffuse", reflectance="vertex_color")
+            words["material"] = self.material("vertex colors", type="diffuse", reflectance={"type": "vertex_color"})
         return self.add("mesh", **given, **words)
 
     def trimesh(self, mesh: Any, **words: Any) -> dict[str, Any]:
         """Adds a mesh of trimesh, with its colours and texture coordinates where it has them."""
-        visual = getattr(mesh, "visual", None)
+        visual: Any = getattr(mesh, "visual", None)
         colors, uvs = None, None
         if getattr(visual, "kind", None) in ("vertex", "face"):
             colors = _linear(np.asarray(visual.vertex_colors)[:, :3])
@@ -156,7 +156,9 @@ class Scene:
             uvs = visual.uv
         return self.mesh(mesh.vertices, mesh.faces, colors=colors, uvs=uvs, **words)
 
-    def points(self, points: ArrayLike, radius: float, *, colors: ArrayLike | None = None, **words: Any) -> None:
+    def points(
+        self, points: ArrayLike, radius: float, *, colors: ArrayLike | None = None, **words: Any
+    ) -> None:
         """Adds a point cloud as spheres; colors: linear, shape (n, 3), each of which becomes a material."""
         centers = np.asarray(points, np.float64).reshape(-1, 3)
         painted = None if colors is None else np.asarray(colors, np.float64).reshape(-1, 3)
@@ -175,7 +177,9 @@ class Scene:
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        counts = {key: len(item) if isinstance(item, Sequence | Mapping) else 1 for key, item in self.data.items()}
+        counts = {
+            key: len(item) if isinstance(item, Sequence | Mapping) else 1 for key, item in self.data.items()
+        }
         return f"Scene({', '.join(f'{key}: {count}' for key, count in counts.items())})"
 
     def _in_memory(self) -> tuple[str, dict[str, bytes]]:
@@ -191,7 +195,9 @@ def _rows(name: str, value: ArrayLike) -> NDArray[Any]:
     kind, columns = _LISTS[name]
     array: NDArray[Any] = np.asarray(value)
     if array.ndim != 2 or array.shape[1] != columns or array.dtype.kind not in "fiu":
-        raise Error(f"{name} is an array of {array.dtype} of shape {array.shape}, but (n, {columns}) numbers are expected")
+        raise Error(
+            f"{name} is an array of {array.dtype} of shape {array.shape}, but (n, {columns}) numbers are expected"
+        )
     if kind is np.uint32:
         if array.dtype.kind == "f" or (array.size > 0 and (array.min() < 0 or array.max() >= 2**32)):
             raise Error(f"{name} must be integers from 0 to 2**32 - 1")
@@ -232,7 +238,9 @@ def _plain(data: Mapping[str, Any]) -> Any:
 def _written(data: Mapping[str, Any]) -> Any:
     def written(key: str, array: NDArray[Any]) -> Any:
         if key == "file":
-            raise Error("an image that is an array cannot be written into a text: Scene.save writes it as a file")
+            raise Error(
+                "an image that is an array cannot be written into a text: Scene.save writes it as a file"
+            )
         return array.tolist()
 
     return _map(data, written)
@@ -265,7 +273,12 @@ def image_file(array: NDArray[Any]) -> tuple[str, bytes]:
     """
     if array.ndim == 2:
         array = np.repeat(array[:, :, None], 3, axis=2)
-    if array.ndim != 3 or array.shape[2] != 3 or array.size == 0 or (array.dtype.kind != "f" and array.dtype != np.uint8):
+    if (
+        array.ndim != 3
+        or array.shape[2] != 3
+        or array.size == 0
+        or (array.dtype.kind != "f" and array.dtype != np.uint8)
+    ):
         raise Error(
             f"an image is an array of {array.dtype} of shape {array.shape}, but floats or uint8 of shape (h, w, 3) are expected"
         )
@@ -274,5 +287,3 @@ def image_file(array: NDArray[Any]) -> tuple[str, bytes]:
         return "ppm", b"P6\n%d %d\n255\n" % (width, height) + array.tobytes()
     # Rows from the bottom; the sign says that the numbers are in little-endian order.
     return "pfm", b"PF\n%d %d\n-1.0\n" % (width, height) + array[::-1].astype("<f4").tobytes()
-
-

@@ -35,8 +35,8 @@ class SceneWarning(UserWarning):
 class Session:
     """A scene that is read and compiled once, to be rendered with any camera and settings.
 
-    scene: the name of a scene or model (.toml, .pbrt, .gltf, .glb, .obj, .ply, .stl), a Scene, a dictionary in its words, a mesh of
-        trimesh, or the bytes of a self-contained file, whose format `name` tells ("model.glb").
+    scene: the name of a scene or model (.toml, .pbrt, .gltf, .glb, .obj, .ply, .stl), a Scene, a dictionary in its words, a
+        mesh of trimesh, or the bytes of a self-contained file, whose format `name` tells ("model.glb").
     keep: whether the session keeps the scene beside what is compiled, so that `set_material` and `set_lights` can change it; it
         takes the memory of its meshes once more.
     options: those of the command `lookfrom render`: see `Options` and `lookfrom.options()`. `environment` may also be an array,
@@ -48,9 +48,7 @@ class Session:
     A session may be used by several threads at once, and after a fork; it can be copied and pickled (then it is read again).
     """
 
-    def __init__(
-        self, scene: Any, *, name: str = "", keep: bool = False, **options: Unpack[Options]
-    ) -> None:
+    def __init__(self, scene: Any, *, name: str = "", keep: bool = False, **options: Unpack[Options]) -> None:
         self._source = _source(scene, name)
         self._keep = keep
         self._options: dict[str, Any] = dict(options)
@@ -71,12 +69,12 @@ class Session:
     def render(self, *, progress: bool | Progress = False, film: Film | None = None) -> Picture:
         """Renders the picture.
 
-        progress: True for a bar, where tqdm is installed; or a function that is called with the samples so far and in all, several
-            times a second.
+        progress: True for a bar, where tqdm is installed; or a function that is called with the samples so far and in all,
+            several times a second.
         film: a film of this session's picture (which needs film=True), whose samples are not rendered again.
 
-        The GIL is released. Ctrl-C stops it: the KeyboardInterrupt has the picture of the samples so far as `picture`. An exception
-        of `progress` does the same. Raises SceneError where there is not enough memory.
+        The GIL is released. Ctrl-C stops it: the KeyboardInterrupt has the picture of the samples so far as `picture`. An
+        exception of `progress` does the same. Raises SceneError where there is not enough memory.
         """
         native = None if film is None else film._native
         if progress is True:
@@ -85,8 +83,9 @@ class Session:
         return _finished(lambda: self._native.render(native, progress or None))
 
     def set(self, **options: Unpack[Options]) -> None:
-        """Changes options; others stay. Nothing is read or built for another size, crop, samples, camera (lookfrom, lookat, up, fov),
-        exposure, tonemap, background, integrator, depth, seed, filter, layers, noise or time; for others the scene is read again.
+        """Changes options; others stay. Nothing is read or built for another size, crop, samples, camera (lookfrom, lookat,
+        up, fov), exposure, tonemap, background, integrator, depth, seed, filter, layers, noise or time; for others the scene
+        is read again.
 
         Raises as Session; then nothing has changed.
         """
@@ -103,16 +102,24 @@ class Session:
         self._options = merged
 
     def set_material(self, material: str, **words: Any) -> None:
-        """Replaces a material of this name, by the words of `[materials.NAME]`: set_material("paint", type="diffuse", reflectance=0.5).
+        """Replaces a material of this name, by the words of `[materials.NAME]`: set_material("paint", type="diffuse",
+        reflectance=0.5).
 
-        Only what depends on materials is compiled again, no tree is built. Raises Error for a name that no material has, and SceneError for
-        words that make no material, and for textures, which a session cannot be given. Needs keep=True.
+        Only what depends on materials is compiled again, no tree is built. Raises Error for a name that no material has, and
+        SceneError for words that make no material, and for textures, which a session cannot be given. Needs keep=True.
         """
+        self._check_kept()
         self._native.set_material(material, _toml.document({"materials": {material: words}}))
 
     def set_lights(self, lights: Iterable[Mapping[str, Any]]) -> None:
-        """Replaces all lights that are no shapes, the studio of a model included, by the words of `[[light]]`. As `set_material`."""
+        """Replaces all lights that are no shapes, the studio of a model included, by the words of `[[light]]`. As
+        `set_material`."""
+        self._check_kept()
         self._native.set_lights(_toml.document({"light": [dict(light) for light in lights]}))
+
+    def _check_kept(self) -> None:
+        if not self._keep:
+            raise Error("this session does not keep its scene, so that it cannot be changed: make it with keep=True")
 
     @property
     def camera(self) -> Camera:
@@ -155,8 +162,8 @@ class Session:
         )
 
     def inspect(self, x: int, y: int, sample: int = 0) -> Inspection:
-        """Every step of the computation of one sample of a pixel: matrices, tests of primitives, roots, the tree of rays, and the additions
-        that make its light, bit for bit. x, y: column and row from the top left.
+        """Every step of the computation of one sample of a pixel: matrices, tests of primitives, roots, the tree of rays, and
+        the additions that make its light, bit for bit. x, y: column and row from the top left.
 
         Raises IndexError for a pixel or sample that the picture does not have.
         """
@@ -216,8 +223,11 @@ class Session:
         return f"Session({self._source[0]!r}, {width}×{height}, {self.samples} samples)"
 
 
-def render(scene: Any, *, name: str = "", progress: bool | Progress = False, **options: Unpack[Options]) -> Picture:
-    """The picture of a scene: `Session(scene, ...).render()`. A model without lights stands in a studio; without a camera it is framed."""
+def render(
+    scene: Any, *, name: str = "", progress: bool | Progress = False, **options: Unpack[Options]
+) -> Picture:
+    """The picture of a scene: `Session(scene, ...).render()`. A model without lights stands in a studio; without a camera it
+    is framed."""
     return Session(scene, name=name, **options).render(progress=progress)
 
 
@@ -227,7 +237,9 @@ def _source(scene: Any, name: str) -> tuple[str, dict[str, bytes]]:
         return os.fspath(scene), {}
     if isinstance(scene, bytes | bytearray | memoryview):
         if not Path(name).suffix:
-            raise Error(f"name is {name!r}, but the bytes of a file need one that tells their format, such as \"model.glb\"")
+            raise Error(
+                f'name is {name!r}, but the bytes of a file need one that tells their format, such as "model.glb"'
+            )
         return name, {name: bytes(scene)}
     if isinstance(scene, Mapping):
         scene = Scene(scene)

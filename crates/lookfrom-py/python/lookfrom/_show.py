@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 
 class Page:
-    """A page that shows a scene while it renders, and why each pixel is as it is. It is served by this process, to this machine only,
-    until it is closed or collected.
+    """A page that shows a scene while it renders, and why each pixel is as it is. It is served by this process, to this
+    machine only, until it is closed or collected.
 
     url: its address, with a token that only this process knows.
 
@@ -56,14 +56,17 @@ class Page:
         return f'<iframe src="{self.url}" width="100%" height="640" style="border: 0"></iframe>'
 
 
-def show(scene: Any, *, name: str = "", port: int = 0, browser: bool | None = None, **options: Unpack[Options]) -> Page:
+def show(
+    scene: Any, *, name: str = "", port: int = 0, browser: bool | None = None, **options: Unpack[Options]
+) -> Page:
     """Serves the page of a scene.
 
     scene, name, options: as those of Session. What is in memory is written to a temporary folder, from which the page reads it.
     port: 0 for any that is free.
     browser: whether to open the page in the user's browser; by default not in Jupyter, where the returned page shows itself.
 
-    Raises Error for options that make no sense, and OSError where the port is in use. What is wrong with the scene is shown on the page.
+    Raises Error for options that make no sense, and OSError where the port is in use. What is wrong with the scene is shown
+    on the page.
     """
     folder: tempfile.TemporaryDirectory[str] | None = None
     if isinstance(scene, Scene) and scene.folder != Path():

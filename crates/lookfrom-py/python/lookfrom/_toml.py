@@ -34,7 +34,9 @@ def value(item: Any) -> str:
         return str(int(item))
     if isinstance(item, float | np.floating):
         number = float(item)
-        return repr(number) if math.isfinite(number) else {math.inf: "inf", -math.inf: "-inf"}.get(number, "nan")
+        return (
+            repr(number) if math.isfinite(number) else {math.inf: "inf", -math.inf: "-inf"}.get(number, "nan")
+        )
     if isinstance(item, np.ndarray):
         return value(item.tolist())
     if isinstance(item, Mapping):
@@ -51,7 +53,9 @@ def _key(name: Any) -> str:
 
 
 def _is_tables(item: Any) -> bool:
-    return isinstance(item, list | tuple) and len(item) > 0 and all(isinstance(part, Mapping) for part in item)
+    return (
+        isinstance(item, list | tuple) and len(item) > 0 and all(isinstance(part, Mapping) for part in item)
+    )
 
 
 def _tables(data: Mapping[str, Any], prefix: str, lines: list[str]) -> None:
@@ -68,7 +72,7 @@ def _tables(data: Mapping[str, Any], prefix: str, lines: list[str]) -> None:
             for table in item:
                 lines.extend(["", f"[[{name}]]"])
                 _values(table, lines)
-        elif key in _NAMED:
+        elif key in _NAMED and item:
             for entry, table in item.items():
                 lines.extend(["", f"[{name}.{_key(entry)}]"])
                 if key == "objects":

@@ -144,5 +144,7 @@ def _worded(name: str, value: Any) -> str:
 def _hex(color: Sequence[Any]) -> str:
     """A colour of numbers from 0 to 1, as matplotlib has them, in hexadecimal digits."""
     if len(color) not in (3, 4) or not all(0 <= part <= 1 for part in color):
-        raise Error(f"background is {tuple(color)}, but a name, \"#rrggbb\" or three numbers from 0 to 1 are expected")
+        raise Error(
+            f'background is {tuple(color)}, but a name, "#rrggbb" or three numbers from 0 to 1 are expected'
+        )
     return "#" + "".join(f"{round(255 * part):02x}" for part in color[:3])

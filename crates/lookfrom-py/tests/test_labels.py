@@ -1,0 +1,95 @@
+"""Labels, cameras as matrices, optical flow: against points of the world."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lookfrom
+from test_scenes import FACES, VERTICES, mesh_scene
+
+
+@pytest.mark.parametrize(
+    "words", [{"fov": 30}, {"fov": 75, "up": [1, 2, 0]}, {"projection": "orthographic", "height": 2}]
+)
+def test_projected_points_are_in_their_pixels(words: dict[str, object]) -> None:
+    scene = mesh_scene()
+    scene.data["camera"] = {"lookfrom": [3, 2, 3], "lookat": [0.2, 0.3, 0.2], **words}
+    session = lookfrom.Session(scene, size=(60, 40))
+    labels, camera = session.labels(), session.camera
+    rows, columns = np.nonzero(labels.hit)
+    assert len(rows) > 30
+    pixels, depths = camera.project(labels.position[labels.hit])
+    assert np.abs(pixels - np.stack([columns + 0.5, rows + 0.5], axis=-1)).max() < 1e-4
+    assert np.allclose(depths, labels.depth[labels.hit])
+    assert np.isinf(labels.depth[~labels.hit]).all() and np.isnan(labels.position[~labels.hit]).all()
+
+
+def test_matrices_are_those_of_opencv_and_opengl() -> None:
+    camera = lookfrom.Session(mesh_scene(), size=(64, 48)).camera
+    k = camera.intrinsics
+    focal = 24 / np.tan(np.radians(15))
+    assert np.allclose(k, [[focal, 0, 32], [0, focal, 24], [0, 0, 1]])
+    point = np.array([0.1, 0.2, 0.3, 1])
+    in_opencv, in_opengl = camera.extrinsics("opencv") @ point, camera.extrinsics("opengl") @ point
+    assert np.allclose(in_opencv, in_opengl * [1, -1, -1, 1]) and in_opencv[2] > 0
+    for convention in ("opencv", "opengl"):
+        matrix = camera.world_from_camera(convention)  # type: ignore[arg-type]
+        assert np.allclose(np.linalg.det(matrix), 1) and np.allclose(matrix[:3, 3], [3, 2, 3])
+    with pytest.raises(lookfrom.Error, match="'opencv' or 'opengl'"):
+        camera.extrinsics("blender")  # type: ignore[arg-type]
+    around = lookfrom.Session(
+        {"camera": {"lookfrom": [0, 0, 0], "lookat": [1, 0, 0], "projection": "equirectangular"}}
+    ).camera
+    with pytest.raises(lookfrom.Error, match="equirectangular"):
+        around.project([1, 2, 3])
+
+
+def test_masks_and_names() -> None:
+    scene = mesh_scene()
+    scene.material("red", type="diffuse", reflectance=[0.8, 0.1, 0.1])
+    scene.add("sphere", name="ball", center=[0.8, 0.8, 0.8], radius=0.2, material="red")
+    labels = lookfrom.Session(scene, size=48).labels()
+    ball, red = labels.mask(shape="ball"), labels.mask(material="red")
+    assert ball.sum() > 20 and (ball == red).all()
+    assert (labels.mask(material="grey") == (labels.hit & ~ball)).all()
+    with pytest.raises(lookfrom.Error, match="there is no shape 'cube'; there are"):
+        labels.mask(shape="cube")
+    assert set(np.unique(labels.primitive[labels.mask(material="grey")])) <= set(range(len(FACES)))
+
+
+def test_flow_takes_pixels_to_where_their_points_are() -> None:
+    session = lookfrom.Session(mesh_scene(), size=(80, 60))
+    before = session.labels()
+    session.set(lookfrom=[2.9, 2.2, 3.1])
+    after = session.labels()
+    flow = before.flow_to(after.camera)
+    assert flow.shape == (60, 80, 2) and np.isnan(flow[~before.hit]).all()
+    checked = 0
+    for row, column in np.argwhere(before.hit):
+        x, y = np.array([column + 0.5, row + 0.5]) + flow[row, column]
+        there = after.position[int(y), int(x)] if 0 <= x < 80 and 0 <= y < 60 else np.full(3, np.nan)
+        # Unless an edge is near, or another surface is in front, the same place is seen there.
+        if np.linalg.norm(there - before.position[row, column]) < 0.05:
+            checked += 1
+    assert checked > 0.9 * before.hit.sum()
+
+
+def test_instances_are_told_apart() -> None:
+    scene = mesh_scene()
+    scene.data["objects"] = {
+        "post": {"box": [{"min": [0, 0, 0], "max": [0.2, 0.2, 0.2], "material": "grey"}]}
+    }
+    for x in (-0.5, 1.0):
+        scene.add("instance", object="post", translate=[x, 0.5, 0.5])
+    labels = lookfrom.Session(scene, size=64).labels()
+    assert set(np.unique(labels.instance)) == {-1, 0, 1}
+
+
+def test_vertices_are_where_they_are() -> None:
+    """The corners of the mesh, and not only what is seen: against the matrices by hand."""
+    camera = lookfrom.Session(mesh_scene(), size=(64, 48)).camera
+    pixels, depths = camera.project(VERTICES)
+    homogeneous = np.hstack([VERTICES, np.ones((4, 1))]) @ camera.extrinsics().T
+    by_hand = homogeneous[:, :3] @ camera.intrinsics.T
+    assert np.allclose(pixels, by_hand[:, :2] / by_hand[:, 2:]) and np.allclose(depths, homogeneous[:, 2])

@@ -1,0 +1,324 @@
+"""Pictures: sessions, their options, what changes them, films; the same bits as the command's."""
+
+from __future__ import annotations
+
+import copy
+import multiprocessing
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import lookfrom
+
+BALL = {
+    "camera": {"lookfrom": [0, 1, 5], "lookat": [0, 0.5, 0], "fov": 40},
+    "image": {"width": 48, "height": 32},
+    "render": {"integrator": "path", "samples": 4},
+    "materials": {"red": {"type": "diffuse", "reflectance": [0.8, 0.1, 0.1]}},
+    "sphere": [{"center": [0, 0.5, 0], "radius": 0.5, "material": "red"}],
+    "light": [{"type": "point", "position": [2, 4, 4], "intensity": 20}],
+}
+
+
+@pytest.fixture
+def ball(tmp_path: Path) -> Path:
+    path = tmp_path / "ball.toml"
+    lookfrom.Scene(BALL).save(path)
+    return path
+
+
+def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "lookfrom", *arguments], cwd=cwd, capture_output=True, text=True
+    )
+
+
+def test_a_picture_has_its_arrays() -> None:
+    picture = lookfrom.render(BALL, layers="geometry", background="transparent")
+    assert picture.size == (48, 32) and picture.samples == 4 and picture.reason == "samples"
+    assert picture.linear.shape == (32, 48, 3) and picture.linear.dtype == np.float32
+    assert picture.srgb.shape == (32, 48, 4) and picture.srgb.dtype == np.uint8
+    assert picture.alpha is not None and picture.alpha[16, 24] == 1 and picture.alpha[0, 0] == 0
+    # Red in the middle, and nearer than the centre.
+    red, green, _ = picture.linear[18, 24]
+    assert red > 4 * green > 0
+    assert 4.4 < picture["depth"][18, 24] < 5.1
+    assert np.allclose(np.linalg.norm(picture["normal"][18, 24]), 1, atol=1e-3)
+    assert np.allclose(picture["albedo"][18, 24], [0.8, 0.1, 0.1], atol=1e-3)
+    assert set(picture) == {"albedo", "geometric_normal", "normal", "position", "depth", "uv", "variance"}
+    with pytest.raises(KeyError, match="there is no layer 'z'; there are albedo"):
+        picture["z"]
+    assert np.asarray(picture).shape == (32, 48, 3)
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    assert picture.header["integrator"] == "path"
+
+
+def test_the_command_is_there_and_has_the_same_bytes(ball: Path) -> None:
+    done = run("render", "ball.toml", "--size=40x30", "--samples=3", "-o", "a.exr", cwd=ball.parent)
+    assert done.returncode == 0, done.stderr
+    lookfrom.render(ball, size=(40, 30), samples=3).save(ball.parent / "b.exr")
+    assert (ball.parent / "a.exr").read_bytes() == (ball.parent / "b.exr").read_bytes()
+    wrong = run("render", "none.toml", cwd=ball.parent)
+    assert wrong.returncode == 1 and "no such file" in wrong.stderr
+    assert run("--version", cwd=ball.parent).stdout.startswith("lookfrom ")
+
+
+def test_sources_are_the_same_scene(ball: Path) -> None:
+    pictures = [
+        lookfrom.render(ball),
+        lookfrom.render(str(ball)),
+        lookfrom.render(BALL),
+        lookfrom.render(lookfrom.Scene(BALL)),
+        lookfrom.render(ball.read_bytes(), name="ball.toml"),
+        lookfrom.Session(ball).render(),
+    ]
+    assert all((picture.linear == pictures[0].linear).all() for picture in pictures)
+    with pytest.raises(lookfrom.Error, match="name is '', but"):
+        lookfrom.render(b"x")
+    with pytest.raises(TypeError, match="a scene is a name"):
+        lookfrom.render(3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"sampels": 3}, "there is no option sampels: did you mean samples"),
+        ({"samples": 0}, "samples is"),
+        ({"samples": "many"}, 'samples is "many"; expected a whole number'),
+        ({"integrator": "paths"}, 'integrator is "paths"; expected one of'),
+        ({"lookfrom": [0, 1]}, "lookfrom is"),
+        ({"lookfrom": [0, 1, float("nan")]}, "lookfrom is"),
+        ({"size": 32, "width": 32}, "exclude each other"),
+        ({"samples": range(0, 8, 2)}, "the step 1"),
+        ({"background": (2, 0, 0)}, "three numbers from 0 to 1"),
+        ({"environment": np.zeros((3, 3, 4))}, "floats or uint8 of shape"),
+        ({"output": "a.png"}, "there is no option output"),
+        ({"turn": "north"}, "turn is"),
+        ({"memory": "much"}, "memory is"),
+    ],
+)
+def test_options_that_make_no_sense_are_told(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(lookfrom.Error, match=message):
+        lookfrom.render(BALL, **options)
+
+
+def test_options_of_no_possible_type() -> None:
+    with pytest.raises(TypeError, match="seed is object"):
+        lookfrom.render(BALL, seed=object())  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="define must be a dictionary"):
+        lookfrom.render(BALL, define=["a"])  # type: ignore[arg-type]
+
+
+def test_every_option_is_described_and_typed() -> None:
+    described = lookfrom.options()
+    assert set(described) == set(lookfrom.Options.__annotations__)
+    assert all(described.values())
+
+
+def test_errors_have_their_place(ball: Path) -> None:
+    ball.write_text(ball.read_text().replace("radius =", "radiuss ="))
+    with pytest.raises(lookfrom.SceneError, match="unknown key `radiuss`") as caught:
+        lookfrom.render(ball)
+    error = caught.value
+    assert (Path(error.file), error.kind, error.column) == (ball, "invalid", 1)
+    assert ball.read_text().splitlines()[error.line - 1].startswith("radiuss")
+    assert error.hint is not None and "radius" in error.hint
+    assert "^^^^^^^" in str(error)
+    with pytest.raises(lookfrom.SceneError) as caught:
+        lookfrom.render("nowhere.glb")
+    assert caught.value.kind == "io" and caught.value.file == "nowhere.glb"
+    with pytest.raises(lookfrom.SceneError, match="field of view") as caught:
+        camera = {"lookfrom": [0, 1, 5], "lookat": [0, 0, 0], "projection": "orthographic", "height": 3}
+        lookfrom.render({**BALL, "camera": camera}, fov=30)
+    assert caught.value.kind == "request"
+
+
+def test_changes_need_no_reading_where_they_can_do_without(ball: Path) -> None:
+    session = lookfrom.Session(ball)
+    text = ball.read_text()
+    ball.write_text("it is not read again")
+    session.set(size=20, samples=2, exposure=1, seed=3, depth=2, integrator="whitted")
+    changed = session.render()
+    ball.write_text(text)
+    anew = lookfrom.render(ball, size=20, samples=2, exposure=1, seed=3, depth=2, integrator="whitted")
+    assert (changed.linear == anew.linear).all() and (changed.srgb == anew.srgb).all()
+    # For a view the scene is read again, with all that was asked for before.
+    session.set(view="front")
+    anew = lookfrom.render(
+        ball, size=20, samples=2, seed=3, depth=2, integrator="whitted", view="front", exposure=1
+    )
+    assert (session.render().linear == anew.linear).all()
+    session.set(view=None, width=30, height=20)
+    assert session.size == (30, 20) and np.allclose(session.camera.lookfrom, [0, 1, 5])
+    with pytest.raises(lookfrom.Error):
+        session.set(samples="x")  # type: ignore[typeddict-item]
+
+
+def test_a_camera_that_moves_sees_what_it_should() -> None:
+    session = lookfrom.Session(BALL, samples=16)
+    session.set(lookfrom=(3, 1, 0), lookat=(0, 0.5, 0))
+    assert np.allclose(session.camera.lookfrom, [3, 1, 0])
+    anew = lookfrom.render(BALL, samples=16, lookfrom=(3, 1, 0), lookat=(0, 0.5, 0))
+    assert np.allclose(session.render().linear.mean(), anew.linear.mean(), rtol=0.02)
+
+
+def test_materials_and_lights_change_on_the_same_trees() -> None:
+    session = lookfrom.Session(BALL, keep=True)
+    session.set_material("red", type="diffuse", reflectance=[0.1, 0.1, 0.8])
+    session.set_lights([{"type": "point", "position": [2, 4, 4], "intensity": 40}])
+    other = copy.deepcopy(BALL)
+    other["materials"]["red"]["reflectance"] = [0.1, 0.1, 0.8]  # type: ignore[index]
+    other["light"][0]["intensity"] = 40  # type: ignore[index]
+    assert (session.render().linear == lookfrom.render(other).linear).all()
+    with pytest.raises(lookfrom.Error, match='there is no material "blue"; the scene has "red"'):
+        session.set_material("blue", type="diffuse")
+    with pytest.raises(lookfrom.SceneError, match="reflektance"):
+        session.set_material("red", type="diffuse", reflektance=1)
+    with pytest.raises(lookfrom.Error, match="keep=True"):
+        lookfrom.Session(BALL).set_material("red", type="diffuse", reflectance=1)
+
+
+def test_an_environment_may_be_an_array() -> None:
+    white = np.ones((4, 8, 3), np.float32)
+    scene = {key: value for key, value in BALL.items() if key != "light"}
+    lit = lookfrom.render(scene, environment=white, samples=64).linear
+    assert np.allclose(lit[0, 0], 1, atol=1e-3)
+    # Half of the light that a white ball would reflect, at most: the albedo.
+    assert 0.7 < lit[18, 24, 0] < 0.85 and 0.05 < lit[18, 24, 1] < 0.15
+
+
+def test_films_add_up_bit_for_bit(ball: Path) -> None:
+    whole = lookfrom.render(ball, samples=8, film=True)
+    parts = [lookfrom.render(ball, samples=8, film=True, part=(index, 3)).film for index in (2, 1, 3)]
+    merged = lookfrom.Film.merge(part for part in parts if part is not None)
+    assert merged.is_complete and merged.samples == 8 * 48 * 32
+    assert (merged.develop().linear == whole.linear).all()
+    # On disk, developed otherwise, and gone on with, also by the command.
+    half = lookfrom.render(ball, samples=(0, 4), film=True).film
+    assert half is not None
+    half.save(ball.parent / "half.exr")
+    read = lookfrom.Film.read(ball.parent / "half.exr")
+    assert (read.resume(samples=8).linear == whole.linear).all()
+    assert (lookfrom.Session(ball, samples=8, film=True).render(film=read).linear == whole.linear).all()
+    assert run("resume", "half.exr", "--samples=8", "-o", "all.exr", cwd=ball.parent).returncode == 0
+    assert (lookfrom.Film.read(ball.parent / "all.exr").develop().linear == whole.linear).all()
+    assert (read.develop(exposure=1).srgb > read.develop().srgb).any()
+    with pytest.raises(lookfrom.SceneError):
+        lookfrom.Film.merge([read, read])
+    with pytest.raises(lookfrom.SceneError, match="film=True"):
+        lookfrom.render(ball).save(ball.parent / "no.exr")
+        lookfrom.Film.read(ball.parent / "no.exr")
+    with pytest.raises(ValueError, match="no films"):
+        lookfrom.Film.merge([])
+
+
+def test_progress_is_told_and_can_stop() -> None:
+    told: list[tuple[int, int]] = []
+    lookfrom.Session(BALL, samples=4096, time=0.5).render(
+        progress=lambda done, total: told.append((done, total))
+    )
+    assert told and all(0 <= done <= total for done, total in told)
+
+    def stop(done: int, total: int) -> None:
+        if done > 0:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough") as caught:
+        lookfrom.Session(BALL, samples=1 << 20).render(progress=stop)
+    picture = caught.value.picture  # type: ignore[attr-defined]
+    assert (
+        isinstance(picture, lookfrom.Picture) and picture.reason == "interrupt" and picture.linear.max() > 0
+    )
+
+
+def test_ctrl_c_stops_and_keeps_the_picture() -> None:
+    timer = threading.Timer(0.3, lambda: signal.raise_signal(signal.SIGINT))
+    session = lookfrom.Session(BALL, samples=1 << 22)
+    started = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        session.render()
+    assert time.monotonic() - started < 20
+    assert caught.value.picture.linear.max() > 0  # type: ignore[attr-defined]
+
+
+def test_sessions_are_safe_with_threads() -> None:
+    session = lookfrom.Session(BALL)
+    expected = session.render().linear
+    results: list[Any] = [None] * 4
+
+    def work(index: int) -> None:
+        results[index] = session.render().linear if index % 2 else lookfrom.render(BALL).linear
+
+    threads = [threading.Thread(target=work, args=(index,)) for index in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all((result == expected).all() for result in results)
+
+
+def _mean(session: lookfrom.Session) -> float:
+    return float(session.render().linear.mean())
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_processes_render_the_same(method: str) -> None:
+    if method not in multiprocessing.get_all_start_methods():
+        pytest.skip(f"no {method} here")
+    session = lookfrom.Session(BALL)
+    expected = _mean(session)
+    with multiprocessing.get_context(method).Pool(2) as pool:
+        assert pool.map(_mean, [session, session]) == [expected, expected]
+
+
+def test_sessions_are_copied_and_pickled() -> None:
+    session = lookfrom.Session(BALL, size=24)
+    expected = session.render().linear
+    for other in (copy.copy(session), copy.deepcopy(session), pickle.loads(pickle.dumps(session))):
+        assert (other.render().linear == expected).all()
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_many_renders_take_no_memory() -> None:
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
+
+    if not Path("/proc/self/statm").exists():
+        pytest.skip("no /proc here")
+    session = lookfrom.Session(BALL, size=16, samples=1)
+    for _ in range(200):
+        session.render().srgb.sum()
+        lookfrom.render(BALL, size=16, samples=1)
+    before = resident()
+    for _ in range(400):
+        session.render().srgb.sum()
+        lookfrom.render(BALL, size=16, samples=1)
+    assert resident() - before < 0.02 * before, (before, resident())
+
+
+def test_warnings_are_warnings(tmp_path: Path) -> None:
+    (tmp_path / "a.ply").write_text("ply\nformat ascii 1.0\nend_header\n")
+    with pytest.warns(lookfrom.SceneWarning, match="no geometry|no vertices"):
+        session = lookfrom.Session(tmp_path / "a.ply")
+    assert any("no geometry" in text for text in session.warnings)
+
+
+def test_a_page_is_served() -> None:
+    import urllib.request
+
+    with lookfrom.show(BALL, browser=False) as page:
+        assert page.url.startswith("http://127.0.0.1:")
+        with urllib.request.urlopen(page.url) as answer:
+            assert answer.status == 200 and b"<html" in answer.read().lower()
+        assert page.url in page._repr_html_()
+    with pytest.raises(OSError):
+        urllib.request.urlopen(page.url, timeout=2)

@@ -1,0 +1,184 @@
+"""Scenes as plain data: to text and back without loss, arrays as files, meshes of trimesh."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import lookfrom
+from lookfrom import _toml
+
+VERTICES = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float64)
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+
+numbers = st.one_of(st.integers(-(2**60), 2**60), st.floats(allow_nan=False, allow_infinity=False))
+values = st.recursive(
+    st.one_of(st.booleans(), numbers, st.text()),
+    lambda inner: st.one_of(st.lists(inner, max_size=4), st.dictionaries(st.text(), inner, max_size=4)),
+    max_leaves=12,
+)
+tables = st.dictionaries(st.text(), values, max_size=4)
+
+
+@settings(deadline=None)
+@given(
+    st.dictionaries(st.sampled_from(["camera", "image", "render", "variables"]), tables, max_size=4),
+    st.dictionaries(
+        st.sampled_from(["materials", "textures", "media"]), st.dictionaries(st.text(), tables, max_size=3)
+    ),
+    st.dictionaries(st.sampled_from(["sphere", "light", "mesh"]), st.lists(tables, min_size=1, max_size=3)),
+    st.dictionaries(
+        st.text(min_size=1),
+        st.dictionaries(st.sampled_from(["box", "mesh"]), st.lists(tables, min_size=1)),
+        max_size=2,
+    ),
+    st.lists(st.text(), max_size=2),
+)
+def test_text_and_back_without_loss(plain: Any, named: Any, listed: Any, objects: Any, imported: Any) -> None:
+    data = {**listed, **plain, **named, "import": imported}
+    if objects:
+        data["objects"] = objects
+    scene = lookfrom.Scene(data)
+    assert lookfrom.Scene.from_toml(scene.to_toml()) == scene
+
+
+def mesh_scene(**words: Any) -> lookfrom.Scene:
+    scene = lookfrom.Scene()
+    scene.material("grey", type="diffuse", reflectance=0.5)
+    scene.mesh(VERTICES, FACES, material="grey", **words)
+    scene.light(type="environment", color=1)
+    scene.camera(lookfrom=[3, 2, 3], lookat=[0.2, 0.3, 0.2], fov=30)
+    return scene
+
+
+def test_arrays_are_the_same_in_memory_on_disk_and_in_text(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    scene = mesh_scene(normals=VERTICES - 0.25, uvs=rng.random((4, 2)), colors=rng.random((4, 3)))
+    scene.texture("checks", type="image", file=rng.random((4, 4, 3)).astype(np.float32))
+    scene.texture("bytes", type="image", file=rng.integers(0, 256, (4, 4, 3), np.uint8))
+    scene.material("grey", type="diffuse", reflectance="checks")
+    expected = lookfrom.render(scene, size=32, samples=2).linear
+    scene.save(tmp_path / "saved.toml")
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npy"] * 5 + [".pfm", ".ppm", ".toml"]
+    assert (lookfrom.render(tmp_path / "saved.toml", size=32, samples=2).linear == expected).all()
+    loaded = lookfrom.Scene.load(tmp_path / "saved.toml")
+    assert (lookfrom.render(loaded, size=32, samples=2).linear == expected).all()
+    with pytest.raises(lookfrom.Error, match="an image that is an array"):
+        scene.to_toml()
+    scene.data["textures"] = {}
+    scene.material("grey", type="diffuse", reflectance={"type": "vertex_color"})
+    written = lookfrom.Scene.from_toml(scene.to_toml())
+    assert written == scene
+    assert (
+        lookfrom.render(written, size=32, samples=2).linear
+        == lookfrom.render(scene, size=32, samples=2).linear
+    ).all()
+
+
+def test_scenes_are_copied_and_pickled() -> None:
+    scene = mesh_scene()
+    for other in (copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+        assert other == scene
+    other = copy.deepcopy(scene)
+    other.data["mesh"][0]["positions"][0] = 9
+    assert other != scene and scene != 3
+    assert repr(scene) == "Scene(materials: 1, mesh: 1, light: 1, camera: 3)"
+
+
+def test_a_mesh_far_away_keeps_its_details() -> None:
+    far = np.array([4.1e6, 5.2e6, 100.0])
+    near = mesh_scene()
+    scene = lookfrom.Scene({"materials": near.data["materials"], "light": near.data["light"]})
+    scene.mesh(1e-3 * VERTICES + far, FACES, material="grey")
+    scene.camera(
+        lookfrom=(far + 1e-3 * np.array([3, 2, 3])).tolist(),
+        lookat=(far + 1e-3 * np.array([0.2, 0.3, 0.2])).tolist(),
+        fov=30,
+    )
+    small = lookfrom.Session(scene, size=48, samples=64).labels()
+    big = lookfrom.Session(near, size=48, samples=64).labels()
+    assert (small.hit == big.hit).mean() > 0.995
+    assert np.allclose(
+        (small.position - far)[small.hit & big.hit], 1e-3 * big.position[small.hit & big.hit], atol=2e-8
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"vertices": VERTICES[:, :2]}, "cannot reshape|shape"),
+        ({"faces": FACES.astype(float)}, "triangles must be integers"),
+        ({"faces": -FACES}, "triangles must be integers"),
+        ({"faces": FACES[:, :2]}, r"triangles is an array of int64 of shape \(4, 2\)"),
+        ({"uvs": VERTICES}, "uvs is an array"),
+        ({"normals": [["a"] * 3] * 4}, "normals is an array of <U1"),
+    ],
+)
+def test_arrays_that_make_no_mesh(words: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        lookfrom.Scene().mesh(**{"vertices": VERTICES, "faces": FACES, **words})
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "message"),
+    [
+        (VERTICES, FACES + 1, "there is no vertex 4"),
+        (np.full((4, 3), np.nan), FACES, "not finite"),
+        (1e300 * VERTICES, FACES, "not finite"),
+        (VERTICES, FACES[:0], "`triangles` is empty"),
+    ],
+)
+def test_meshes_that_make_no_scene(vertices: Any, faces: Any, message: str) -> None:
+    scene = lookfrom.Scene()
+    with np.errstate(over="ignore"):
+        scene.mesh(vertices, faces)
+        with pytest.raises(lookfrom.SceneError, match=message):
+            lookfrom.Session(scene)
+
+
+def test_colours_of_vertices_paint() -> None:
+    scene = lookfrom.Scene()
+    scene.mesh(VERTICES, FACES, colors=[[0.8, 0, 0]] * 4)
+    scene.light(type="environment", color=1)
+    picture = lookfrom.render(scene, size=33, samples=16, view="iso")
+    middle = picture.linear[16, 16]
+    assert middle[0] > 0.3 and middle[1] == 0
+
+
+def test_points_are_spheres() -> None:
+    scene = lookfrom.Scene()
+    scene.points(np.eye(3), 0.1, colors=np.eye(3))
+    assert [sphere["radius"] for sphere in scene.data["sphere"]] == [0.1] * 3
+    session = lookfrom.Session(scene, size=64)
+    labels = session.labels()
+    assert (
+        len(np.unique(labels.shape[labels.hit])) == 3
+        and len(labels.mask(material="point 1 0 0").nonzero()[0]) > 9
+    )
+    with pytest.raises(lookfrom.Error, match="colors has 2 rows"):
+        scene.points(np.eye(3), 0.1, colors=np.eye(3)[:2])
+
+
+def test_meshes_of_trimesh() -> None:
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere()
+    ball.visual.vertex_colors = [255, 0, 0, 255]
+    picture = lookfrom.render(ball, size=32, samples=8)
+    middle = picture.linear[16, 16]
+    assert middle[0] > 0.2 and middle[1] < 0.1 * middle[0]
+
+
+def test_what_toml_cannot_say() -> None:
+    with pytest.raises(TypeError, match="object is nothing that a scene can have"):
+        lookfrom.Scene({"a": object()}).to_toml()
+    with pytest.raises(TypeError, match="is no name"):
+        _toml.value({3: 4})
+    with pytest.raises(lookfrom.Error, match="no TOML"):
+        lookfrom.Scene.from_toml("= 3")
