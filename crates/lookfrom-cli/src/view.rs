@@ -41,6 +41,7 @@ fn serve(arguments: &ViewArguments, typed: &[String]) -> Result<(), Failure> {
         typed: typed.to_vec(),
         host,
         port: *port,
+        may_be_framed: false,
     };
     let refused = |error: io::Error| Failure::Output(format!("cannot serve at {host}, port {port}: {error}"));
     let server = Server::bind(settings).map_err(refused)?;

@@ -319,6 +319,8 @@ def test_a_page_is_served() -> None:
         assert page.url.startswith("http://127.0.0.1:")
         with urllib.request.urlopen(page.url) as answer:
             assert answer.status == 200 and b"<html" in answer.read().lower()
+            # A notebook may show it.
+            assert "frame-ancestors http://localhost:*" in answer.headers["Content-Security-Policy"]
         assert page.url in page._repr_html_()
     with pytest.raises(OSError):
         urllib.request.urlopen(page.url, timeout=2)

@@ -51,4 +51,6 @@ pub struct Settings {
     pub host: IpAddr,
     /// The port; 0 for any that is free.
     pub port: u16,
+    /// Whether pages of this machine, such as notebooks, may show it in a frame.
+    pub may_be_framed: bool,
 }

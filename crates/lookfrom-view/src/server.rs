@@ -36,7 +36,10 @@ const PATIENCE: Duration = Duration::from_secs(5);
 
 /// The page's content security policy: nothing is loaded from elsewhere.
 const POLICY: &str =
-    "default-src 'self'; img-src 'self' blob:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
+    "default-src 'self'; img-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors ";
+
+/// Who may show the page in a frame where that is allowed: pages of this machine, and those of notebooks in VS Code.
+const FRAMES: &str = "http://localhost:* http://127.0.0.1:* vscode-webview:";
 
 /// A server of one scene, bound to its address.
 #[derive(Debug)]
@@ -51,6 +54,7 @@ pub struct Server {
 #[derive(Debug)]
 struct ServerState {
     token: String,
+    policy: HeaderValue,
     host: IpAddr,
     document: Arc<Document>,
     /// Windows whose threads have not ended.
@@ -68,9 +72,11 @@ impl Server {
         let mut bits = [0; 16];
         getrandom::fill(&mut bits).map_err(io::Error::other)?;
         let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
+        let ancestors = if settings.may_be_framed { FRAMES } else { "'none'" };
+        let policy = HeaderValue::try_from(format!("{POLICY}{ancestors}")).map_err(io::Error::other)?;
         let (host, windows) = (settings.host, Arc::default());
-        let state =
-            Arc::new(ServerState { token, host, document: Arc::new(Document::new(settings)), windows });
+        let document = Arc::new(Document::new(settings));
+        let state = Arc::new(ServerState { token, policy, host, document, windows });
         Ok(Self { listener, address, state, patience: patience::PATIENCE })
     }
 
@@ -190,8 +196,8 @@ async fn require_same_origin(
         return (StatusCode::FORBIDDEN, "another host or origin\n").into_response();
     }
     let mut response = next.run(request).await;
+    response.headers_mut().insert(header::CONTENT_SECURITY_POLICY, state.policy.clone());
     for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-store"),

@@ -526,3 +526,14 @@ fn a_sheared_camera_is_told_as_toml() {
     let text = format!("{toml}\n[[sphere]]\ncenter = [0, 1, 0]\nradius = 1\n");
     Session::from_bytes("words.toml", text.into_bytes(), &Options::default()).expect("a scene");
 }
+
+#[test]
+fn no_other_page_shows_it_in_a_frame() {
+    let served = Served::new("framed", SCENE);
+    let mut stream = TcpStream::connect(served.host()).expect("it listens");
+    let request = format!("GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", served.host());
+    stream.write_all(request.as_bytes()).expect("it reads");
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).expect("it answers");
+    assert!(answer.contains("frame-ancestors 'none'\r\n"), "{answer}");
+}

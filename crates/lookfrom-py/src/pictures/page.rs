@@ -34,6 +34,7 @@ impl Page {
             typed: asked.typed,
             host: IpAddr::V4(Ipv4Addr::LOCALHOST),
             port,
+            may_be_framed: true,
         };
         let refused = |error: std::io::Error| PyOSError::new_err(format!("no page at port {port}: {error}"));
         let server = Server::bind(settings).map_err(refused)?;

@@ -102,6 +102,7 @@ impl Served {
             typed: Vec::new(),
             host: Ipv4Addr::LOCALHOST.into(),
             port: 0,
+            may_be_framed: false,
         };
         let server = Server::bind(settings).expect("a free port").with_patience(patience);
         let (url, windows) = (server.url(), server.windows());
