@@ -201,6 +201,7 @@ def test_films_add_up_bit_for_bit(ball: Path) -> None:
     merged = lookfrom.Film.merge(part for part in parts if part is not None)
     assert merged.is_complete and merged.samples == 8 * 48 * 32
     assert (merged.develop().linear == whole.linear).all()
+    assert (pickle.loads(pickle.dumps(merged)).develop().linear == whole.linear).all()
     # On disk, developed otherwise, and gone on with, also by the command.
     half = lookfrom.render(ball, samples=(0, 4), film=True).film
     assert half is not None

@@ -147,7 +147,8 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
 class Film:
     """The exact sums of a picture's samples, which can be added up: films of parts make the film of the whole, bit for bit.
 
-    `render(..., film=True).film` is one; `Film.read` reads one from an .exr of `save` or of `lookfrom render --film`.
+    `render(..., film=True).film` is one; `Film.read` reads one from an .exr of `save` or of `lookfrom render --film`. Films can be
+    pickled, so that other processes and machines can render parts.
     """
 
     def __init__(self, native: _lookfrom.Film) -> None:
@@ -212,6 +213,13 @@ class Film:
         """Whether it has all samples that it was to have."""
         return self._native.told()[3]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _film_of_bytes, (self._native.to_bytes(),)
+
     def __repr__(self) -> str:
         width, height, samples, is_complete = self._native.told()
         return f"Film({width}×{height}, {samples} samples{'' if is_complete else ', incomplete'})"
+
+
+def _film_of_bytes(content: bytes) -> Film:
+    return Film(_lookfrom.Film.from_bytes(content))

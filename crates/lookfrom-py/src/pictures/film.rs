@@ -1,11 +1,12 @@
 //! Films: the exact sums of samples, in memory and in files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lookfrom::scene::{Budget, Disk, Error, ErrorKind, LoadContext, Location, Result as SceneResult};
 use lookfrom::session::FilmFile;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use super::command::{Words, asked};
 use super::error::raised;
@@ -30,6 +31,19 @@ impl Film {
         Ok(Self::new(read.map_err(|error| raised(py, &error, &Disk))?))
     }
 
+    /// The film of the bytes of its file.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, bytes: Vec<u8>) -> PyResult<Self> {
+        let read = py.detach(|| FilmFile::read(&bytes, Path::new(""), &Budget::default()));
+        Ok(Self::new(read.map_err(|error| raised(py, &error, &Disk))?))
+    }
+
+    /// The bytes of its file, with its picture.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = py.detach(|| written(&self.file));
+        Ok(PyBytes::new(py, &bytes.map_err(|error| raised(py, &error, &Disk))?))
+    }
+
     /// A copy with the samples of another film of the same picture.
     fn merged(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
         let (mut file, other) = (FilmFile::clone(&self.file()), other.file());
@@ -40,14 +54,11 @@ impl Film {
 
     /// Writes the file, with its picture.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let file = self.file();
-        let written = py.detach(|| {
-            let mut out = std::io::Cursor::new(Vec::new());
-            file.write(&file.develop(&file.provenance.development), &mut out)?;
-            std::fs::write(&path, out.into_inner())
+        let saved = py.detach(|| {
+            std::fs::write(&path, written(&self.file)?)
                 .map_err(|error| Error::new(ErrorKind::Io, &Location::file(&path), error.to_string()))
         });
-        written.map_err(|error| raised(py, &error, &Disk))
+        saved.map_err(|error| raised(py, &error, &Disk))
     }
 
     /// The picture, developed as it was to be, or otherwise.
@@ -90,4 +101,11 @@ impl Film {
     pub(super) fn file(&self) -> Arc<FilmFile> {
         self.file.clone()
     }
+}
+
+/// The bytes of a film's file, with its picture as it was to be developed.
+fn written(file: &FilmFile) -> SceneResult<Vec<u8>> {
+    let mut out = std::io::Cursor::new(Vec::new());
+    file.write(&file.develop(&file.provenance.development), &mut out)?;
+    Ok(out.into_inner())
 }

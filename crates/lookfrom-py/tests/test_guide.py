@@ -1,0 +1,67 @@
+"""The guide: its Python runs, and prints and draws what the page shows.
+
+python tests/test_guide.py writes what is printed, and the pictures, into the page.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[3]
+GUIDE = REPOSITORY / "docs/guide/python.md"
+# Pictures that the page shows, by the names of the files that its code writes.
+PICTURES = {"knot.png": "img/python-knot.png", "surface.png": "img/python-surface.png"}
+BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", re.DOTALL)
+
+
+def run(folder: Path) -> list[tuple[re.Match[str], str]]:
+    """The blocks of the page, and what each prints."""
+    shutil.copy(REPOSITORY / "scenes/models/knot.obj", folder)
+    before = Path.cwd()
+    names: dict[str, Any] = {}
+    printed = []
+    os.chdir(folder)
+    try:
+        for block in BLOCK.finditer(GUIDE.read_text(encoding="utf-8")):
+            out = io.StringIO()
+            with contextlib.redirect_stdout(out):
+                exec(compile(block[1], str(GUIDE), "exec"), names)
+            printed.append((block, out.getvalue()))
+    finally:
+        os.chdir(before)
+    return printed
+
+
+def test_the_page_shows_what_its_code_prints_and_draws(tmp_path: Path) -> None:
+    if not GUIDE.exists():
+        pytest.skip("this is not a clone of the repository")
+    for block, printed in run(tmp_path):
+        assert (block[2] or "") == printed, block[1]
+    for made, shown in PICTURES.items():
+        assert (tmp_path / made).read_bytes() == (GUIDE.parent / shown).read_bytes(), shown
+
+
+def write() -> None:
+    """Writes outputs and pictures into the page."""
+    with tempfile.TemporaryDirectory() as folder:
+        text = GUIDE.read_text(encoding="utf-8")
+        for block, printed in reversed(run(Path(folder))):
+            shown = f"\n```text\n{printed}```\n" if printed else ""
+            text = text[: block.start()] + f"```python\n{block[1]}```\n" + shown + text[block.end() :]
+        GUIDE.write_text(text, encoding="utf-8")
+        for made, shown in PICTURES.items():
+            shutil.copy(Path(folder) / made, GUIDE.parent / shown)
+
+
+if __name__ == "__main__":
+    sys.exit(write())
