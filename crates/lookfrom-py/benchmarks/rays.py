@@ -2,7 +2,7 @@
 
     pip install embreex trimesh && python crates/lookfrom-py/benchmarks/rays.py [rays]
 
-Each row is the best of several runs that take turns, copies and numpy included: millions of rays in a second. embreex has one thread.
+Each row is the best of several runs that take turns, copies and numpy included. embreex has one thread.
 """
 
 import os
@@ -28,7 +28,10 @@ def bumpy(subdivisions: int) -> trimesh.Trimesh:
     """A closed mesh with folds at several scales, as of a scan."""
     mesh = trimesh.creation.icosphere(subdivisions=subdivisions)
     points = mesh.vertices.view(np.ndarray)
-    bumps = sum(np.sin(k * points @ np.array(axis)) / k for k, axis in ((5, (1, 2, 0)), (17, (0, 1, 3)), (41, (2, 0, 1))))
+    bumps = sum(
+        np.sin(k * points @ np.array(axis)) / k
+        for k, axis in ((5, (1, 2, 0)), (17, (0, 1, 3)), (41, (2, 0, 1)))
+    )
     return trimesh.Trimesh(points * (1.0 + 0.3 * bumps[:, None]), mesh.faces, process=False)
 
 
@@ -62,8 +65,12 @@ def main() -> None:
     embree = trimesh.ray.ray_pyembree.RayMeshIntersector(mesh)
     ours = lookfrom.trimesh.RayMeshIntersector(mesh, threads=1)
 
-    print(f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__},")
-    print(f"embreex {version('embreex')}, trimesh {trimesh.__version__}; {len(mesh.faces)} triangles, {count} rays")
+    print(
+        f"{platform.machine()}, {os.cpu_count()} cores, Python {platform.python_version()}, numpy {np.__version__},"
+    )
+    print(
+        f"embreex {version('embreex')}, trimesh {trimesh.__version__}; {len(mesh.faces)} triangles, {count} rays"
+    )
 
     low, high = mesh.bounds
     incoherent = rng.uniform(low, high, (count, 3)), rng.normal(size=(count, 3))
@@ -142,10 +149,13 @@ def main() -> None:
 
     ball = trimesh.creation.icosphere(subdivisions=7)
     middles = ball.vertices[ball.edges_unique].mean(axis=1)
-    targets = np.vstack([ball.vertices, middles])
-    rays = ball.vertices.view(np.ndarray)
-    print("\nRays from the middle of an icosphere that miss it\n\n| through | rays | embreex | lookfrom |\n| --- | ---: | ---: | ---: |")
-    for name, rays in (("vertices", rays), ("vertices and middles of edges", targets.view(np.ndarray))):
+    targets = np.vstack([ball.vertices.view(np.ndarray), middles])
+    print("\nRays from the middle of an icosphere that miss it\n")
+    print("| through | rays | embreex | lookfrom |\n| --- | ---: | ---: | ---: |")
+    for name, rays in (
+        ("vertices", targets[: len(ball.vertices)]),
+        ("vertices and middles of edges", targets),
+    ):
         from_middle = np.zeros_like(rays)
         theirs = trimesh.ray.ray_pyembree.RayMeshIntersector(ball).intersects_first(from_middle, rays)
         mine = lookfrom.trimesh.RayMeshIntersector(ball).intersects_first(from_middle, rays)

@@ -11,7 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._lookfrom import Error
 
-Floats: TypeAlias = NDArray[np.float64] | NDArray[np.float32]
+Floats: TypeAlias = NDArray[np.float64 | np.float32]
+# t or a distance, u, v, primitive, geometry, instance; the last two are None where they are 0, and none, for all hits.
+HitArrays: TypeAlias = tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.int32],
+    NDArray[np.int32] | None,
+    NDArray[np.int32] | None,
+]
 Faces: TypeAlias = Literal["both", "front", "back"]
 Shape: TypeAlias = tuple[int, ...]
 

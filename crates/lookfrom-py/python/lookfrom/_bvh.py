@@ -237,8 +237,8 @@ class Bvh(Open3dMethods):
         Where a mesh is not closed, a point is inside if the magnitude of its winding number is greater than 1/2: see
         `winding_numbers`. Then the directions of triangles matter. It takes longer the more edges are open.
 
-        On the surface itself the answer may be either. Raises Error where open meshes are in instances, or in one tree with
-        spheres or instances.
+        On the surface, and nearer to it than 1e-6 of half the size of the tree, the answer may be either. Raises Error where open
+        meshes are in instances, or in one tree with spheres or instances.
         """
         rows, shape = _arrays.points(points, "points")
         return self._tree.contains(rows, _arrays.thread_count(threads)).reshape(shape)
@@ -247,7 +247,7 @@ class Bvh(Open3dMethods):
         """How often meshes go around points, shape (..., 3): 1 in a closed mesh whose fronts are outside, 0 outside of it.
 
         In and around an open mesh it is the sum of the solid angles of triangles, with signs, divided by 4 pi, as by Jacobson,
-        Kavan and Sorkine-Hornung (2013): 1/2 at a hole, and then less. Raises Error as `contains`.
+        Kavan and Sorkine-Hornung (2013): 1/2 at a hole, and then less. The error is about 1e-6 there. Raises Error as `contains`.
         """
         rows, shape = _arrays.points(points, "points")
         return self._tree.winding_numbers(rows, _arrays.thread_count(threads)).reshape(shape)

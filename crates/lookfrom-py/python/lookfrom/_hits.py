@@ -14,8 +14,8 @@ from ._arrays import Floats, Shape
 from ._lookfrom import Error
 
 if TYPE_CHECKING:
+    from ._arrays import HitArrays
     from ._bvh import Bvh
-    from ._lookfrom import HitArrays
 
 
 class Found:

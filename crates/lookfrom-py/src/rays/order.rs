@@ -61,6 +61,6 @@ fn is_near_below(rays: &Rays<'_>, number: usize) -> bool {
             .iter()
             .sum::<f64>()
     };
-    let beside = if number % rays.width == 0 { number + 1 } else { number - 1 };
+    let beside = if number.is_multiple_of(rays.width) { number + 1 } else { number - 1 };
     distance(number + rays.width) <= STRETCH * distance(beside)
 }
