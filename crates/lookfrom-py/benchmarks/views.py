@@ -2,8 +2,8 @@
 
 python views.py MODEL [--size 256] [--views 100] [--samples 4] [--pyrender PYTHON]
 
-Each view is a picture with depth, normals, ids of shapes and camera matrices (lookfrom), or a picture with depth (pyrender). PYTHON is an
-interpreter that has pyrender, and OSMesa; both run one after the other, three times, and the best counts.
+Each view is a picture with depth, normals, ids of shapes and camera matrices (lookfrom), or a picture with depth (pyrender).
+PYTHON is an interpreter that has pyrender, and OSMesa; both run one after the other, three times, and the best counts.
 """
 
 from __future__ import annotations
@@ -94,7 +94,10 @@ def main() -> None:
         session.set(samples=samples)
         for with_labels in (False, True):
             rate = rate_of_lookfrom(session, eyes, with_labels)
-            print(f"lookfrom, {samples} samples{', labels' if with_labels else ''}: {rate:.1f} views/s", flush=True)
+            print(
+                f"lookfrom, {samples} samples{', labels' if with_labels else ''}: {rate:.1f} views/s",
+                flush=True,
+            )
     session.set(integrator="raycast", samples=1)
     print(f"lookfrom, ray casting, 1 sample, labels: {rate_of_lookfrom(session, eyes, True):.1f} views/s")
 

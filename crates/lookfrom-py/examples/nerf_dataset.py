@@ -2,8 +2,9 @@
 
 python nerf_dataset.py MODEL FOLDER [--views 100] [--size 400] [--samples 64]
 
-FOLDER/transforms.json has the field of view and, for each view, the file and the matrix from the camera to the world in OpenGL's axes
-(x right, y up, z backward). Pictures are PNGs with alpha; depths (along the view axis, 0 where nothing is) and normals are .npy files beside them.
+FOLDER/transforms.json has the field of view and, for each view, the file and the matrix from the camera to the world in
+OpenGL's axes (x right, y up, z backward). Pictures are PNGs with alpha; depths (along the view axis, 0 where nothing is) and
+normals are .npy files beside them.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ import argparse
 import json
 from pathlib import Path
 
-import lookfrom
 import numpy as np
+
+import lookfrom
 
 
 def directions(count: int) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
@@ -36,7 +38,11 @@ def main() -> None:
 
     # Read once; the light of the studio stays where it is.
     session = lookfrom.Session(
-        arguments.model, size=arguments.size, samples=arguments.samples, background="transparent", view="persp"
+        arguments.model,
+        size=arguments.size,
+        samples=arguments.samples,
+        background="transparent",
+        view="persp",
     )
     assert session.bounds is not None, "the model is empty"
     low, high = map(np.array, session.bounds)
@@ -47,7 +53,9 @@ def main() -> None:
         name = f"{index:04}"
         session.render().save(arguments.folder / f"{name}.png")
         labels = session.labels()
-        np.save(arguments.folder / f"{name}-depth.npy", np.where(labels.hit, labels.depth, 0).astype(np.float32))
+        np.save(
+            arguments.folder / f"{name}-depth.npy", np.where(labels.hit, labels.depth, 0).astype(np.float32)
+        )
         np.save(arguments.folder / f"{name}-normal.npy", labels.normal)
         matrix = session.camera.world_from_camera("opengl")
         frames.append({"file_path": f"{name}.png", "transform_matrix": matrix.tolist()})

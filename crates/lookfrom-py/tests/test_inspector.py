@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_scenes import mesh_scene
 
 import lookfrom
 from lookfrom import _inspection
-from test_scenes import mesh_scene
 
 SCHEMA = Path(__file__).parents[3] / "docs/guide/inspect.schema.json"
 

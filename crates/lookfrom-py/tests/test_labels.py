@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from test_scenes import FACES, VERTICES, mesh_scene
 
 import lookfrom
-from test_scenes import FACES, VERTICES, mesh_scene
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, HitArrays
 
-__all__ = ["Error", "Tree"]
+__all__ = ["Error", "Film", "Page", "Picture", "SceneError", "Session", "Tree", "keyword_list", "run_command"]
 
 class Error(ValueError): ...
 
