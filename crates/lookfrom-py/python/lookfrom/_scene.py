@@ -143,7 +143,9 @@ class Scene:
         lists = {"positions": positions, "triangles": faces, "normals": normals, "uvs": uvs, "colors": colors}
         given = {name: _rows(name, value) for name, value in lists.items() if value is not None}
         if colors is not None and "material" not in words:
-            words["material"] = self.material("vertex colors", type="diffuse", reflectance={"type": "vertex_color"})
+            words["material"] = self.material(
+                "vertex colors", type="diffuse", reflectance={"type": "vertex_color"}
+            )
         return self.add("mesh", **given, **words)
 
     def trimesh(self, mesh: Any, **words: Any) -> dict[str, Any]:

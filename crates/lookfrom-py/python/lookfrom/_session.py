@@ -119,7 +119,9 @@ class Session:
 
     def _check_kept(self) -> None:
         if not self._keep:
-            raise Error("this session does not keep its scene, so that it cannot be changed: make it with keep=True")
+            raise Error(
+                "this session does not keep its scene, so that it cannot be changed: make it with keep=True"
+            )
 
     @property
     def camera(self) -> Camera:
