@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 
 use super::arguments::{Item, RaysArgument, parts_and_instances, quality};
 use super::geometry::{Geometry, Masks, Part};
-use super::queries::{self, HitsArgument};
+use super::point_queries::{self, HitsArgument};
+use super::queries;
 use super::tree;
 use crate::arrays::Vectors;
 use crate::error::Error;
@@ -86,7 +87,7 @@ impl PyTree {
         hits: HitsArgument<'_>,
         threads: usize,
     ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
-        queries::points_and_normals(py, &self.get(), &hits, threads)
+        point_queries::points_and_normals(py, &self.get(), &hits, threads)
     }
 
     fn contains<'py>(
@@ -95,7 +96,7 @@ impl PyTree {
         points: Vectors<'_>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        queries::contains(py, &self.get(), &points, threads)
+        point_queries::contains(py, &self.get(), &points, threads)
     }
 
     fn winding_numbers<'py>(
@@ -104,7 +105,7 @@ impl PyTree {
         points: Vectors<'_>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        queries::winding_numbers(py, &self.get(), &points, threads)
+        point_queries::winding_numbers(py, &self.get(), &points, threads)
     }
 
     fn closest_points<'py>(
@@ -114,7 +115,7 @@ impl PyTree {
         max_distance: f64,
         threads: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        queries::closest_points(py, &self.get(), &points, max_distance, threads)?.into_bound_py_any(py)
+        point_queries::closest_points(py, &self.get(), &points, max_distance, threads)?.into_bound_py_any(py)
     }
 
     /// Moves a geometry: new vertices, or new centres and radii.
