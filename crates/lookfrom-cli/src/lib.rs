@@ -4,6 +4,9 @@
 //! typed (`args`) are kept apart from the session options that they become (`overrides`). A library, so that the Python package
 //! is the command, too, and has its options by their names ([`keywords`]).
 
+// Doc comments of arguments are help texts: what looks like a tag or a link there is typed.
+#![allow(rustdoc::invalid_html_tags, rustdoc::broken_intra_doc_links)]
+
 mod args;
 mod bench;
 mod compare;
