@@ -108,6 +108,21 @@ impl Bvh {
         &self.instances[instance as usize].world_from_object
     }
 
+    /// The tree of an instance, which others may share.
+    ///
+    /// ```
+    /// # use std::sync::Arc;
+    /// # use lookfrom_bvh::{Affine, Builder};
+    /// let object = Arc::new(Builder::new().build()?);
+    /// let mut builder = Builder::new();
+    /// let instance = builder.instance(object.clone(), Affine::IDENTITY);
+    /// assert!(Arc::ptr_eq(builder.build()?.instance_tree(instance), &object));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn instance_tree(&self, instance: u32) -> &Arc<Self> {
+        &self.instances[instance as usize].bvh
+    }
+
     pub(crate) fn set_bounds(&mut self, bounds: Aabb) {
         self.bounds = bounds;
         self.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));

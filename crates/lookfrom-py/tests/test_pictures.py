@@ -186,6 +186,25 @@ def test_materials_and_lights_change_on_the_same_trees() -> None:
         lookfrom.Session(BALL).set_material("red", type="diffuse", reflectance=1)
 
 
+def test_instances_move_on_the_trees_of_their_objects() -> None:
+    scene = lookfrom.Scene({**BALL, "sphere": []})
+    scene.data["objects"] = {"ball": {"sphere": [{"center": [0, 0, 0], "radius": 0.5, "material": "red"}]}}
+    for x in (-1.0, 1.0):
+        scene.add("instance", object="ball", translate=[x, 0.5, 0])
+    session = lookfrom.Session(scene, keep=True)
+    pose = np.eye(4)
+    pose[:3, 3] = [0.25, 0.75, 0]
+    session.set_poses({1: pose})
+    scene.data["instance"][1]["translate"] = [0.25, 0.75, 0]
+    assert (session.render().linear == lookfrom.render(scene).linear).all()
+    with pytest.raises(lookfrom.SceneError, match="there is no instance 2"):
+        session.set_poses({2: pose})
+    with pytest.raises(lookfrom.Error, match="pose 0 is not a finite affine matrix"):
+        session.set_poses({0: np.ones((4, 4))})
+    with pytest.raises(lookfrom.SceneError):
+        session.set_poses({0: np.diag([1, 0, 1, 1])})
+
+
 def test_an_environment_may_be_an_array() -> None:
     white = np.ones((4, 8, 3), np.float32)
     scene = {key: value for key, value in BALL.items() if key != "light"}

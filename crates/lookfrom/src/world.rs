@@ -16,6 +16,7 @@ mod reflectance;
 mod sides;
 
 use class::Class;
+pub(crate) use compile::Kept;
 
 use std::sync::Arc;
 

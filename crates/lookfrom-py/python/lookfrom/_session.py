@@ -20,6 +20,7 @@ from ._scene import Scene, image_file
 from ._words import words
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
     from typing_extensions import Unpack
 
     from ._words import Options
@@ -116,6 +117,25 @@ class Session:
         `set_material`."""
         self._check_kept()
         self._native.set_lights(_toml.document({"light": [dict(light) for light in lights]}))
+
+    def set_poses(self, poses: Mapping[int, ArrayLike]) -> None:
+        """Moves instances, by their numbers in the scene's `instance` list from 0.
+
+        poses: for each a matrix of shape (4, 4), from the object's space to the world; the last row is 0 0 0 1.
+
+        The trees of objects stay, only the one over the instances is built again. Needs keep=True. Raises Error for numbers that
+        no instance has, and matrices that are not affine or have no inverse.
+        """
+        self._check_kept()
+        moved: list[tuple[int, list[list[float]]]] = []
+        for number, matrix in poses.items():
+            rows = np.asarray(matrix, np.float64)
+            if rows.shape != (4, 4) or not np.isfinite(rows).all() or (rows[3] != [0, 0, 0, 1]).any():
+                raise Error(f"pose {number} is not a finite affine matrix of shape (4, 4): {rows.tolist()}")
+            if number < 0:
+                raise Error(f"there is no instance {number}; they are counted from 0")
+            moved.append((int(number), rows.tolist()))
+        self._native.set_poses(moved)
 
     def _check_kept(self) -> None:
         if not self._keep:

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use lookfrom::glam::DMat4;
 use lookfrom::inspect::{self, SvgView};
 use lookfrom::render::{Progress, SampleId, TileDone};
 use lookfrom::scene::image;
@@ -168,6 +169,13 @@ impl Session {
     fn set_lights(&self, py: Python<'_>, text: &str) -> PyResult<()> {
         let lights = parts::lights(text).map_err(|error| raised(py, &error, &parts::files(text)))?;
         self.exchange(py, 0, |session| session.set_lights(lights))
+    }
+
+    /// Moves instances: index and map from the object's space to the world, by rows.
+    fn set_poses(&self, py: Python<'_>, poses: Vec<(usize, [[f64; 4]; 4])>) -> PyResult<()> {
+        let poses = poses.iter().map(|(index, rows)| (*index, DMat4::from_cols_array_2d(rows).transpose()));
+        let poses: Vec<_> = poses.collect();
+        self.exchange(py, 0, |session| session.set_poses(poses))
     }
 
     /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).

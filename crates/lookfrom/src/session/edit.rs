@@ -1,15 +1,16 @@
-//! Changes of a scene that a session keeps: other materials and lights, on the same trees.
+//! Changes of a scene that a session keeps: other materials, lights and poses, on the same trees.
 
 use std::mem::swap;
 use std::sync::Arc;
 
+use glam::DMat4;
 use lookfrom_scene::light::Light;
 use lookfrom_scene::material::Material;
 use lookfrom_scene::scene::MaterialId;
 use lookfrom_scene::{Location, Result, Scene};
 
 use super::{Options, Session, options, seeing_backs};
-use crate::world::World;
+use crate::world::{Kept, World};
 
 impl Session {
     /// A session of a scene, which is kept beside its world: so that its materials and lights can be changed.
@@ -54,7 +55,7 @@ impl Session {
             let message = format!("there is no material {}; the scene has {count}, from 0", id.index());
             return Err(options::unsuitable(message));
         }
-        self.exchange(|scene| swap(&mut scene.materials[id.index()], &mut material))
+        self.exchange(Kept::Trees, |scene| swap(&mut scene.materials[id.index()], &mut material))
     }
 
     /// Replaces all lights that are no shapes, those that were added to the scene included, as [`Session::set_material`] does a
@@ -63,17 +64,37 @@ impl Session {
     /// # Errors
     /// As [`Session::set_material`].
     pub fn set_lights(&mut self, mut lights: Vec<Light>) -> Result<()> {
-        self.exchange(|scene| swap(&mut scene.lights, &mut lights))
+        self.exchange(Kept::Trees, |scene| swap(&mut scene.lights, &mut lights))
+    }
+
+    /// Moves instances: each by its index in [`Scene::instances`], with its map from the object's space to the world. The trees of
+    /// objects stay; the one over the instances is built again.
+    ///
+    /// # Errors
+    /// As [`Session::set_material`]; `Invalid` for a map without an inverse.
+    pub fn set_poses(&mut self, mut poses: Vec<(usize, DMat4)>) -> Result<()> {
+        let count = self.scene().map_or(usize::MAX, |scene| scene.instances.len());
+        if let Some((index, _)) = poses.iter().find(|(index, _)| *index >= count) {
+            let message = format!("there is no instance {index}; the scene has {count}, from 0");
+            return Err(options::unsuitable(message));
+        }
+        self.exchange(Kept::ObjectTrees, |scene| {
+            // An instance that is given twice is undone in the opposite order.
+            for (index, pose) in &mut poses {
+                swap(&mut scene.instances[*index].world_from_object, pose);
+            }
+            poses.reverse();
+        })
     }
 
     /// Changes the scene by exchanging a part of it; where that fails, it is exchanged again.
-    fn exchange(&mut self, mut exchange: impl FnMut(&mut Scene)) -> Result<()> {
+    fn exchange(&mut self, keeps: Kept, mut exchange: impl FnMut(&mut Scene)) -> Result<()> {
         let Some(mut kept) = self.kept.take() else {
             let message = "this session does not keep its scene: enable it by the option `keep_scene`";
             return Err(options::unsuitable(message.to_owned()));
         };
         exchange(Arc::make_mut(&mut kept));
-        let changed = self.show(&kept);
+        let changed = self.show(&kept, keeps);
         if changed.is_err() {
             exchange(Arc::make_mut(&mut kept));
         }
@@ -81,13 +102,13 @@ impl Session {
         changed
     }
 
-    /// Compiles a changed scene on the trees of the world.
-    fn show(&mut self, scene: &Scene) -> Result<()> {
+    /// Compiles a changed scene on trees of the world.
+    fn show(&mut self, scene: &Scene, keeps: Kept) -> Result<()> {
         scene.validate()?;
         // Until the former world is gone.
         let again = scene.bytes() + World::memory(scene);
         let _room = self.budget.reserve(again, "the scene compiled again", &Location::default())?;
-        let world = Arc::new(self.world().compile_changed(scene.clone(), &mut Vec::new())?);
+        let world = Arc::new(self.world().compile_changed(scene.clone(), keeps, &mut Vec::new())?);
         let renderer = self.renderer.with_world(world, self.renderer.view().clone())?;
         let (mut renderer, _) = seeing_backs(renderer)?;
         if let Some(turning) = &mut self.turntable {

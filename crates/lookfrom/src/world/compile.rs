@@ -1,5 +1,6 @@
 //! Compilation of a scene: names become indices, transforms are applied, lights prepared and BVHs built.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -21,6 +22,15 @@ use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{self, Material, MaterialKind};
 use crate::shading::texture::{SpectrumType, Textures};
 
+/// What is kept of a world whose scene is compiled again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// All trees: of a scene of the same shapes, objects and instances, which may have other materials, textures and lights.
+    Trees,
+    /// The trees of objects: of a scene of the same shapes and objects, whose instances may be elsewhere.
+    ObjectTrees,
+}
+
 impl World {
     /// Compiles a scene. Problems that do not prevent this are added to `warnings`. The origin of render space is the
     /// position of the scene's camera (of the default camera where it has none).
@@ -32,19 +42,34 @@ impl World {
         Self::compile_on(None, scene, warnings)
     }
 
-    /// Compiles a scene of the same shapes, objects and instances as this world's, which may have other materials, textures and
-    /// lights: on this world's trees and its origin.
+    /// Compiles a scene that differs from this world's: on its trees, as far as they are kept, and its origin.
     ///
     /// # Errors
     /// As [`World::compile`].
-    pub(crate) fn compile_changed(&self, scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
-        Self::compile_on(Some(self), scene, warnings)
+    pub(crate) fn compile_changed(
+        &self,
+        scene: Scene,
+        kept: Kept,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self> {
+        Self::compile_on(Some((self, kept)), scene, warnings)
+    }
+
+    /// The trees of objects that have instances, by object.
+    fn object_trees(&self) -> HashMap<u32, Arc<Bvh>> {
+        let instances = self.instances.iter().zip(0..);
+        instances.map(|(instance, id)| (instance.object, self.bvh.instance_tree(id).clone())).collect()
     }
 
     /// Compiles a scene: on the trees of another world, if that is given.
-    fn compile_on(before: Option<&Self>, mut scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+    fn compile_on(
+        before: Option<(&Self, Kept)>,
+        mut scene: Scene,
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Self> {
         let camera = scene.camera.clone().unwrap_or_default();
-        let origin = before.map_or_else(|| origin::of_render_space(&camera, &scene), |world| world.origin);
+        let origin =
+            before.map_or_else(|| origin::of_render_space(&camera, &scene), |(world, _)| world.origin);
         if !origin.is_finite() {
             return Err(Error::invalid(&camera.at, format!("lookfrom is {origin}; expected finite numbers")));
         }
@@ -100,10 +125,18 @@ impl World {
         (compiler.has_instance_grain, compiler.is_in_object) = (false, false);
         let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
         let quality = quality(&scene);
-        let built = if before.is_none() { &*objects } else { &[] };
-        let trees = built
-            .iter()
-            .map(|primitives| tree(primitives, Builder::new(), quality).map(Arc::new))
+        let whole = before.filter(|(_, kept)| *kept == Kept::Trees).map(|(world, _)| world.bvh.clone());
+        let mut known = match before {
+            Some((world, Kept::ObjectTrees)) => world.object_trees(),
+            _ => HashMap::new(),
+        };
+        let built = if whole.is_none() { &*objects } else { &[] };
+        let trees = (0..)
+            .zip(built)
+            .map(|(object, primitives)| match known.remove(&object) {
+                Some(tree) => Ok(tree),
+                None => tree(primitives, Builder::new(), quality).map(Arc::new),
+            })
             .collect::<Result<Vec<_>>>()?;
         // There may be millions of instances: until the tree is built, only the kernel has their maps.
         let mut builder = Builder::new();
@@ -148,9 +181,9 @@ impl World {
         let vertex_normals = scene.vertex_normals;
         drop((scene, labels));
         let primitives = in_world.into_primitives();
-        let bvh = match before {
+        let bvh = match whole {
             None => Arc::new(tree(&primitives, builder, quality)?),
-            Some(world) => world.bvh.clone(),
+            Some(bvh) => bvh,
         };
         let placed = instanced.into_iter().zip(0..);
         let instances: Arc<[Instance]> = placed

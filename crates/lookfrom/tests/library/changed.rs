@@ -123,6 +123,29 @@ fn what_is_refused_changes_nothing() {
     assert_eq!(refused.kind, ErrorKind::Request);
 }
 
+#[test]
+fn moved_instances_have_the_bits_of_a_scene_compiled_anew() {
+    let mut session = Session::keeping(room(), &Options::default()).expect("a scene");
+    let before = picture(&session);
+    let pose = DMat4::from_translation(DVec3::new(-0.5, 0.25, 1.5)) * DMat4::from_rotation_y(0.5);
+    session.set_poses(vec![(0, DMat4::IDENTITY), (0, pose)]).expect("a pose");
+    let mut moved = room();
+    moved.instances[0].world_from_object = pose;
+    assert_eq!(picture(&session), anew(moved));
+    assert_ne!(picture(&session), before);
+
+    // What is impossible changes nothing.
+    let flat = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    for (poses, kind) in
+        [(vec![(0, DMat4::IDENTITY), (0, flat)], ErrorKind::Invalid), (vec![(1, pose)], ErrorKind::Request)]
+    {
+        let now = picture(&session);
+        assert_eq!(session.set_poses(poses).expect_err("no pose").kind, kind);
+        assert_eq!(picture(&session), now);
+        assert_eq!(session.scene().expect("it is kept").instances[0].world_from_object, pose);
+    }
+}
+
 /// What changes without the scene is as if it had been asked for from the start.
 #[test]
 fn options_change_the_picture_and_the_camera() {
