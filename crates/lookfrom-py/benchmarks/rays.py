@@ -77,18 +77,20 @@ def main() -> None:
     side = int(count**0.5)
     eye = lookfrom.look_at((2.5, 1.5, 1.0), (0, 0, 0))
     origin, directions = lookfrom.pinhole_rays(side, side, fov=45, world_from_camera=eye)
-    directions = directions.reshape(-1, 3)
-    coherent = np.repeat(origin[None], len(directions), axis=0), directions
+    coherent = np.broadcast_to(origin, directions.shape).copy(), directions
 
     for title, (o, d) in (("incoherent", incoherent), ("coherent", coherent)):
-        o32, d32 = o.astype(np.float32), d.astype(np.float32)
+        # Rays of a picture have its shape for us, and are rows for embreex.
+        picture = o.astype(np.float32), d.astype(np.float32)
+        o, d = o.reshape(-1, 3), d.reshape(-1, 3)
+        o32, d32 = (array.reshape(-1, 3) for array in picture)
         report(
             f"First hits, {title}, float32: which triangle",
             len(o),
             {
                 "embreex": lambda o=o32, d=d32: scene.run(o, d),
-                "lookfrom, 1 thread": lambda o=o32, d=d32: bvh.closest_primitives(o, d, threads=1),
-                "lookfrom, 2 threads": lambda o=o32, d=d32: bvh.closest_primitives(o, d, threads=2),
+                "lookfrom, 1 thread": lambda rays=picture: bvh.closest_primitives(*rays, threads=1),
+                "lookfrom, 2 threads": lambda rays=picture: bvh.closest_primitives(*rays, threads=2),
             },
         )
         report(
@@ -96,8 +98,8 @@ def main() -> None:
             len(o),
             {
                 "embreex, output=1": lambda o=o32, d=d32: scene.run(o, d, output=1),
-                "lookfrom, 1 thread": lambda o=o32, d=d32: bvh.closest_hits(o, d, threads=1),
-                "lookfrom, 2 threads": lambda o=o32, d=d32: bvh.closest_hits(o, d, threads=2),
+                "lookfrom, 1 thread": lambda rays=picture: bvh.closest_hits(*rays, threads=1),
+                "lookfrom, 2 threads": lambda rays=picture: bvh.closest_hits(*rays, threads=2),
             },
         )
         report(
@@ -121,8 +123,8 @@ def main() -> None:
             len(o),
             {
                 "embreex": lambda o=o32, d=d32: scene.run(o, d, query="OCCLUDED"),
-                "lookfrom, 1 thread": lambda o=o32, d=d32: bvh.occluded(o, d, threads=1),
-                "lookfrom, 2 threads": lambda o=o32, d=d32: bvh.occluded(o, d, threads=2),
+                "lookfrom, 1 thread": lambda rays=picture: bvh.occluded(*rays, threads=1),
+                "lookfrom, 2 threads": lambda rays=picture: bvh.occluded(*rays, threads=2),
             },
         )
     few = max(count // 10, 1)

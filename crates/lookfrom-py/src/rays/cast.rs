@@ -153,7 +153,7 @@ impl<'a> Caster<'a> {
 }
 
 /// How many hits ahead primitives are fetched to the cache.
-const AHEAD: usize = 8;
+const AHEAD: usize = 16;
 
 /// No kernel's ray reaches a tree after this.
 const BEYOND: f32 = 64.0;

@@ -55,6 +55,7 @@ impl Geometry {
         }
     }
 
+    #[inline]
     pub(super) fn primitive(&self, number: usize) -> Primitive {
         match self {
             Self::Triangles { vertices, faces } => {
@@ -66,6 +67,7 @@ impl Geometry {
         }
     }
 
+    #[inline]
     pub(super) fn fetch_face(&self, number: usize) {
         match self {
             Self::Triangles { faces, .. } => prefetch_index(faces, number),
@@ -73,9 +75,14 @@ impl Geometry {
         }
     }
 
+    #[inline]
     pub(super) fn fetch_vertices(&self, number: usize) {
         if let Self::Triangles { vertices, faces } = self {
-            faces[number].iter().for_each(|&index| prefetch_index(vertices, index as usize));
+            for &index in &faces[number] {
+                prefetch_index(vertices, index as usize);
+                // A vertex that starts at the end of a line of the cache ends in the next one.
+                prefetch_index(vertices, index as usize + 1);
+            }
         }
     }
 

@@ -128,6 +128,7 @@ impl Tree {
     }
 
     /// The instance that a hit names, if it names one, and the tree that its geometry is in.
+    #[inline]
     pub(super) fn place(&self, instance: u32) -> (&Self, Option<&Instance>) {
         match instance {
             NONE => (self, None),
@@ -138,11 +139,13 @@ impl Tree {
         }
     }
 
+    #[inline]
     pub(super) fn primitive(&self, geometry: u32, primitive: u32) -> Primitive {
         self.parts[geometry as usize].geometry.primitive(primitive as usize)
     }
 
     /// Fetches what [`Self::fetch_vertices`] needs to the cache: to be called some time before it.
+    #[inline]
     pub(super) fn fetch_face(&self, hit: &Hit) {
         if hit.is_hit() {
             let (place, _) = self.place(hit.instance);
@@ -151,6 +154,7 @@ impl Tree {
     }
 
     /// Fetches a hit's primitive to the cache: to be called some time before it is needed.
+    #[inline]
     pub(super) fn fetch_vertices(&self, hit: &Hit) {
         if hit.is_hit() {
             let (place, _) = self.place(hit.instance);
