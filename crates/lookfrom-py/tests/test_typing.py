@@ -11,7 +11,11 @@ CRATE = Path(__file__).parent.parent
 
 @pytest.mark.parametrize(
     ("package", "command"),
-    [("mypy", ["mypy"]), ("pyright", ["pyright", "--pythonpath", sys.executable]), ("mypy", ["mypy.stubtest", "lookfrom._lookfrom"])],
+    [
+        ("mypy", ["mypy"]),
+        ("pyright", ["pyright", "--pythonpath", sys.executable]),
+        ("mypy", ["mypy.stubtest", "lookfrom._lookfrom"]),
+    ],
 )
 def test_types(package: str, command: list[str]) -> None:
     pytest.importorskip(package)

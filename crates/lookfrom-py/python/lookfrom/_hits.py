@@ -18,14 +18,17 @@ if TYPE_CHECKING:
     from ._bvh import Bvh
 
 
+_NO_RAY = np.zeros((1, 3))
+
+
 class Found:
     """Places on primitives, one for each element of arrays that all have the same shape.
 
     Computed from rays and geometry when they are first asked for: `points`, `normals`, `barycentrics`, `interpolate`.
     """
 
-    def __init__(self, bvh: Bvh, arrays: HitArrays, shape: Shape, rays: tuple[Floats, Floats] | None) -> None:
-        self._bvh, self._version, self._rays = bvh, bvh._version, rays
+    def __init__(self, bvh: Bvh, arrays: HitArrays, shape: Shape) -> None:
+        self._bvh, self._version = bvh, bvh._version
         numbers, u, v, primitive, geometry, instance = arrays
         self._number = numbers.reshape(shape)
         self.u: NDArray[np.float64] = u.reshape(shape)
@@ -86,14 +89,17 @@ class Found:
     def _points_and_normals(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         self._check_version()
         count = self.primitive.size
-        origins, directions = self._rays or (np.zeros((1, 3)), np.ones((1, 3)))
-        if len(origins) != count:
-            origins, directions = (np.broadcast_to(row, (count, 3)) for row in (origins, directions))
-        numbers = [array.reshape(-1) for array in (self._number, self.u, self.v)]
+        origins, directions, t = self._rays_and_t()
+        origins, directions = (np.broadcast_to(rows, (count, 3)) for rows in (origins, directions))
+        numbers = [array.reshape(-1) for array in (t, self.u, self.v)]
         ids = [array.reshape(-1) for array in (self.primitive, self.geometry, self.instance)]
         both = self._bvh._tree.points_and_normals((origins, directions, numbers, ids), 0)
         points, normals = (array.reshape(*self.primitive.shape, 3) for array in both)
         return points, normals
+
+    def _rays_and_t(self) -> tuple[Floats, Floats, NDArray[np.float64]]:
+        """The rays and the t of points on spheres; those of triangles are not used."""
+        raise NotImplementedError
 
     def interpolate(self, values: ArrayLike, *, geometry: int = 0) -> NDArray[np.float64]:
         """Values of vertices, such as texture coordinates, colours or smooth normals, interpolated over triangles.
@@ -135,6 +141,13 @@ class Found:
 class Hits(Found):
     """The closest hits of rays: arrays with the shape of the rays."""
 
+    def __init__(self, bvh: Bvh, arrays: HitArrays, shape: Shape, rays: tuple[Floats, Floats]) -> None:
+        super().__init__(bvh, arrays, shape)
+        self._rays = rays
+
+    def _rays_and_t(self) -> tuple[Floats, Floats, NDArray[np.float64]]:
+        return *self._rays, self._number
+
     @property
     def t(self) -> NDArray[np.float64]:
         """The ray's parameter: a hit is at `origin + t * direction`, so t is a distance where directions are unit vectors.
@@ -152,10 +165,10 @@ class AllHits(Found):
         arrays: HitArrays,
         rays: tuple[Floats, Floats],
     ) -> None:
-        super().__init__(bvh, arrays, (int(offsets[-1]),), None)
+        super().__init__(bvh, arrays, (int(offsets[-1]),))
         self.offsets = offsets
         """Where the hits of each ray start and the last end, shape (n + 1,): those of ray i are `offsets[i]:offsets[i + 1]`."""
-        self._all_rays = rays
+        self._rays = rays
 
     @property
     def t(self) -> NDArray[np.float64]:
@@ -172,20 +185,18 @@ class AllHits(Found):
         """The number of hits of each ray, shape (n,)."""
         return np.diff(self.offsets)
 
-    @cached_property
-    def _points_and_normals(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        # Only points on spheres need the rays.
+    def _rays_and_t(self) -> tuple[Floats, Floats, NDArray[np.float64]]:
+        origins, directions = self._rays
         if self._bvh._has_spheres():
-            origins, directions = self._all_rays
-            self._rays = origins[self.ray], directions[self.ray]
-        return super()._points_and_normals
+            return origins[self.ray], directions[self.ray], self._number
+        return _NO_RAY, _NO_RAY, self._number
 
 
 class ClosestPoints(Found):
     """The closest points of surfaces to points: arrays with the shape of the points."""
 
     def __init__(self, bvh: Bvh, points: NDArray[np.float64], arrays: HitArrays, shape: Shape) -> None:
-        super().__init__(bvh, arrays, shape, None)
+        super().__init__(bvh, arrays, shape)
         self._points = points.reshape(*shape, 3)
 
     @property
@@ -198,15 +209,9 @@ class ClosestPoints(Found):
         """The closest points, shape (..., 3); NaN where nothing is near enough."""
         return self._points
 
-    @cached_property
-    def _points_and_normals(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        # The normals of spheres are those at the points: t = 1 from the origin, or 0 with any direction.
-        self._rays = self._points.reshape(-1, 3), np.ones((self.primitive.size, 3))
-        numbers, self._number = self._number, np.zeros_like(self._number)
-        try:
-            return super()._points_and_normals
-        finally:
-            self._number = numbers
+    def _rays_and_t(self) -> tuple[Floats, Floats, NDArray[np.float64]]:
+        # A sphere's normal is that at the point itself.
+        return self._points.reshape(-1, 3), _NO_RAY, np.zeros_like(self._number)
 
 
 @dataclass(frozen=True)
