@@ -5,7 +5,7 @@
 
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -15,9 +15,11 @@ use pyo3::prelude::*;
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// The number of threads for a call that asks for `threads`: 0 stands for all cores.
-pub(crate) fn thread_count(threads: usize) -> usize {
+fn thread_count(threads: usize) -> usize {
+    // Asked once: it takes longer than a few rays.
+    static CORES: OnceLock<usize> = OnceLock::new();
     match threads {
-        0 => thread::available_parallelism().map_or(1, NonZero::get),
+        0 => *CORES.get_or_init(|| thread::available_parallelism().map_or(1, NonZero::get)),
         _ => threads,
     }
 }

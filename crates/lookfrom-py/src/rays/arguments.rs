@@ -79,7 +79,7 @@ fn spheres(centers: Vec<[f64; 3]>, radii: &PyReadonlyArray1<'_, f64>) -> PyResul
 
 fn instance(
     number: usize,
-    tree: &PyTree,
+    tree: &PyRef<'_, PyTree>,
     matrix: &PyReadonlyArray2<'_, f64>,
     mask: Option<u32>,
 ) -> PyResult<Instance> {
@@ -96,7 +96,7 @@ fn instance(
             "the matrix of instance {number} has no inverse: scales need to be other than 0"
         ))
     })?;
-    Ok(Instance { tree: tree.get(), world_from_object, object_from_world, mask })
+    Ok(Instance { tree: tree.get(tree.py()), world_from_object, object_from_world, mask })
 }
 
 fn read_masks(masks: Option<&MasksArgument<'_>>) -> Masks {

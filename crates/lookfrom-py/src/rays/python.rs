@@ -24,8 +24,9 @@ const FEW: usize = 4096;
 pub(crate) struct PyTree(RwLock<Arc<tree::Tree>>);
 
 impl PyTree {
-    pub(super) fn get(&self) -> Arc<tree::Tree> {
-        self.0.read().unwrap_or_else(PoisonError::into_inner).clone()
+    /// The tree as it is now. Waits for a refit without the GIL.
+    pub(super) fn get(&self, py: Python<'_>) -> Arc<tree::Tree> {
+        py.detach(|| self.0.read().unwrap_or_else(PoisonError::into_inner).clone())
     }
 }
 
@@ -43,12 +44,12 @@ impl PyTree {
     }
 
     /// Another tree that shares everything with this one, until either is refitted.
-    fn clone(&self) -> Self {
-        Self(RwLock::new(self.get()))
+    fn clone(&self, py: Python<'_>) -> Self {
+        Self(RwLock::new(self.get(py)))
     }
 
     fn closest_hits<'py>(&self, py: Python<'py>, rays: RaysArgument<'_>) -> PyResult<Bound<'py, PyAny>> {
-        queries::closest_hits(py, &self.get(), &rays)?.into_bound_py_any(py)
+        queries::closest_hits(py, &self.get(py), &rays)?.into_bound_py_any(py)
     }
 
     fn closest_primitives<'py>(
@@ -56,11 +57,11 @@ impl PyTree {
         py: Python<'py>,
         rays: RaysArgument<'_>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        queries::closest_primitives(py, &self.get(), &rays)
+        queries::closest_primitives(py, &self.get(py), &rays)
     }
 
     fn occluded<'py>(&self, py: Python<'py>, rays: RaysArgument<'_>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        queries::occluded(py, &self.get(), &rays)
+        queries::occluded(py, &self.get(py), &rays)
     }
 
     fn count_hits<'py>(
@@ -69,7 +70,7 @@ impl PyTree {
         rays: RaysArgument<'_>,
         crossings: bool,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        queries::count_hits(py, &self.get(), &rays, crossings)
+        queries::count_hits(py, &self.get(py), &rays, crossings)
     }
 
     fn all_hits<'py>(
@@ -78,7 +79,7 @@ impl PyTree {
         rays: RaysArgument<'_>,
         crossings: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        queries::all_hits(py, &self.get(), &rays, crossings)?.into_bound_py_any(py)
+        queries::all_hits(py, &self.get(py), &rays, crossings)?.into_bound_py_any(py)
     }
 
     fn points_and_normals<'py>(
@@ -87,7 +88,7 @@ impl PyTree {
         hits: HitsArgument<'_>,
         threads: usize,
     ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
-        point_queries::points_and_normals(py, &self.get(), &hits, threads)
+        point_queries::points_and_normals(py, &self.get(py), &hits, threads)
     }
 
     fn contains<'py>(
@@ -96,7 +97,7 @@ impl PyTree {
         points: Vectors<'_>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        point_queries::contains(py, &self.get(), &points, threads)
+        point_queries::contains(py, &self.get(py), &points, threads)
     }
 
     fn winding_numbers<'py>(
@@ -105,7 +106,7 @@ impl PyTree {
         points: Vectors<'_>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        point_queries::winding_numbers(py, &self.get(), &points, threads)
+        point_queries::winding_numbers(py, &self.get(py), &points, threads)
     }
 
     fn closest_points<'py>(
@@ -115,7 +116,8 @@ impl PyTree {
         max_distance: f64,
         threads: usize,
     ) -> PyResult<Bound<'py, PyAny>> {
-        point_queries::closest_points(py, &self.get(), &points, max_distance, threads)?.into_bound_py_any(py)
+        point_queries::closest_points(py, &self.get(py), &points, max_distance, threads)?
+            .into_bound_py_any(py)
     }
 
     /// Moves a geometry: new vertices, or new centres and radii.
@@ -153,7 +155,7 @@ impl PyTree {
 
     /// A geometry as it was given: vertices, faces and masks, or centres, radii and masks.
     fn geometry<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyAny>> {
-        let tree = self.get();
+        let tree = self.get(py);
         let part = tree.parts.get(number).ok_or_else(|| PyIndexError::new_err(number))?;
         let masks = match &part.masks {
             Masks::Everyone => py.None().into_bound(py),
@@ -174,8 +176,8 @@ impl PyTree {
 
     /// For each geometry: whether it has spheres, the number of its vertices or centres, and that of its primitives.
     #[getter]
-    fn shapes(&self) -> Vec<(bool, usize, usize)> {
-        let tree = self.get();
+    fn shapes(&self, py: Python<'_>) -> Vec<(bool, usize, usize)> {
+        let tree = self.get(py);
         let shape = |part: &Part| match &part.geometry {
             Geometry::Triangles { vertices, faces } => (false, vertices.len(), faces.len()),
             Geometry::Spheres { centers, .. } => (true, centers.len(), centers.len()),
@@ -185,20 +187,20 @@ impl PyTree {
 
     /// True if each edge of the triangles belongs to an even number of them.
     fn is_closed(&self, py: Python<'_>) -> bool {
-        let tree = self.get();
+        let tree = self.get(py);
         py.detach(|| matches!(tree.boundary(), super::inside::Boundary::Closed))
     }
 
     /// The least and the greatest coordinates; `None` if there is nothing.
     #[getter]
-    fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        self.get().bounds().map(|bounds| [bounds.min, bounds.max])
+    fn bounds(&self, py: Python<'_>) -> Option<[[f64; 3]; 2]> {
+        self.get(py).bounds().map(|bounds| [bounds.min, bounds.max])
     }
 
     /// Numbers of triangles, spheres and instances that rays can hit, of primitives that none can, and memory in bytes.
     #[getter]
-    fn statistics(&self) -> [usize; 5] {
-        let tree = self.get();
+    fn statistics(&self, py: Python<'_>) -> [usize; 5] {
+        let tree = self.get(py);
         let counts = tree.bvh.statistics();
         [counts.triangles, counts.spheres, counts.instances, counts.left_out, tree.memory()]
     }
