@@ -54,7 +54,7 @@ def test_the_page_shows_what_its_code_prints_and_draws(tmp_path: Path) -> None:
         assert (tmp_path / made).read_bytes() == (GUIDE.parent / shown).read_bytes(), shown
 
 
-@pytest.mark.parametrize("tool", ["reference.py", "inspection.py"])
+@pytest.mark.parametrize("tool", ["reference.py", "inspection.py", "notebook.py"])
 def test_what_is_made_from_the_package_is_up_to_date(tool: str) -> None:
     if not GUIDE.exists():
         pytest.skip("this is not a clone of the repository")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import importlib.util
 import pickle
 from pathlib import Path
 from typing import Any
@@ -150,6 +151,24 @@ def test_colours_of_vertices_paint() -> None:
     picture = lookfrom.render(scene, size=33, samples=16, view="iso")
     middle = picture.linear[16, 16]
     assert middle[0] > 0.3 and middle[1] == 0
+
+
+def test_colours_of_screens_become_light() -> None:
+    expected = [1, 0.21404114, 0]
+    for color in ("#ff8000", [255, 128, 0, 9], [1, 128 / 255, 0], [1, 128 / 255, 0, 0.5]):
+        array = np.array(color, np.uint8) if isinstance(color, list) and max(color) > 1 else color
+        assert np.allclose(lookfrom.linear(array)[..., :3], [1, 0.2158605, 0], atol=1e-6)
+    assert np.allclose(lookfrom.linear([[1, 0.5, 0]]), [expected], atol=1e-6)
+    for color, message in [
+        ("#12345", "no colour|not installed"),
+        ([1, 2, 3], "from 0 to 1"),
+        ([1, 1], "shape"),
+        ("#gggggg", "hex"),
+    ]:
+        with pytest.raises(lookfrom.Error, match=message):
+            lookfrom.linear(color)
+    if importlib.util.find_spec("matplotlib"):
+        assert np.allclose(lookfrom.linear("tab:orange"), lookfrom.linear("#ff7f0e"))
 
 
 def test_points_are_spheres() -> None:

@@ -25,7 +25,7 @@ Made from the docstrings by `crates/lookfrom-py/tools/reference.py`. Examples ar
 # Names by what people want of them.
 SECTIONS = {
     "Pictures": ["render", "Session", "Picture", "Film", "show", "Page", "options", "Options"],
-    "Scenes": ["Scene"],
+    "Scenes": ["Scene", "linear"],
     "Data sets": ["Labels", "Camera"],
     "The inspector": ["Inspection", "PixelInspection"],
     "Rays": [

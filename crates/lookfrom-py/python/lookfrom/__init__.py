@@ -3,6 +3,7 @@
 from ._bvh import Bvh
 from ._camera import Camera
 from ._cameras import look_at, orthographic_rays, panorama_rays, pinhole_rays
+from ._colors import linear
 from ._geometry import Instance, Spheres, Triangles
 from ._hits import AllHits, ClosestPoints, Hits, Statistics
 from ._inspect import Inspection, PixelInspection
@@ -36,6 +37,7 @@ __all__ = [
     "Spheres",
     "Statistics",
     "Triangles",
+    "linear",
     "look_at",
     "options",
     "orthographic_rays",

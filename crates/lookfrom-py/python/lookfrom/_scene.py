@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _toml
+from ._colors import linear
 from ._lookfrom import Error
 
 if sys.version_info >= (3, 11):
@@ -153,7 +154,7 @@ class Scene:
         visual: Any = getattr(mesh, "visual", None)
         colors, uvs = None, None
         if getattr(visual, "kind", None) in ("vertex", "face"):
-            colors = _linear(np.asarray(visual.vertex_colors)[:, :3])
+            colors = linear(np.asarray(visual.vertex_colors, np.uint8))
         elif getattr(visual, "uv", None) is not None and len(visual.uv) == len(mesh.vertices):
             uvs = visual.uv
         return self.mesh(mesh.vertices, mesh.faces, colors=colors, uvs=uvs, **words)
@@ -213,13 +214,6 @@ def _middle(positions: NDArray[np.float64]) -> NDArray[np.float64] | None:
     low, high = positions.min(axis=0), positions.max(axis=0)
     middle = np.asarray((low + high) / 2, np.float64)
     return middle if np.abs(middle).max() > 16 * (high - low).max() else None
-
-
-def _linear(colors: NDArray[Any]) -> NDArray[np.float32]:
-    """Linear light of 8-bit sRGB."""
-    encoded = colors.astype(np.float64) / 255
-    linear = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return linear.astype(np.float32)
 
 
 def _map(item: Any, array: Any, key: str = "") -> Any:
