@@ -15,7 +15,7 @@ impl Caster<'_> {
             fine.clear();
             hits.iter().for_each(|hit| self.tree.fetch_face(hit));
             hits.iter().for_each(|hit| self.tree.fetch_vertices(hit));
-            let refined = hits.iter().map(|hit| refine(self.tree, &ray, hit, relation.t(hit.t)));
+            let refined = hits.iter().map(|hit| refine(self.tree, &ray, relation, hit));
             fine.extend(refined.filter(|hit| relation.is_inside(hit.t)));
             fine.sort_by(|a, b| a.t.total_cmp(&b.t).then_with(|| a.rank().cmp(&b.rank())));
             take(self.chunk.place(number), &fine);
@@ -31,7 +31,7 @@ impl Caster<'_> {
             let (ray, relation) = (self.chunk.world_ray(number), &self.chunk.relations[number]);
             let is_inside = |hit: &&Hit| {
                 relation.is_surely_inside(hit.t)
-                    || relation.is_inside(refine(self.tree, &ray, hit, relation.t(hit.t)).t)
+                    || relation.is_inside(refine(self.tree, &ray, relation, hit).t)
             };
             take(self.chunk.place(number), hits.iter().filter(is_inside).count());
         }

@@ -2,8 +2,8 @@
 
 use lookfrom_bvh::{Hit, Ray};
 
-use super::chunk::{Chunk, Relation};
-use super::refine::{FineHit, WorldRay, refine};
+use super::chunk::{Chunk, Relation, WorldRay};
+use super::refine::{FineHit, refine};
 use super::tree::{Selection, Tree};
 
 /// A tree, what rays see of it, and the memory of a thread.
@@ -69,7 +69,7 @@ impl<'a> Caster<'a> {
     }
 
     fn refine(&self, ray: &WorldRay, relation: &Relation, hit: &Hit) -> FineHit {
-        refine(self.tree, ray, hit, relation.t(hit.t))
+        refine(self.tree, ray, relation, hit)
     }
 
     /// The closest hit of a ray that starts so near to a surface that the kernel has found the surface behind it.

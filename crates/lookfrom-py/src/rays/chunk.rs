@@ -8,7 +8,6 @@ use lookfrom_bvh::Ray;
 use numpy::ndarray::ArrayView1;
 
 use super::frame::{dot, largest, times, to_unit};
-use super::refine::WorldRay;
 use super::tree::Tree;
 use crate::arrays::Rows;
 
@@ -33,6 +32,13 @@ pub(super) struct Rays<'a> {
     pub(super) t_max: ArrayView1<'a, f64>,
     /// Rays in a row of a picture; 0 where they are none.
     pub(super) width: usize,
+}
+
+/// A ray as it was given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorldRay {
+    pub(super) origin: [f64; 3],
+    pub(super) direction: [f64; 3],
 }
 
 /// How a kernel's ray relates to the ray in the world.

@@ -9,10 +9,10 @@ use std::f64::consts::PI;
 
 use lookfrom_bvh::{Faces, Hit};
 
-use super::chunk::prepare;
+use super::chunk::{WorldRay, prepare};
 use super::frame::{cross, dot, subtract, times};
 use super::geometry::Geometry;
-use super::refine::{WorldRay, refine};
+use super::refine::refine;
 use super::tree::{Selection, Tree};
 
 /// The boundary of all triangles of a tree.
@@ -122,9 +122,8 @@ impl Tree {
         let (kernels, relation) = prepare(self, origin, direction, [0.0, f64::INFINITY], false);
         selection.of(&self.bvh).crossings(&kernels, hits);
         let ray = WorldRay { origin, direction };
-        let is_ahead = |hit: &&Hit| {
-            relation.is_surely_inside(hit.t) || refine(self, &ray, hit, relation.t(hit.t)).t > 0.0
-        };
+        let is_ahead =
+            |hit: &&Hit| relation.is_surely_inside(hit.t) || refine(self, &ray, &relation, hit).t > 0.0;
         hits.iter().filter(is_ahead).count()
     }
 

@@ -8,10 +8,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::arguments::Senseless;
-use super::chunk::CHUNK;
+use super::chunk::{CHUNK, WorldRay};
 use super::hit_arrays::{Array, HitArrays, hit_arrays, hit_pieces, pieces, shares, with_slices};
 use super::inside::{Boundary, BoundaryEdge};
-use super::refine::{FineHit, WorldRay};
+use super::refine::FineHit;
 use super::tree::Tree;
 use crate::arrays::{Numbers, Rows, Vectors, numbers, zeros};
 use crate::error::Error;

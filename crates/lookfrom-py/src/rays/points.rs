@@ -1,9 +1,10 @@
 //! The points and normals of hits, from their ids and weights.
 
+use super::chunk::WorldRay;
 use super::closest::weighted;
 use super::frame::{cross, dot, largest, subtract, times, to_unit};
 use super::geometry::Primitive;
-use super::refine::{FineHit, WorldRay};
+use super::refine::FineHit;
 use super::tree::Tree;
 
 impl Tree {

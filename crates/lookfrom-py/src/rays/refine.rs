@@ -9,16 +9,10 @@
 
 use lookfrom_bvh::{Hit, NONE};
 
+use super::chunk::{Relation, WorldRay};
 use super::frame::{Frame, cross, dot, largest, subtract, times, to_unit};
 use super::geometry::Primitive;
 use super::tree::Tree;
-
-/// A ray as it was given.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct WorldRay {
-    pub(super) origin: [f64; 3],
-    pub(super) direction: [f64; 3],
-}
 
 /// A hit in f64.
 #[derive(Clone, Copy, Debug)]
@@ -47,9 +41,9 @@ const GRAZING: f64 = 9.313_225_746_154_785e-10;
 /// How far, in units of the frame and relative to the distance, a hit may be beside the ray: 2⁻¹⁷.
 const BESIDE: f64 = 7.629_394_531_25e-6;
 
-/// A hit of the kernel with its numbers in f64. `t` is about where the kernel has found it, in the ray's units.
+/// A hit of the kernel with its numbers in f64.
 #[inline]
-pub(super) fn refine(tree: &Tree, ray: &WorldRay, hit: &Hit, t: f64) -> FineHit {
+pub(super) fn refine(tree: &Tree, ray: &WorldRay, relation: &Relation, hit: &Hit) -> FineHit {
     let (place, instance) = tree.place(hit.instance);
     let primitive = place.primitive(hit.geometry, hit.primitive);
     let ray = match instance {
@@ -64,7 +58,9 @@ pub(super) fn refine(tree: &Tree, ray: &WorldRay, hit: &Hit, t: f64) -> FineHit 
         Primitive::Triangle(corners) => {
             on_triangle(&place.frame, &ray, &corners, [hit.u, hit.v].map(f64::from))
         }
-        Primitive::Sphere { center, radius } => [on_sphere(&place.frame, &ray, center, radius, t), 0.0, 0.0],
+        Primitive::Sphere { center, radius } => {
+            [on_sphere(&place.frame, &ray, center, radius, relation.t(hit.t)), 0.0, 0.0]
+        }
     };
     let &Hit { primitive, geometry, instance, .. } = hit;
     FineHit { t, u, v, primitive, geometry, instance }
@@ -89,20 +85,36 @@ fn on_triangle(frame: &Frame, ray: &WorldRay, corners: &[[f64; 3]; 3], kernels: 
     if is_clear && u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
         return [t * per_unit, u, v];
     }
-    // The nearest point of the triangle, if it is near enough.
+    let [t, u, v] = beside_triangle(f, d, [e1, e2], is_clear.then_some([u, v]), kernels);
+    [t * per_unit, u, v]
+}
+
+/// t and weights of a ray that passes beside a triangle, or along it, by as little as the rounding: with directions relative to the
+/// ray's origin, and Cramer's weights where they are clear.
+#[cold]
+fn beside_triangle(
+    f: [f64; 3],
+    d: [f64; 3],
+    [e1, e2]: [[f64; 3]; 2],
+    weights: Option<[f64; 2]>,
+    kernels: [f64; 2],
+) -> [f64; 3] {
     let at = |[u, v]: [f64; 2]| {
         let offset = [0, 1, 2].map(|axis| f[axis] + u * e1[axis] + v * e2[axis]);
         let t = dot(offset, d) / dot(d, d);
         let beside = subtract(offset, times(d, t));
         (t, dot(beside, beside).sqrt())
     };
-    let clamped = clamp_weights([u, v]);
-    let (t, beside) = at(clamped);
-    if is_clear && beside <= BESIDE * (1.0 + largest(f)) {
-        return [t * per_unit, clamped[0], clamped[1]];
+    // The nearest point of the triangle, if it is near enough.
+    if let Some(weights) = weights {
+        let [u, v] = clamp_weights(weights);
+        let (t, beside) = at([u, v]);
+        if beside <= BESIDE * (1.0 + largest(f)) {
+            return [t, u, v];
+        }
     }
     let [u, v] = clamp_weights(kernels);
-    [at([u, v]).0 * per_unit, u, v]
+    [at([u, v]).0, u, v]
 }
 
 /// Weights of a point of the triangle: not negative, and with a sum of at most 1.
