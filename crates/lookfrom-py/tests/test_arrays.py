@@ -233,3 +233,9 @@ def test_the_compiled_module_checks_types_too():
     wrong = [np.full(1, 99, np.int32), np.zeros(1, np.int32), np.full(1, -1, np.int32)]
     with pytest.raises(Error, match="does not have"):
         tree.points_and_normals((ONE, ONE, [np.zeros(1)] * 3, wrong), 1)
+
+
+def test_a_broadcast_array_of_more_rows_than_indices():
+    vertices = np.broadcast_to(np.zeros(3), (10**14, 3))
+    with pytest.raises(lookfrom.Error, match="at most 4294967295 are possible"):
+        lookfrom.Bvh(vertices, [[0, 1, 2]])

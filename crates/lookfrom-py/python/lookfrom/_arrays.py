@@ -24,6 +24,9 @@ HitArrays: TypeAlias = tuple[
 Faces: TypeAlias = Literal["both", "front", "back"]
 Shape: TypeAlias = tuple[int, ...]
 
+# Indices of vertices and primitives have 32 bits.
+MOST_ROWS = 2**32 - 1
+
 
 def numbers(value: ArrayLike, name: str) -> Floats:
     """An array of float32 or float64, as it is where it has that type; of integers and other floats a copy in float64.
@@ -61,7 +64,9 @@ def points(value: ArrayLike, name: str) -> tuple[Floats, Shape]:
 
 
 def finite(array: Floats, name: str) -> None:
-    """Raises Error where a number of an array of rows is not finite."""
+    """Raises Error where a number of an array of rows is not finite, or where there are more rows than indices of 32 bits reach."""
+    if len(array) > MOST_ROWS:
+        raise Error(f"{name} has {len(array)} rows, but at most {MOST_ROWS} are possible")
     # The sum of finite numbers may overflow, but that of an array with a NaN or an infinity is never finite.
     with np.errstate(all="ignore"):
         if math.isfinite(array.sum(dtype=np.float64)):
