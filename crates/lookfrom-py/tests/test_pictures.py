@@ -158,6 +158,19 @@ def test_changes_need_no_reading_where_they_can_do_without(ball: Path) -> None:
     assert (session.render().linear == anew.linear).all()
     session.set(view=None, width=30, height=20)
     assert session.size == (30, 20) and np.allclose(session.camera.lookfrom, [0, 1, 5])
+    # Parts and filters that follow others are as if asked for from the start.
+    session.set(samples=4, part=(1, 2))
+    session.set(part=(2, 2))
+    session.set(fireflies="median", light_path={"sky": "C<L.>"})
+    session.set(fireflies="off", light_path={"direct": "C<RD>L"})
+    anew = lookfrom.render(
+        ball, width=30, height=20, samples=4, part=(2, 2), seed=3, depth=2, integrator="whitted", exposure=1
+    )
+    picture = session.render()
+    assert (picture.linear == anew.linear).all() and list(picture) == ["direct"]
+    # A limit of time does not replace a number of samples that was asked for.
+    session.set(part=None, time=60)
+    assert session.samples == 4
     with pytest.raises(lookfrom.Error):
         session.set(samples="x")  # type: ignore[typeddict-item]
 
@@ -178,6 +191,10 @@ def test_materials_and_lights_change_on_the_same_trees() -> None:
     other["materials"]["red"]["reflectance"] = [0.1, 0.1, 0.8]  # type: ignore[index]
     other["light"][0]["intensity"] = 40  # type: ignore[index]
     assert (session.render().linear == lookfrom.render(other).linear).all()
+    # Also where the scene is read again, and in copies.
+    session.set(view="front")
+    assert (session.render().linear == lookfrom.render(other, view="front").linear).all()
+    assert (copy.deepcopy(session).render().linear == session.render().linear).all()
     with pytest.raises(lookfrom.Error, match='there is no material "blue"; the scene has "red"'):
         session.set_material("blue", type="diffuse")
     with pytest.raises(lookfrom.SceneError, match="reflektance"):

@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 Progress = Callable[[int, int], object]
 
 
+# Options whose change depends on what they were: it is simplest to read the scene again.
+_OF_BEFORE = frozenset({"fireflies", "light_path", "part"})
+
+
 class SceneWarning(UserWarning):
     """A scene is rendered, but the picture may differ from what its file means."""
 
@@ -53,6 +57,8 @@ class Session:
         self._source = _source(scene, name)
         self._keep = keep
         self._options: dict[str, Any] = dict(options)
+        # Calls that changed the scene, which is changed again where it is read again.
+        self._edits: list[tuple[str, tuple[Any, ...]]] = []
         self._native = self._opened(self._options)
         for text in self.warnings:
             warnings.warn(text, SceneWarning, stacklevel=2)
@@ -65,7 +71,18 @@ class Session:
             extension, content = image_file(environment)
             given["environment"] = f"environment.{extension}"
             files = {**files, given["environment"]: content}
-        return _lookfrom.Session(path, files, words(given), self._keep)
+        native = _lookfrom.Session(path, files, words(given), self._keep)
+        for name, arguments in self._edits:
+            getattr(native, name)(*arguments)
+        return native
+
+    def _edit(self, name: str, *arguments: Any) -> None:
+        if not self._keep:
+            raise Error(
+                "this session does not keep its scene, so that it cannot be changed: make it with keep=True"
+            )
+        getattr(self._native, name)(*arguments)
+        self._edits.append((name, arguments))
 
     def render(self, *, progress: bool | Progress = False, film: Film | None = None) -> Picture:
         """Renders the picture.
@@ -96,9 +113,14 @@ class Session:
         elif options.get("width") is not None or options.get("height") is not None:
             merged.update(size=None)
         is_array = isinstance(options.get("environment"), np.ndarray)
+        changed = dict(options)
+        if options.get("time") is not None or options.get("noise") is not None:
+            # A limit alone replaces the number of samples, but not one that was asked for.
+            changed.setdefault("samples", merged.get("samples"))
         # What was given before cannot be taken back without reading.
         is_taken_back = any(value is None or value is False for value in options.values())
-        if is_array or is_taken_back or self._native.change(words(options)) is not None:
+        is_of_before = not _OF_BEFORE.isdisjoint(options)
+        if is_array or is_taken_back or is_of_before or self._native.change(words(changed)) is not None:
             self._native = self._opened(merged)
         self._options = merged
 
@@ -109,14 +131,12 @@ class Session:
         Only what depends on materials is compiled again, no tree is built. Raises Error for a name that no material has, and
         SceneError for words that make no material, and for textures, which a session cannot be given. Needs keep=True.
         """
-        self._check_kept()
-        self._native.set_material(material, _toml.document({"materials": {material: words}}))
+        self._edit("set_material", material, _toml.document({"materials": {material: words}}))
 
     def set_lights(self, lights: Iterable[Mapping[str, Any]]) -> None:
         """Replaces all lights that are no shapes, the studio of a model included, by the words of `[[light]]`. As
         `set_material`."""
-        self._check_kept()
-        self._native.set_lights(_toml.document({"light": [dict(light) for light in lights]}))
+        self._edit("set_lights", _toml.document({"light": [dict(light) for light in lights]}))
 
     def set_poses(self, poses: Mapping[int, ArrayLike]) -> None:
         """Moves instances, by their numbers in the scene's `instance` list from 0.
@@ -126,7 +146,6 @@ class Session:
         The trees of objects stay, only the one over the instances is built again. Needs keep=True. Raises Error for numbers that
         no instance has, and matrices that are not affine or have no inverse.
         """
-        self._check_kept()
         moved: list[tuple[int, list[list[float]]]] = []
         for number, matrix in poses.items():
             rows = np.asarray(matrix, np.float64)
@@ -135,13 +154,7 @@ class Session:
             if number < 0:
                 raise Error(f"there is no instance {number}; they are counted from 0")
             moved.append((int(number), rows.tolist()))
-        self._native.set_poses(moved)
-
-    def _check_kept(self) -> None:
-        if not self._keep:
-            raise Error(
-                "this session does not keep its scene, so that it cannot be changed: make it with keep=True"
-            )
+        self._edit("set_poses", moved)
 
     @property
     def camera(self) -> Camera:
@@ -234,10 +247,11 @@ class Session:
         return [text for text, is_note in self._native.warnings() if is_note]
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"source": self._source, "keep": self._keep, "options": self._options}
+        return {"source": self._source, "keep": self._keep, "options": self._options, "edits": self._edits}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._source, self._keep, self._options = state["source"], state["keep"], state["options"]
+        self._source, self._keep = state["source"], state["keep"]
+        self._options, self._edits = dict(state["options"]), list(state["edits"])
         self._native = self._opened(self._options)
 
     def __repr__(self) -> str:

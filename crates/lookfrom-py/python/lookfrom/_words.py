@@ -123,8 +123,9 @@ def _worded(name: str, value: Any) -> str:
     if isinstance(value, bool | np.bool_):
         return "on" if value else "off"
     if isinstance(value, int | np.integer):
-        # A number of bytes.
-        return f"{int(value) / 1024!r}KiB" if name == "memory" else str(int(value))
+        # Numbers of bytes and of seconds.
+        unit = {"memory": f"{int(value) / 1024!r}KiB", "time": f"{int(value)}s"}
+        return unit.get(name, str(int(value)))
     if isinstance(value, float | np.floating):
         return f"{float(value)!r}s" if name == "time" else repr(float(value))
     if isinstance(value, datetime.timedelta):

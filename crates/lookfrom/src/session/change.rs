@@ -6,6 +6,7 @@ use lookfrom_scene::{CameraChoice, ImportOptions, Result};
 
 use super::options::{MOST_SAMPLES, unsuitable};
 use super::{Exposure, Fireflies, Options, Session};
+use crate::render::StopCriteria;
 
 impl Session {
     /// Changes what options give: size, samples and how they are taken, camera, development, stop criteria. What they leave open stays
@@ -35,7 +36,8 @@ impl Session {
         options.apply_to_settings(&mut image, &mut settings)?;
         let has_limit = options.stop.time.is_some() || options.stop.noise.is_some();
         if has_limit {
-            changed.stop = options.stop;
+            let StopCriteria { time, noise } = options.stop;
+            changed.stop = StopCriteria { time: time.or(self.stop.time), noise: noise.or(self.stop.noise) };
             if options.samples.is_none() {
                 settings.samples = MOST_SAMPLES;
             }
