@@ -4,10 +4,19 @@ import { byId } from "./html.js";
 
 const NEXT = { system: "dark", dark: "light", light: "system" };
 
+/** What the browser remembers for this page: nothing, where a notebook shows it in a frame and the browser keeps other sites' memory shut. */
+function memory() {
+    try {
+        return localStorage;
+    } catch {
+        return null;
+    }
+}
+
 /** @param {() => void} changed Called after each change, since canvases read colours from the style sheet. */
 export function attachTheme(changed) {
     const button = byId("theme");
-    let theme = /** @type {keyof typeof NEXT} */ (localStorage.getItem("theme") ?? "system");
+    let theme = /** @type {keyof typeof NEXT} */ (memory()?.getItem("theme") ?? "system");
     if (!(theme in NEXT)) theme = "system";
     const show = () => {
         if (theme === "system") delete document.documentElement.dataset.theme;
@@ -19,7 +28,7 @@ export function attachTheme(changed) {
     };
     button.addEventListener("click", () => {
         theme = /** @type {keyof typeof NEXT} */ (NEXT[theme]);
-        localStorage.setItem("theme", theme);
+        memory()?.setItem("theme", theme);
         show();
     });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
