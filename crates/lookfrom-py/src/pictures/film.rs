@@ -11,6 +11,7 @@ use pyo3::types::PyBytes;
 use super::command::{Words, asked};
 use super::error::raised;
 use super::picture::Picture;
+use crate::parallel;
 
 /// The film of a picture.
 #[pyclass(frozen, module = "lookfrom._lookfrom")]
@@ -23,7 +24,7 @@ impl Film {
     /// Reads a film's file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let read = py.detach(|| -> SceneResult<FilmFile> {
+        let read = parallel::in_pool(py, 0, || -> SceneResult<FilmFile> {
             let budget = Budget::default();
             let bytes = LoadContext::within(&budget, &Disk).read(&path)?;
             FilmFile::read(&bytes, &path, &budget)
@@ -34,27 +35,27 @@ impl Film {
     /// The film of the bytes of its file.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: Vec<u8>) -> PyResult<Self> {
-        let read = py.detach(|| FilmFile::read(&bytes, Path::new(""), &Budget::default()));
+        let read = parallel::in_pool(py, 0, || FilmFile::read(&bytes, Path::new(""), &Budget::default()));
         Ok(Self::new(read.map_err(|error| raised(py, &error, &Disk))?))
     }
 
     /// The bytes of its file, with its picture.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| written(&self.file));
+        let bytes = parallel::in_pool(py, 0, || written(&self.file));
         Ok(PyBytes::new(py, &bytes.map_err(|error| raised(py, &error, &Disk))?))
     }
 
     /// A copy with the samples of another film of the same picture.
     fn merged(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
         let (mut file, other) = (FilmFile::clone(&self.file()), other.file());
-        let merged = py.detach(|| file.merge(&other));
+        let merged = parallel::in_pool(py, 0, || file.merge(&other));
         merged.map_err(|error| raised(py, &error, &Disk))?;
         Ok(Self::new(file))
     }
 
     /// Writes the file, with its picture.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let saved = py.detach(|| {
+        let saved = parallel::in_pool(py, 0, || {
             std::fs::write(&path, written(&self.file)?)
                 .map_err(|error| Error::new(ErrorKind::Io, &Location::file(&path), error.to_string()))
         });
@@ -76,7 +77,7 @@ impl Film {
         if options.fireflies != lookfrom::session::Fireflies::Keep {
             development.fireflies = options.fireflies;
         }
-        Ok(Picture::of_film(&file, py.detach(|| file.develop(&development))))
+        Ok(Picture::of_film(&file, parallel::in_pool(py, 0, || file.develop(&development))))
     }
 
     /// Columns and rows, samples of all pixels together, and whether all are there that were to be.

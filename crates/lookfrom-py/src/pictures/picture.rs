@@ -11,6 +11,7 @@ use pyo3::types::{PyBytes, PyDict};
 use super::error::raised;
 use super::film::Film;
 use crate::error::Error;
+use crate::parallel;
 
 /// A finished picture, with the film that it was developed from.
 #[pyclass(frozen, module = "lookfrom._lookfrom")]
@@ -59,14 +60,14 @@ impl Picture {
 
     /// 8-bit sRGB after exposure and tone map, with straight alpha; and whether alpha means anything.
     fn srgb<'py>(&self, py: Python<'py>) -> (Bound<'py, PyArray1<u8>>, bool) {
-        let shown = py.detach(|| self.developed.shown());
+        let shown = parallel::in_pool(py, 0, || self.developed.shown());
         (shown.rgba.into_pyarray(py), shown.has_alpha)
     }
 
     /// The further channels of an EXR, by name.
     fn channels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        for (name, numbers) in py.detach(|| self.developed.channels(&self.film)) {
+        for (name, numbers) in parallel::in_pool(py, 0, || self.developed.channels(&self.film)) {
             dict.set_item(name, numbers.into_pyarray(py))?;
         }
         Ok(dict)
@@ -85,7 +86,7 @@ impl Picture {
             let message = format!("{extension:?} is no format; pictures are written as {}", known.join(", "));
             return Err(Error::new_err(message));
         };
-        let bytes = py.detach(|| {
+        let bytes = parallel::in_pool(py, 0, || {
             let mut out = std::io::Cursor::new(Vec::new());
             let written = match (&self.provenance, format) {
                 (Some(provenance), Format::Exr) => provenance.write(&self.film, &self.developed, &mut out),

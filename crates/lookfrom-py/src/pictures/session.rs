@@ -195,14 +195,14 @@ impl Session {
     fn inspect_text(&self, py: Python<'_>, x: u32, y: u32, sample: u32) -> PyResult<String> {
         let session = self.checked(x, y, Some(sample))?;
         let id = SampleId { pixel: [x, y], sample };
-        Ok(py.detach(|| inspect::inspect(session.renderer(), id).to_string()))
+        Ok(parallel::in_pool(py, 0, || inspect::inspect(session.renderer(), id).to_string()))
     }
 
     /// A drawing of the sample's rays, as SVG.
     fn inspect_svg(&self, py: Python<'_>, x: u32, y: u32, sample: u32) -> PyResult<String> {
         let session = self.checked(x, y, Some(sample))?;
         let id = SampleId { pixel: [x, y], sample };
-        let drawn = py.detach(|| {
+        let drawn = parallel::in_pool(py, 0, || {
             let renderer = session.renderer();
             inspect::svg(renderer, &inspect::inspect(renderer, id), SvgView::default())
         });
