@@ -387,7 +387,7 @@ mod tests {
     }
 
     fn moved(of: &Options, mut camera: Camera) -> Result<Camera> {
-        of.apply_to_camera(&mut camera, DVec3::ZERO).map(|_| camera)
+        of.apply_to_camera(&mut camera, Bounds::EMPTY.center()).map(|_| camera)
     }
 
     #[test]
