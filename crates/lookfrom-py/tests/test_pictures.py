@@ -214,6 +214,9 @@ def test_instances_move_on_the_trees_of_their_objects() -> None:
     session.set_poses({1: pose})
     scene.data["instance"][1]["translate"] = [0.25, 0.75, 0]
     assert (session.render().linear == lookfrom.render(scene).linear).all()
+    # Also where the scene is read again.
+    session.set(light_sampler="power")
+    assert (session.render().linear == lookfrom.render(scene, light_sampler="power").linear).all()
     with pytest.raises(lookfrom.SceneError, match="there is no instance 2"):
         session.set_poses({2: pose})
     with pytest.raises(lookfrom.Error, match="pose 0 is not a finite affine matrix"):

@@ -57,8 +57,8 @@ class Session:
         self._source = _source(scene, name)
         self._keep = keep
         self._options: dict[str, Any] = dict(options)
-        # Calls that changed the scene, which is changed again where it is read again.
-        self._edits: list[tuple[str, tuple[Any, ...]]] = []
+        # The last call that changed each part of the scene, by the part: for where the scene is read again.
+        self._edits: dict[tuple[str, str | int], tuple[Any, ...]] = {}
         self._native = self._opened(self._options)
         for text in self.warnings:
             warnings.warn(text, SceneWarning, stacklevel=2)
@@ -72,7 +72,7 @@ class Session:
             given["environment"] = f"environment.{extension}"
             files = {**files, given["environment"]: content}
         native = _lookfrom.Session(path, files, words(given), self._keep)
-        for name, arguments in self._edits:
+        for (name, _), arguments in self._edits.items():
             getattr(native, name)(*arguments)
         return native
 
@@ -82,7 +82,14 @@ class Session:
                 "this session does not keep its scene, so that it cannot be changed: make it with keep=True"
             )
         getattr(self._native, name)(*arguments)
-        self._edits.append((name, arguments))
+        self._edits.update(self._parts(name, arguments))
+
+    @staticmethod
+    def _parts(name: str, arguments: tuple[Any, ...]) -> dict[tuple[str, str | int], tuple[Any, ...]]:
+        """What a call changes, each part by itself."""
+        if name == "set_poses":
+            return {(name, number): ([(number, pose)],) for number, pose in arguments[0]}
+        return {(name, arguments[0] if name == "set_material" else ""): arguments}
 
     def render(self, *, progress: bool | Progress = False, film: Film | None = None) -> Picture:
         """Renders the picture.
@@ -251,7 +258,7 @@ class Session:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._source, self._keep = state["source"], state["keep"]
-        self._options, self._edits = dict(state["options"]), list(state["edits"])
+        self._options, self._edits = dict(state["options"]), dict(state["edits"])
         self._native = self._opened(self._options)
 
     def __repr__(self) -> str:
