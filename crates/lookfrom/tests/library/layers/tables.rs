@@ -94,7 +94,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-bvh",
         rungs: &[
             "aabb dispatch error_bounds faces lanes masks observer ray reference testing vector",
-            "affine collector exact nearest origin_primitive procedural ray_f64",
+            "affine collector exact nearest origin_primitive procedural ray_f64 unrounded",
             "ellipsoid origin prepared sphere triangle",
             "conservative item node",
             "common_origin ray8 stack statistics",
