@@ -24,7 +24,7 @@ REPOSITORY = Path(__file__).parents[3]
 GUIDE = REPOSITORY / "docs/guide/python.md"
 # Pictures that the page shows, by the names of the files that its code writes.
 PICTURES = {"knot.png": "img/python-knot.png", "surface.png": "img/python-surface.png"}
-BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?", re.DOTALL)
+BLOCK = re.compile(r"```python\n(.*?)```\n(?:\n```console\n(.*?)```\n)?", re.DOTALL)
 
 
 def run(folder: Path) -> list[tuple[re.Match[str], str]]:
@@ -89,7 +89,7 @@ def write() -> None:
     with tempfile.TemporaryDirectory() as folder:
         text = GUIDE.read_text(encoding="utf-8")
         for block, printed in reversed(run(Path(folder))):
-            shown = f"\n```text\n{printed}```\n" if printed else ""
+            shown = f"\n```console\n{printed}```\n" if printed else ""
             text = text[: block.start()] + f"```python\n{block[1]}```\n" + shown + text[block.end() :]
         GUIDE.write_text(text, encoding="utf-8")
         for made, shown in PICTURES.items():

@@ -21,7 +21,7 @@ REPOSITORY = Path(__file__).resolve().parents[3]
 PAGE = REPOSITORY / "docs/guide/python.md"
 TARGET = PAGE.with_suffix(".ipynb")
 # Code, with the output that follows it on the page.
-BLOCK = re.compile(r"```python(?: notebook)?\n(.*?)```\n(?:\n```text\n.*?```\n)?", re.DOTALL)
+BLOCK = re.compile(r"```python(?: notebook)?\n(.*?)```\n(?:\n```console\n.*?```\n)?", re.DOTALL)
 
 
 def cells() -> list[tuple[str, str]]:

@@ -73,7 +73,7 @@ def entry(name: str, item: Any, level: str) -> list[str]:
     text = inspect.getdoc(item) or ""
     is_call = callable(item) and not (inspect.isclass(item) and issubclass(item, BaseException | dict))
     shown = signature(name, item) if is_call else name
-    return [f"{level} {name.rpartition('.')[2]}", "", "```text", shown, "", text, "```", ""]
+    return [f"{level} {name.rpartition('.')[2]}", "", "```", shown, "", text, "```", ""]
 
 
 def members(owner: Any) -> list[tuple[str, Any]]:
@@ -107,7 +107,7 @@ def written() -> str:
     lines.extend(["## Parts of inspections", ""])
     for name, item in vars(_inspection).items():
         if inspect.isclass(item) and item.__module__ == _inspection.__name__:
-            lines.extend([f"### {name}", "", "```text", inspect.getdoc(item) or "", "```", ""])
+            lines.extend([f"### {name}", "", "```", inspect.getdoc(item) or "", "```", ""])
     lines.extend(["## lookfrom.trimesh", ""])
     intersector = lookfrom.trimesh.RayMeshIntersector
     lines.extend(entry("lookfrom.trimesh.RayMeshIntersector", intersector, "###"))
