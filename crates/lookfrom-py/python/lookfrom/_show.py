@@ -85,7 +85,7 @@ def show(
 
 def _is_in_jupyter() -> bool:
     try:
-        from IPython import get_ipython  # type: ignore[import-not-found,unused-ignore]
+        from IPython import get_ipython
     except ImportError:
         return False
     shell = get_ipython()
