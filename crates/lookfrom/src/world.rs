@@ -8,6 +8,7 @@ mod catcher;
 mod class;
 mod compile;
 mod lights;
+mod medium;
 mod memory;
 mod origin;
 mod place;
@@ -17,6 +18,7 @@ mod sides;
 
 use class::Class;
 pub(crate) use compile::Kept;
+pub use medium::Medium;
 
 use std::sync::Arc;
 
@@ -96,15 +98,6 @@ pub struct World {
     pub(crate) names: Arc<Names>,
     /// The pixels of the camera that sees it, by which bump maps are read; `None` before there is one.
     pub(crate) footprint: Option<PixelFootprint>,
-}
-
-/// An absorbing medium.
-#[derive(Clone, Copy, Debug)]
-pub struct Medium {
-    /// Absorption coefficient, per unit of length.
-    pub absorption: SpectrumTexture,
-    /// Factor of it: ≥ 0.
-    pub scale: f32,
 }
 
 /// Names, for reports.
@@ -390,30 +383,6 @@ impl World {
             return 0.0;
         }
         probability * self.lights[light as usize].pdf(at, wi, surface, IncompletePdf::Allowed)
-    }
-
-    /// Transmittance of the medium that a ray is in over `distance` (Beer's law). Over an infinite distance it is 0 in
-    /// an absorbing medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its
-    /// surface.
-    #[inline]
-    pub fn transmittance(&self, media: InteriorStack, distance: f32, mode: &SpectralMode) -> Spectrum {
-        if media.is_empty() { mode.one() } else { self.transmittance_inside(media, distance, mode) }
-    }
-
-    #[inline(never)]
-    fn transmittance_inside(&self, media: InteriorStack, distance: f32, mode: &SpectralMode) -> Spectrum {
-        let Some((sigma, scale)) = self.absorption(media, mode) else { return mode.one() };
-        if scale == 0.0 || distance.is_infinite() && media.space().is_none() {
-            return mode.one();
-        }
-        let length = scale * distance;
-        mode.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
-    }
-
-    /// The absorption coefficient of the medium that a ray is in, and a factor of it; `None` where nothing is absorbed.
-    pub(crate) fn absorption(&self, media: InteriorStack, mode: &SpectralMode) -> Option<(Spectrum, f32)> {
-        let medium = media.medium(&self.materials).and_then(|index| self.media.get(index as usize))?;
-        Some((self.textures.spectrum(&medium.absorption, &TexturePoint::NOWHERE, mode), medium.scale))
     }
 
     /// This world with its environment maps rotated by `rotation`, in the world: geometry and materials are shared,

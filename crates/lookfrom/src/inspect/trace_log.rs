@@ -84,7 +84,7 @@ impl<'a> TraceLogBuilder<'a> {
                 self.hits.insert(path.address, (*path, surface));
             }
             Event::Absorbed { address, interior, length, transmittance, beta } => {
-                let Some((sigma, scale)) = self.world.absorption(*interior, &self.mode) else { return };
+                let Some((sigma, scale)) = self.world.extinction(*interior, &self.mode) else { return };
                 let material =
                     interior.material().map(|index| self.world.names.materials[index as usize].clone());
                 let report = AbsorptionReport {
