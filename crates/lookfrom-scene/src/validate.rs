@@ -75,7 +75,11 @@ fn check_picture(part: &Part<'_>, image: &Image) -> Result<()> {
 
 fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
     part.color("absorption", medium.absorption)?;
-    part.at_least_zero("scale", medium.scale.into())
+    part.color("scattering", medium.scattering)?;
+    part.color("emission", medium.emission)?;
+    part.at_least_zero("scale", medium.scale.into())?;
+    part.at_least_zero("emission_scale", medium.emission_scale.into())?;
+    part.number("g", medium.g.into(), "between −1 and 1", medium.g.abs() < 1.0)
 }
 
 fn check_instance(part: &Part<'_>, instance: &Instance) -> Result<()> {

@@ -34,12 +34,12 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 pub use background::Alpha;
-pub use event::{Bounce, Branch, Cut, Event, Probe, Term};
+pub use event::{Bounce, Branch, Cut, Event, PhaseSample, Probe, Term};
 pub use false_color::FalseColor;
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
-pub use path::{LightSampling, PathTracer, PreviousVertex};
+pub use path::{Flight, LightSampling, PathTracer, PreviousVertex};
 pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
 pub(crate) use scratch::Scratch;
@@ -366,6 +366,29 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         if first_surfaces.are_wanted() && path.is_root() && world.opacity(surface) == 1.0 {
             first_surfaces.leave(world, path.slot, surface, albedo());
         }
+    }
+
+    /// Leaves the surface behind a medium to AOVs, where that scatters a camera ray before it: all samples of a pixel then leave the
+    /// same, whatever their flights.
+    fn leave_surface_behind(&mut self, world: &World, path: &Path<S>, hit: &Hit) {
+        if hit.is_hit() && path.is_root() && self.queues.first_surfaces.are_wanted() {
+            self.leave_first_surface(world, path, &world.surface(&path.ray, hit), || None);
+        }
+    }
+
+    /// The state of a path that a medium scatters.
+    fn scattered_in_medium(&self, path: &Path<S>) -> LightPathState {
+        match self.light_paths {
+            None => path.light_path,
+            Some(light_paths) => light_paths.scattered_in_medium(path.light_path),
+        }
+    }
+
+    /// Notes that a medium scatters the light of a light, as [`Self::last_scattering`] does for surfaces.
+    fn last_scattering_in_medium(&mut self, path: &Path<S>) -> u32 {
+        let Some(light_paths) = self.light_paths else { return Shadow::NO_SCATTERING };
+        let last = light_paths.last_scattering_in_medium(path.light_path, self.mode(path).one());
+        self.queues.add_last_scattering(last)
     }
 
     /// The state of a path that a surface scatters by one lobe.

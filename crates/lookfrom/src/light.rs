@@ -125,7 +125,7 @@ impl EmissionSpectrum {
 pub struct LightSampleContext {
     /// In render space.
     pub point: DVec3,
-    /// Unit normal, with which the light is weighted.
+    /// Unit normal, with which the light is weighted; zero at a point of a medium, which light reaches from all sides alike.
     pub n: Vec3,
 }
 

@@ -18,7 +18,8 @@ mod sides;
 
 use class::Class;
 pub(crate) use compile::Kept;
-pub use medium::Medium;
+pub(crate) use medium::Coefficients as MediumCoefficients;
+pub use medium::{Medium, Scattering};
 
 use std::sync::Arc;
 

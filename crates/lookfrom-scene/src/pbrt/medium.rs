@@ -1,4 +1,4 @@
-//! The `MakeNamedMedium` directive. Absorption of homogeneous media is rendered, scattering is not.
+//! The `MakeNamedMedium` directive. Homogeneous media are rendered, others are not.
 
 use std::rc::Rc;
 
@@ -15,8 +15,9 @@ use crate::warning::Warning;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 
-/// pbrt's default `sigma_a`, in mm⁻¹.
+/// pbrt's default `sigma_a` and `sigma_s`, in mm⁻¹: whole milk.
 const SIGMA_A: [f32; 3] = [0.0011, 0.0024, 0.014];
+const SIGMA_S: [f32; 3] = [2.55, 3.21, 3.77];
 
 /// The integrators that support media; the others treat all media as a vacuum.
 const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
@@ -25,7 +26,7 @@ const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 pub(super) struct NamedMedium {
     /// `None` for a medium that is not rendered.
     id: Option<MediumId>,
-    /// Its properties that are not rendered, for a warning when it is used.
+    /// That it is not rendered, for a warning when it is used.
     warning: Option<Warning>,
 }
 
@@ -35,34 +36,32 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        let warning = |message: String| Some(Warning::new(&p.place.location(), message));
         if kind != "homogeneous" || p.has("preset") {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
-            self.media.insert(name, NamedMedium { id: None, warning: warning(message) });
+            let warning = Some(Warning::new(&p.place.location(), message));
+            self.media.insert(name, NamedMedium { id: None, warning });
             return Ok(());
         }
         let absorption = self.color(p, "sigma_a", Color::Value(SIGMA_A), Unbounded)?;
-        let scattering = self.color_or_none(p, "sigma_s", Unbounded)?;
-        let emission = self.light_color(p, "Le")?;
-        p.ignore(&["Lescale", "g"]);
-        let is_black = |color| matches!(color, Color::Value(rgb) if rgb == [0.0; 3]);
-        // By default, pbrt's media scatter, but do not emit.
-        let missing = match (scattering.is_some_and(is_black), emission.is_none_or(is_black)) {
-            (false, true) => Some("scatter"),
-            (true, false) => Some("emit"),
-            (false, false) => Some("scatter and emit"),
-            (true, true) => None,
-        };
-        let warning = missing.and_then(|missing| {
-            warning(format!(
-                "the medium {name:?} only absorbs: it would also {missing}, which is not rendered yet"
-            ))
-        });
-        let scale = p.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
+        let scattering = self.color(p, "sigma_s", Color::Value(SIGMA_S), Unbounded)?;
+        let emission = self.light_color(p, "Le")?.unwrap_or(Color::Value([0.0; 3]));
+        let at_least_zero =
+            |name, default| p.float_where(name, default, "a number of at least 0", |v| v >= 0.0);
+        let (scale, emission_scale) = (at_least_zero("scale", 1.0)?, at_least_zero("Lescale", 1.0)?);
+        let g = p.float_where("g", 0.0, "a number between -1 and 1", |g| g.abs() < 1.0)?;
         let id = MediumId(self.scene.media.len() as u32);
-        self.scene.media.push(Medium { name: name.clone(), at: p.place.location(), absorption, scale });
-        self.media.insert(name, NamedMedium { id: Some(id), warning });
+        self.scene.media.push(Medium {
+            name: name.clone(),
+            at: p.place.location(),
+            absorption,
+            scattering,
+            g,
+            scale,
+            emission,
+            emission_scale,
+        });
+        self.media.insert(name, NamedMedium { id: Some(id), warning: None });
         Ok(())
     }
 
@@ -111,7 +110,7 @@ impl Reader<'_, '_> {
         Ok(named.id)
     }
 
-    /// Warns of the properties of a medium that are not rendered, when a medium is first used.
+    /// Warns of media that are not rendered, when one is first used.
     fn use_medium(&mut self, name: &str) {
         let Some(named) = self.media.get_mut(name) else { return };
         match self.without_media.take() {

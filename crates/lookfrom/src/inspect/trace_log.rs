@@ -100,6 +100,7 @@ impl<'a> TraceLogBuilder<'a> {
                     ray.absorption = Some(report);
                 });
             }
+            Event::Flown { .. } | Event::ScatteredInMedium { .. } => {}
             Event::Surface { address, coefficients, .. } => {
                 let report = coefficients.as_deref().map(|k| self.coefficients(k));
                 if let Some(met) = self.rays.get_mut(address).and_then(|ray| ray.met.as_mut()) {

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Path, PreviousVertex, Shadow};
+use crate::integrator::{Flight, Path, PreviousVertex, Shadow};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -77,6 +77,24 @@ pub enum Event {
         transmittance: Spectrum,
         /// The throughput after it.
         beta: Spectrum,
+    },
+    /// A path has travelled in a medium that scatters.
+    Flown {
+        /// Address of the path.
+        address: u64,
+        /// The media that the path is inside of.
+        interior: InteriorStack,
+        /// How far it went, and its throughput there.
+        flight: Box<Flight>,
+        /// The point where it is scattered, if it is.
+        point: Vec3,
+    },
+    /// A direction was sampled by a medium's phase function; the path goes on, or Russian roulette ends it.
+    ScatteredInMedium {
+        /// Address of the path that is scattered.
+        address: u64,
+        /// The direction.
+        sample: PhaseSample,
     },
     /// The surface that was hit was evaluated.
     Surface {
@@ -209,6 +227,21 @@ pub struct Bounce {
     /// The BSDF sample.
     pub sample: BsdfSample,
     /// The path throughput after the bounce, before Russian roulette.
+    pub beta: Spectrum,
+    /// The survival probability of Russian roulette.
+    pub survival: f32,
+    /// Whether the path goes on.
+    pub survives: bool,
+}
+
+/// The continuation of a path by the phase function of a medium.
+#[derive(Clone, Copy, Debug)]
+pub struct PhaseSample {
+    /// In render space.
+    pub wi: Vec3,
+    /// The phase function in that direction, which is also its density.
+    pub pdf: f32,
+    /// The path throughput, before Russian roulette.
     pub beta: Spectrum,
     /// The survival probability of Russian roulette.
     pub survival: f32,

@@ -139,6 +139,17 @@ impl LightPaths {
         LastScattering { states: [state(true), state(false)], diffuse }
     }
 
+    /// The state after a medium has scattered light.
+    #[cold]
+    pub(super) fn scattered_in_medium(&self, from: LightPathState) -> LightPathState {
+        self.next(from, Symbol::MEDIUM)
+    }
+
+    /// The way of light that a light sends to a point of a medium; `whole` is a share of 1.
+    pub(super) fn last_scattering_in_medium(&self, from: LightPathState, whole: Spectrum) -> LastScattering {
+        LastScattering { states: [self.scattered_in_medium(from); 2], diffuse: whole }
+    }
+
     /// Adds a contribution to the layers that have it.
     pub(super) fn add(&self, from: LightPathState, term: Term, value: Spectrum, layers: &mut [Spectrum]) {
         let symbol = match term {

@@ -2,14 +2,22 @@
 //! one direction, sampled by the BSDF. The two strategies are combined by multiple importance sampling (Veach & Guibas
 //! 1995, the power heuristic), and paths of small throughput are ended by Russian roulette (Arvo & Kirk 1990). The
 //! order of steps is pbrt-v4's, so that the same scene converges to the same picture.
+//!
+//! In media that scatter, vertices are points of space as well: `travel` brings a path to one of them or to what it has hit, and
+//! `in_medium` scatters it there.
 
 mod catcher;
+mod flight;
+mod in_medium;
 mod lanes;
+mod travel;
 
 use glam::Vec3;
 use lookfrom_bvh::Hit;
 
+pub use flight::Flight;
 use lanes::Waiting;
+use travel::Traveled;
 
 use crate::core::lanes::{LANES, are_shaded_together};
 use crate::core::math::power_heuristic;
@@ -37,6 +45,8 @@ mod dimension {
     pub(super) const ROULETTE: u32 = 4;
     /// Seed of the walks of layered BSDFs.
     pub(super) const WALK: u32 = 5;
+    /// The free flight before: the lane and the distance.
+    pub(super) const FLIGHT: u32 = 6;
 }
 
 /// Number of bounces before Russian roulette begins: the light that the first bounces find is most of the picture, and
@@ -78,7 +88,7 @@ pub struct PreviousVertex {
     pub pdf: f32,
     /// Its position, in render space.
     pub point: Vec3,
-    /// Shading normal there.
+    /// Shading normal there; zero where it is a point of a medium.
     pub n: Vec3,
     /// Product of η² over the refractions so far: Russian roulette must not end paths whose radiance is only compressed
     /// into a smaller solid angle.
@@ -186,8 +196,14 @@ impl PathTracer {
             self.expect_sky(world, path, output);
         }
 
-        // Absorb on the way.
-        let mut path = output.absorbed(world, path, hit);
+        // Travel there, unless a medium scatters the path on the way.
+        let mut path = match self.travel(world, stream, (path, hit), output) {
+            Traveled::Arrived(path) => path,
+            Traveled::Scattered(vertex) => {
+                output.leave_surface_behind(world, path, hit);
+                return self.scatter_in_medium(world, stream, &vertex, output);
+            }
+        };
         path.state.is_catcher = false;
 
         // A path that leaves the scene sees the sky.

@@ -192,8 +192,11 @@ impl Environment {
             }
             (None, _, IncompletePdf::Allowed) => return None,
             (None, _, IncompletePdf::Forbidden) => {
-                let wi = warp::cosine_hemisphere(u, at.n);
-                (wi, warp::cosine_hemisphere_pdf(at.n.dot(wi)), self.color(textures, wi, mode))
+                let wi = match at.n == Vec3::ZERO {
+                    true => warp::uniform_sphere(u),
+                    false => warp::cosine_hemisphere(u, at.n),
+                };
+                (wi, even_pdf(at.n, wi), self.color(textures, wi, mode))
             }
         };
         let usable = pdf > 0.0 && pdf.is_finite() && !li.is_black();
@@ -210,8 +213,16 @@ impl Environment {
                 finite(sky.choice(incomplete_pdf).pdf(uv) * per_solid_angle)
             }
             (None, _, IncompletePdf::Allowed) => 0.0,
-            (None, _, IncompletePdf::Forbidden) => warp::cosine_hemisphere_pdf(at.n.dot(wi)),
+            (None, _, IncompletePdf::Forbidden) => even_pdf(at.n, wi),
         }
+    }
+}
+
+/// The density of a direction that is sampled without regard to colours: by the cosine to a normal, or uniformly without one.
+fn even_pdf(n: Vec3, wi: Vec3) -> f32 {
+    match n == Vec3::ZERO {
+        true => warp::UNIFORM_SPHERE_PDF,
+        false => warp::cosine_hemisphere_pdf(n.dot(wi)),
     }
 }
 

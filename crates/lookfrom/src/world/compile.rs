@@ -192,19 +192,15 @@ impl World {
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
-        let medium = |absorption, scale| {
-            let absorption = textures.spectrum_texture(absorption, SpectrumType::Unbounded);
-            Medium { absorption, scale }
-        };
         let mut media: Vec<Medium> =
-            written_media.iter().map(|written| medium(written.absorption, written.scale)).collect();
+            written_media.iter().map(|written| Medium::compile(&textures, written)).collect();
         let mut compiler = material::Compiler::new(&textures, vertex_normals);
         for written in written_materials {
             let (mut material, absorption) = compiler.compile(&written);
             // An absorbing body is filled with a medium of its own.
             if absorption != [0.0; 3] {
                 material.medium = Some(media.len() as u32);
-                media.push(medium(Color::Value(absorption), 1.0));
+                media.push(Medium::absorbing(&textures, absorption));
             }
             materials.push(material);
             names.materials.push(written.name);

@@ -2,7 +2,7 @@
 //!
 //! An expression begins with `C`, the camera. Each time that light is scattered is one event, of a side and a kind:
 //! `R` reflection or `T` transmission; `D` diffuse, `G` glossy or `S` specular. `<RD>` is diffuse reflection, `<TS>` clear
-//! glass; `D` alone is short for `<.D>`, `R` for `<R.>`. The last event is where the light comes from: `L` a light, `B` the
+//! glass; `D` alone is short for `<.D>`, `R` for `<R.>`; `V` is a medium (a volume), which has neither side nor kind. The last event is where the light comes from: `L` a light, `B` the
 //! background or an environment, `O` an object that shines and is no light, `A` Whitted's ambient light; `<L.'lamp'>` is the
 //! light of a name. `.` is any event, `[…]` one of several, `[^…]` any other; `(…)`, `|`, `*`, `+`, `?`, `{n}`, `{n,}` and
 //! `{n,m}` mean what they mean in regular expressions. Blanks do not count.
@@ -20,8 +20,8 @@ const DEEPEST: u32 = 50;
 /// Largest number of a repetition.
 const MOST_TIMES: u32 = 100;
 
-/// Number of events of scattering: two sides of three kinds.
-const SCATTERINGS: u32 = 6;
+/// Number of events of scattering: two sides of three kinds, and media.
+const SCATTERINGS: u32 = 7;
 
 /// Largest number of different names of lights in all expressions of a picture.
 const MOST_LABELS: usize = 29;
@@ -47,6 +47,9 @@ impl Symbol {
     pub(super) fn byte(self) -> u8 {
         self.0 + 1
     }
+
+    /// Scattering by a medium.
+    pub(super) const MEDIUM: Self = Self(6);
 
     /// Scattering by one lobe.
     pub(super) fn scattering(lobe: Lobes) -> Self {
@@ -295,11 +298,12 @@ impl Parser<'_, '_> {
             Some('D') => Symbols::kinds(0),
             Some('G') => Symbols::kinds(1),
             Some('S') => Symbols::kinds(2),
+            Some('V') => Symbols::one(Symbol::MEDIUM),
             Some('L') => Symbols::endings(Ending::Light),
             Some('B') => Symbols::endings(Ending::Background),
             Some('O') => Symbols::endings(Ending::Object),
             Some('A') => Symbols::endings(Ending::Ambient),
-            _ => return Err(self.expected("an event: one of D G S R T L B O A . < [ (")),
+            _ => return Err(self.expected("an event: one of D G S R T V L B O A . < [ (")),
         };
         self.next();
         Ok(set)
