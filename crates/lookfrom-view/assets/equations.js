@@ -18,7 +18,7 @@ export function showEquations(app) {
     const show = () => {
         const ray = app.selectedRay();
         if (!ray) return replace(element);
-        const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), theSum(ray)];
+        const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theFlight(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), thePhase(ray), theSum(ray)];
         replace(element, sections.filter((section) => section !== null).map((section) => {
             const { title, content } = /** @type {Section} */ (section);
             const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), ...content);
@@ -80,8 +80,43 @@ function theAbsorption(ray) {
 }
 
 /** @param {Ray} ray */
+function theFlight({ flight }) {
+    if (!flight) return null;
+    const { scattered_at: place } = flight;
+    return section("A flight in a medium",
+        display("β′ = ", place ? frac("β σ_s T", "q") : frac("β T", "Q")),
+        terms([
+            ["σ_t", "extinction coefficient, per unit of length", lanes(flight.extinction)],
+            ["σ_s", "scattering coefficient", lanes(flight.scattering)],
+            ["P", `probability of each lane by its share of β; the distance is sampled by lane ${flight.lane}`, lanes(flight.choice)],
+            ["l", "the distance that was sampled", exact(flight.distance)],
+            ["d", "the distance of what is hit", exact(flight.limit)],
+            ["T", "exp(− σ_t l), or of d where that is less", lanes(flight.transmittance)],
+            place ? ["q", "density of the distance: Σ P σ_t T", exact(flight.density)] : ["Q", "probability of arriving: Σ P T", exact(flight.density)],
+            ["β′", "throughput there", lanes(flight.throughput)],
+            ...(place ? [/** @type {Row} */ (["p", "the point where the medium scatters it", point(place, 9)])] : []),
+        ]));
+}
+
+/** @param {Ray} ray */
+function thePhase({ phase, ends: reason }) {
+    if (!phase) return null;
+    return section("Goes on by the phase function",
+        terms([
+            ["ω", "the sampled direction", point(phase.wi)],
+            ["p", "phase function, which is its own density: β stays", exact(phase.pdf)],
+            ...(phase.survival < 1 ? [
+                /** @type {Row} */ (["P", "probability that Russian roulette lets it go on", exact(phase.survival)]),
+                /** @type {Row} */ (["β / P", "throughput of the next ray", lanes(phase.next_throughput)]),
+            ] : []),
+        ]),
+        reason && h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`));
+}
+
+/** @param {Ray} ray */
 function theHit(ray) {
-    const { met } = ray;
+    const { met, flight } = ray;
+    if (flight?.scattered_at) return section("Hit", h("p", {}, "None: a medium scatters it before."));
     if (!met) return section("Hit", h("p", {}, "It leaves the scene."));
     const k = met.coefficients;
     return section(`Hit: ${fileName(met.shape)}`,
@@ -197,7 +232,7 @@ function theBranches(ray) {
 /** @param {Ray} ray */
 function theBounce(ray) {
     const { bounce, ends: reason } = ray;
-    if (!bounce) return reason ? section("The path ends", h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`)) : null;
+    if (!bounce) return reason && !ray.phase ? section("The path ends", h("p", {}, `${reason[0].toUpperCase()}${reason.slice(1)}.`)) : null;
     return section(`Goes on by ${bounce.lobe}`,
         display("β′ = ", frac("β f cos θ", "p")),
         terms([

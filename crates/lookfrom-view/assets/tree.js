@@ -105,4 +105,7 @@ export function showTree(app) {
 }
 
 /** What a ray meets, in words. @param {Ray} ray */
-export const ends = (ray) => (ray.met ? `→ ${fileName(ray.met.shape)}` : "→ leaves the scene");
+export const ends = (ray) => {
+    if (ray.flight?.scattered_at) return "→ is scattered by a medium";
+    return ray.met ? `→ ${fileName(ray.met.shape)}` : "→ leaves the scene";
+};

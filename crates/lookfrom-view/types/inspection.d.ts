@@ -22,7 +22,7 @@ export interface Absorption {
 export interface Addition {
     /** The ray whose hit made it. */
     address: number;
-    /** The reason: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or `sampled` along a path). */
+    /** The reason: `sky`, `emission`, `medium` (its emission), `ambient`, `view`, `open sky`, or the light's name (`found` or `sampled` along a path). */
     term: string;
     /** The light that was added. */
     value: Amount;
@@ -172,7 +172,7 @@ export interface Contribution {
     address: number;
     /** Number of reflections, refractions and bounces before that hit. */
     depth: number;
-    /** From the camera to the light: `camera → glass (R) → window`. Letters: `R` specular reflection, `T` specular transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `S` Whitted's highlight. */
+    /** From the camera to the light: `camera → glass (R) → window`. Letters: `R` specular reflection, `T` specular transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `V` a medium, `S` Whitted's highlight. */
     expression: string;
     /** The light that it comes from: its name, `sky`, `ambient`, or the shape that emits it. */
     light: string;
@@ -212,6 +212,30 @@ export interface Development {
 
 /** A factor of light, per lane: red, green and blue, or one for each of four wavelengths. */
 export type Factor = number[];
+
+/** A flight in a medium that scatters. The distance is sampled with the extinction of one lane, chosen by the throughput. */
+export interface Flight {
+    /** P: the probability of each lane, β / Σ β. */
+    choice: Factor;
+    /** The density `q = Σ P σ_t T` of the distance, per unit of length, where it is scattered; else the probability `Q = Σ P T` of arriving. */
+    density: number;
+    /** The distance that was sampled, `−ln(1 − u) / σ_t`: the ray is scattered where it is less than `limit`. */
+    distance: number;
+    /** σ_t: the extinction coefficient, per unit of length. */
+    extinction: Factor;
+    /** The index of the lane that was chosen. */
+    lane: number;
+    /** The distance of what the ray hits; infinite where it hits nothing. */
+    limit: number;
+    /** The point where it is scattered, in the world; null where it arrives. */
+    scattered_at: Vector | null;
+    /** σ_s: the scattering coefficient. */
+    scattering: Factor;
+    /** The throughput after it: `β σ_s T / q`, or `β T / Q`. */
+    throughput: Factor;
+    /** T: `exp(−σ_t · length)` up to the point or the hit. */
+    transmittance: Factor;
+}
 
 /** A light that a path hit: `β L w` is added. */
 export interface Found {
@@ -439,6 +463,20 @@ export interface MultipleScattering {
 
 export type Pair = [number, number];
 
+/** Scattering by the phase function of a medium, which is its own density: β stays. */
+export interface Phase {
+    /** β of the next ray: β / survival; null where there is none. */
+    next_throughput: Factor | null;
+    /** The phase function in that direction, per steradian: its value and its density. */
+    pdf: number;
+    /** The survival probability of Russian roulette. */
+    survival: number;
+    /** Whether the path goes on. */
+    survives: boolean;
+    /** The sampled direction, unit length. */
+    wi: Vector;
+}
+
 /** The samples of a pixel, and what the picture makes of them. */
 export interface Pixel {
     /** Every sample: the brightest first, and before it those that are not finite. */
@@ -491,6 +529,8 @@ export interface Ray {
     ends: string | null;
     /** The product of η² over the refractions before, by which Russian roulette multiplies the throughput. */
     eta_scale: number;
+    /** How far it went in a medium that scatters: to the hit, or to a point before it. */
+    flight: Flight | null;
     /** Lights that it hit, along a path. */
     found: Found[];
     /** `camera`; in a tree `reflected` or `refracted`; along a path `reflected`, `transmitted`, `scattered` (a random walk) or `straight on` (past a surface that it passes by alpha or as an interface). */
@@ -499,7 +539,9 @@ export interface Ray {
     light_sample: LightSample | null;
     /** Each light, in Whitted's model. */
     lights: Light[];
-    /** Its hit; null for a miss. */
+    /** The light that the medium emits on the way, as far as the hit; it is added. */
+    medium_emission: Amount | null;
+    /** Its hit; null for a miss, and where a medium scatters it before. */
     met: Met | null;
     /** In RGB mode: the one colour that goes on, with the weight of all three, after dispersion at the hit. */
     only_color: "red" | "green" | "blue" | null;
@@ -511,6 +553,8 @@ export interface Ray {
     parent: number | null;
     /** The solid angle density of its direction, for MIS weights; null for camera rays, after specular bounces and in Whitted's tree. */
     pdf: number | null;
+    /** The continuation of the path where a medium scatters it, even if Russian roulette ends it. */
+    phase: Phase | null;
     /** The BSDF at the hit, along a path. */
     scattering: Scattering | null;
     /** The contribution of this ray and of all rays that come from it. */

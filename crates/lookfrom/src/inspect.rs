@@ -36,8 +36,8 @@ pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport, Departure,
-    DevelopmentReport, Factor, Inspection, LiftReport, LightReport, MatrixStep, MetReport, RayReport,
-    SensorReport, ShadowReport, SphereMapping, WavelengthsReport,
+    DevelopmentReport, Factor, FlightReport, Inspection, LiftReport, LightReport, MatrixStep, MetReport,
+    PhaseReport, RayReport, SensorReport, ShadowReport, SphereMapping, WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,

@@ -45,6 +45,19 @@ AttributeBegin
 AttributeEnd
 "#;
 
+/// A medium that scatters and shines, all around.
+const FOG: &str = r#"
+Integrator "volpath" "integer maxdepth" 8
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 0.2 0.2 0.2 ] "rgb sigma_s" [ 0.5 0.4 0.3 ] "rgb Le" [ 1 2 3 ]
+MediumInterface "" "fog"
+LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective"
+WorldBegin
+LightSource "point" "point3 from" [ 1 1 -1 ] "rgb I" [ 2 2 2 ]
+Shape "sphere"
+"#;
+
 /// A coarse mesh that stands for a smooth surface, as itself and as an instance.
 const SMOOTH: &str = r#"
 [camera]
@@ -152,6 +165,7 @@ fn every_report_is_of_the_schema() {
          f 1//1 4//4 3//3 2//2\n",
     );
     stage.write("odd.pbrt", ODD);
+    stage.write("fog.pbrt", FOG);
     for (name, width) in [("t.png", 2), ("square.png", 1)] {
         let picture = lookfrom_scene::image::encode_png(width, 1, &[200; 6][..3 * width as usize]).unwrap();
         std::fs::write(stage.path(name), picture).unwrap();
@@ -159,7 +173,8 @@ fn every_report_is_of_the_schema() {
     let mut told = BTreeSet::new();
     let odd = [[2, 0], [10, 2], [5, 5], [12, 7], [8, 9], [3, 12]];
     let odd = odd.map(|[x, y]| format!("odd.pbrt {x} {y} --samples 4 --sample 1"));
-    for inspected in INSPECTED.map(str::to_owned).into_iter().chain(odd) {
+    let fog = [0, 1, 2, 3].map(|sample| format!("fog.pbrt 7 7 --samples 4 --sample {sample}"));
+    for inspected in INSPECTED.map(str::to_owned).into_iter().chain(odd).chain(fog) {
         let path = if inspected.contains("/") { root().join(&inspected) } else { inspected.clone().into() };
         let document = stage.json_document(&format!("inspect {} --json", path.display()));
         accepts(&validator, &document, &inspected);

@@ -29,7 +29,7 @@ pub struct Contribution {
     /// The light that it comes from: its name, `sky`, `ambient`, or the shape that emits it.
     pub light: String,
     /// From the camera to the light: `camera → glass (R) → window`. Letters: `R` specular reflection, `T` specular
-    /// transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `S` Whitted's highlight.
+    /// transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `V` a medium, `S` Whitted's highlight.
     pub expression: String,
     /// Its factors, and the one that makes it large.
     pub why: String,
@@ -53,8 +53,10 @@ fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribu
     // Emission is where the way ends.
     let end = (!is_emission(addition)).then(|| letters_toward_light(ray, addition));
     let mut links = links(inspection, ray);
-    if let (Some(letters), Some(met)) = (end, &ray.met) {
-        links.push(link(met, &letters));
+    match (end, &ray.met) {
+        (Some(_), None) if ray.scattered_at().is_some() => links.push(MEDIUM.into()),
+        (Some(letters), Some(met)) => links.push(link(met, &letters)),
+        _ => {}
     }
     if light != "view" {
         links.push(light.clone());
@@ -84,7 +86,8 @@ pub(crate) fn light_seen_by_bounces(renderer: &Renderer, id: SampleId) -> Option
     let mut ray = inspection.ray(largest.address)?;
     let mut is_seen = is_emission(light);
     while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
-        is_seen &= parent.bounce.as_ref().is_none_or(|bounce| matches!(bounce.letters, "R" | "T"));
+        is_seen &= parent.bounce.as_ref().is_none_or(|bounce| matches!(bounce.letters, "R" | "T"))
+            && parent.scattered_at().is_none();
         ray = parent;
     }
     (!is_seen).then(|| largest.expression.clone())
@@ -93,7 +96,7 @@ pub(crate) fn light_seen_by_bounces(renderer: &Renderer, id: SampleId) -> Option
 /// Whether it is the light of the surface itself, or of what is behind the scene.
 fn is_emission(addition: &Addition) -> bool {
     let term = addition.term.as_str();
-    matches!(term, "emission" | "sky" | "open sky") || term.starts_with("found ")
+    matches!(term, "emission" | "medium" | "sky" | "open sky") || term.starts_with("found ")
 }
 
 /// The expression of a sample without light: its longest way, and nothing at its end.
@@ -118,8 +121,10 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
             (RayKind::Reflected, None) => Some("R"),
             _ => Some("T"),
         };
-        if let (Some(letters), Some(met)) = (letters, &parent.met) {
-            links.push(link(met, letters));
+        match (letters, &parent.met) {
+            _ if parent.scattered_at().is_some() => links.push(MEDIUM.into()),
+            (Some(letters), Some(met)) => links.push(link(met, letters)),
+            _ => {}
         }
         ray = parent;
     }
@@ -127,6 +132,9 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
     links.reverse();
     links
 }
+
+/// A point of a medium in the chain.
+const MEDIUM: &str = "medium (V)";
 
 /// A surface in the chain: its shape.
 fn link(met: &MetReport, letters: &str) -> String {
@@ -192,7 +200,9 @@ impl NamedFactor {
 
 /// The factors of a contribution (the largest lane of each), and the one that makes it large.
 fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String {
-    let beta = NamedFactor::times("β", ray.throughput_there.as_ref().unwrap_or(&ray.throughput));
+    // A medium shines along the whole way.
+    let there = ray.throughput_there.as_ref().filter(|_| addition.term != "medium");
+    let beta = NamedFactor::times("β", there.unwrap_or(&ray.throughput));
     let mut factors = vec![beta];
     let sampled = ray.light_sample.as_ref().filter(|_| addition.term.starts_with("sampled "));
     let found = ray.found.iter().find(|found| addition.term == format!("found {}", found.light));

@@ -11,7 +11,10 @@ use super::segments::RaySegment;
 
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
-pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
+pub use ray::{
+    AbsorptionReport, CoefficientsReport, Departure, FlightReport, LiftReport, MetReport, PhaseReport,
+    RayReport,
+};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.
 pub type Factor = Vec<f32>;
@@ -112,7 +115,7 @@ pub struct DevelopmentReport {
 pub struct Addition {
     /// The ray whose hit made it.
     pub address: u64,
-    /// The reason: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or `sampled` along a
+    /// The reason: `sky`, `emission`, `medium` (its emission), `ambient`, `view`, `open sky`, or the light's name (`found` or `sampled` along a
     /// path).
     pub term: String,
     /// The light that was added.

@@ -102,8 +102,8 @@ pub(super) fn segments(inspection: &Inspection) -> Vec<RaySegment> {
             address: ray.address,
             kind: ray.kind,
             from: ray.a,
-            to: ray.met.as_ref().map_or_else(|| along(ray.a, direction, length), |met| met.point),
-            is_endless: ray.met.is_none(),
+            to: ray.end().unwrap_or_else(|| along(ray.a, direction, length)),
+            is_endless: ray.end().is_none(),
             width: width(&ray.throughput),
             name: ray.met.as_ref().map(|met| met.shape.clone()),
             title: format!("{} ray {}, contributes {:?}", ray.kind, ray.address, ray.subtree.rgb),
@@ -163,8 +163,7 @@ fn width(throughput: &[f32]) -> f32 {
 /// The length at which a ray without an end is drawn: a considerable part of the drawing.
 fn length_without_end(inspection: &Inspection) -> f64 {
     let eye = DVec3::from_array(inspection.camera.lookfrom);
-    let points =
-        inspection.rays.iter().filter_map(|ray| ray.met.as_ref()).map(|met| DVec3::from_array(met.point));
+    let points = inspection.rays.iter().filter_map(RayReport::end).map(DVec3::from_array);
     let farthest = points.map(|point| point.distance(eye)).fold(0.0, f64::max);
     if farthest > 0.0 {
         0.4 * farthest

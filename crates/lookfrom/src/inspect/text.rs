@@ -4,6 +4,7 @@
 mod camera;
 mod candidates;
 mod hit;
+mod medium;
 mod microfacets;
 mod path;
 mod pixel;

@@ -12,11 +12,11 @@ use glam::Vec3;
 use lookfrom_scene::settings::Integrator;
 
 use super::microfacets::MicrofacetReport;
-use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
+use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, PhaseReport, RayReport};
 use super::scatter::FoundReport;
 use super::segments::RayKind;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Branch, Cut, Event, Path, PreviousVertex, Term};
+use crate::integrator::{Branch, Cut, Event, Path, PhaseSample, PreviousVertex, Term};
 use crate::render::Renderer;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
@@ -41,6 +41,8 @@ pub(super) struct TraceLogBuilder<'a> {
     shadings: BTreeMap<u64, (Shading, Vec3)>,
     /// Each ray, and the surface that it hit.
     hits: BTreeMap<u64, (Path<PreviousVertex>, Option<SurfaceInteraction>)>,
+    /// The points where media scatter rays, in render space.
+    in_media: BTreeMap<u64, Vec3>,
 }
 
 /// The finished trace log.
@@ -71,6 +73,7 @@ impl<'a> TraceLogBuilder<'a> {
             additions: Vec::new(),
             shadings: BTreeMap::new(),
             hits: BTreeMap::new(),
+            in_media: BTreeMap::new(),
         }
     }
 
@@ -100,7 +103,13 @@ impl<'a> TraceLogBuilder<'a> {
                     ray.absorption = Some(report);
                 });
             }
-            Event::Flown { .. } | Event::ScatteredInMedium { .. } => {}
+            Event::Flown { address, flight, point, .. } => self.flown(*address, flight, *point),
+            Event::ScatteredInMedium { address, sample } => {
+                let PhaseSample { wi, pdf, survival, survives, .. } = *sample;
+                let report =
+                    PhaseReport { wi: wi.to_array(), pdf, survival, survives, next_throughput: None };
+                self.at(*address, |ray| ray.phase = Some(report));
+            }
             Event::Surface { address, coefficients, .. } => {
                 let report = coefficients.as_deref().map(|k| self.coefficients(k));
                 if let Some(met) = self.rays.get_mut(address).and_then(|ray| ray.met.as_mut()) {
@@ -235,7 +244,11 @@ impl<'a> TraceLogBuilder<'a> {
         for address in addresses {
             let next = self.rays.get(&(address + 1)).map(|next| next.throughput.clone());
             let Some(ray) = self.rays.get_mut(&address) else { continue };
+            if let Some(phase) = &mut ray.phase {
+                phase.next_throughput.clone_from(&next);
+            }
             let kind_of_next = match &mut ray.bounce {
+                _ if ray.phase.is_some() => RayKind::Scattered,
                 Some(bounce) => {
                     bounce.next_throughput.clone_from(&next);
                     match settings.integrator {
@@ -250,7 +263,13 @@ impl<'a> TraceLogBuilder<'a> {
                 self.at(address + 1, |next| next.kind = kind_of_next);
                 continue;
             }
+            let is_scattered = ray.scattered_at().is_some();
             ray.ends = Some(match (&ray.met, &ray.scattering, &ray.bounce) {
+                _ if is_scattered => match &ray.phase {
+                    Some(phase) if !phase.survives => "Russian roulette ends it",
+                    None if ray.depth >= settings.depth => "the maximum depth is reached",
+                    _ => "its throughput is 0",
+                },
                 (None, ..) => "it leaves the scene",
                 (Some(_), None, _) => "ambient occlusion needs no further rays",
                 (_, Some(_), None) if ray.depth >= settings.depth => "the maximum depth is reached",
@@ -305,6 +324,7 @@ impl<'a> TraceLogBuilder<'a> {
                     report.added = amount;
                 }
             }
+            Term::Medium => ray.medium_emission = Some(amount),
             Term::Sky | Term::Emission | Term::Ambient | Term::View | Term::Unoccluded => {}
         });
     }
@@ -314,6 +334,7 @@ impl<'a> TraceLogBuilder<'a> {
         match term {
             Term::Sky => "sky".into(),
             Term::Emission => "emission".into(),
+            Term::Medium => "medium".into(),
             Term::Ambient => "ambient".into(),
             Term::View => "view".into(),
             Term::Unoccluded => "open sky".into(),

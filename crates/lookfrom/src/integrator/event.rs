@@ -18,6 +18,8 @@ pub enum Term {
     Sky,
     /// The surface emits light.
     Emission,
+    /// The medium on the way emits light.
+    Medium,
     /// `k_a I_a`.
     Ambient,
     /// A light, by its index, reached the surface.

@@ -155,7 +155,7 @@ impl LightPaths {
         let symbol = match term {
             Term::Light(light) | Term::Found { light, .. } => self.lights[light as usize],
             Term::Sky => Symbol::ending(Ending::Background, None),
-            Term::Emission => Symbol::ending(Ending::Object, None),
+            Term::Emission | Term::Medium => Symbol::ending(Ending::Object, None),
             Term::Ambient => Symbol::ending(Ending::Ambient, None),
             Term::Unoccluded | Term::View => return,
         };

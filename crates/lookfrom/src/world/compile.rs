@@ -174,6 +174,15 @@ impl World {
                 "\"random_walk\" finds no light without a size, since no path meets it: use \"path\"";
             warnings.push(Warning::new(&light.at, message));
         }
+        if scene.render.media
+            && matches!(scene.render.integrator, Kind::Whitted | Kind::Raycast)
+            && let Some(medium) = scene.media.iter().find(|medium| medium.scatters() || medium.emits())
+        {
+            let integrator = scene.render.integrator.word();
+            let message =
+                format!("media neither scatter light nor emit it with {integrator:?}: use \"path\"");
+            warnings.push(Warning::new(&medium.at, message));
+        }
 
         // Build the BVH of the world, over those of the objects. What is compiled makes room for it.
         let written_materials = std::mem::take(&mut scene.materials);

@@ -31,6 +31,7 @@ mod portal;
 mod references;
 mod robust;
 mod same_bits;
+mod scattering;
 mod sensor;
 mod session;
 mod shapes;

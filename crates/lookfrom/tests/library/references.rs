@@ -31,6 +31,8 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("coffee/scene", "coffee", 1024, 4, 0.005),
     ("staircase2/scene", "staircase2", 512, 5, 0.005),
     ("cornell-sensor/scene", "cornell-sensor", 256, 16, 0.005),
+    ("medium-fog/scene", "medium-fog", 384, 16, 0.01),
+    ("medium-inside/scene", "medium-inside", 384, 16, 0.01),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how
@@ -124,8 +126,9 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 #[ignore = "needs LOOKFROM_SHARED"]
 fn normals_are_pbrts() {
     let shared = lookfrom_test_data::shared("");
-    // That of the sensor has no `Ns`.
-    for (scene, name, ..) in SCENES.iter().filter(|(_, name, ..)| *name != "cornell-sensor") {
+    // That of the sensor has no `Ns`, and those of media have what is seen where nothing was scattered.
+    let has_normals = |name: &str| name != "cornell-sensor" && !name.starts_with("medium-");
+    for (scene, name, ..) in SCENES.iter().filter(|(_, name, ..)| has_normals(name)) {
         let reference = shared.join(format!("reference/{name}.exr"));
         let found = alike(&shared.join(format!("scenes/{scene}.pbrt")), &reference);
         println!("{name}: {found:?} of the pixels have pbrt's N, Ns");

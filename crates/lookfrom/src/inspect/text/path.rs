@@ -5,7 +5,8 @@ use std::fmt::{self, Write};
 use lookfrom_scene::plural::counted;
 
 use super::candidates::{write_candidates, write_traced};
-use super::hit::{write_absorption, write_departure, write_derivations, write_met, write_shadow};
+use super::hit::{write_departure, write_derivations, write_met, write_shadow};
+use super::medium::{write_medium, write_phase};
 use super::microfacets::write_microfacets;
 use super::{Excerpt, RayReport, TextPart};
 use super::{amount, full, lanes, vector, vector32};
@@ -99,13 +100,16 @@ impl Excerpt<'_> {
             write_candidates(f, ray, OTHERS_ALONG_PATH, pad)?;
         }
         match &ray.met {
+            None if ray.scattered_at().is_some() => {
+                writeln!(f, "{pad}  a medium scatters it before it meets anything")?;
+            }
             None => writeln!(f, "{pad}  meets nothing: the sky")?,
             Some(met) => write_met(f, met, pad)?,
         }
         if !self.has(TextPart::Lights) {
             return Ok(());
         }
-        write_absorption(f, ray, pad)?;
+        write_medium(f, ray)?;
         if let (Some(color), Some(there)) = (ray.only_color, &ray.throughput_there) {
             let why = format!("dispersion: {color} goes on alone, with the weight of all colours");
             writeln!(f, "{pad}  {why}: β = {}", lanes(there))?;
@@ -117,7 +121,7 @@ impl Excerpt<'_> {
             write_scattering(f, scattering)?;
         }
         if let Some(report) = &ray.light_sample {
-            self.write_light_sample(f, report)?;
+            self.write_light_sample(f, report, ray.scattered_at().is_some())?;
         }
         if let Some(openness) = &ray.openness {
             writeln!(f, "{pad}  is anything near?")?;
@@ -127,8 +131,11 @@ impl Excerpt<'_> {
         if let Some(bounce) = &ray.bounce {
             self.write_bounce(f, bounce)?;
         }
+        if let Some(phase) = &ray.phase {
+            write_phase(f, phase)?;
+        }
         let goes_on = ray.ends.is_none();
-        if goes_on && ray.bounce.is_none() {
+        if goes_on && ray.bounce.is_none() && ray.phase.is_none() {
             writeln!(
                 f,
                 "{pad}  the ray passes this surface (an interface, or cut out by its alpha) and goes straight on"
@@ -154,11 +161,7 @@ impl Excerpt<'_> {
                 writeln!(f, "      direction: {ONLY_CHOICE}, light sampling cannot find it: w = {w}")?;
             }
             (Some(p), "path") => {
-                writeln!(
-                    f,
-                    "      p = {}: pdf of this direction in BSDF sampling at the surface before",
-                    full(p)
-                )?;
+                writeln!(f, "      p = {}: pdf of this direction {}", full(p), self.sampling_before(ray))?;
                 writeln!(f, "      q = {q}: pdf of this direction in light sampling there")?;
                 write_found_sampling(f, found.sampling.as_ref())?;
                 writeln!(f, "      w = p² / (p² + q²) = {w}")?;
@@ -172,7 +175,23 @@ impl Excerpt<'_> {
         writeln!(f, "      + β L w = {}", amount(&found.added))
     }
 
-    fn write_light_sample(&self, f: &mut String, report: &LightSampleReport) -> fmt::Result {
+    /// What sampled the direction of a ray: a phase function, or a BSDF.
+    fn sampling_before(&self, ray: &RayReport) -> &'static str {
+        let parent_of = |ray: &RayReport| self.inspection.ray(ray.parent?);
+        let before = std::iter::successors(parent_of(ray), |ray| parent_of(ray));
+        let mut scattered = before.skip_while(|ray| ray.bounce.is_none() && ray.phase.is_none());
+        match scattered.next().is_some_and(|ray| ray.phase.is_some()) {
+            true => "by the phase function of the medium before",
+            false => "in BSDF sampling at the surface before",
+        }
+    }
+
+    fn write_light_sample(
+        &self,
+        f: &mut String,
+        report: &LightSampleReport,
+        is_in_medium: bool,
+    ) -> fmt::Result {
         writeln!(
             f,
             "    samples one light: {}, chosen with probability {}",
@@ -183,7 +202,8 @@ impl Excerpt<'_> {
         let Some(sample) = &report.sample else {
             return writeln!(
                 f,
-                "      it does not illuminate this point (it is behind the surface, or faces away)"
+                "      it does not illuminate this point ({})",
+                if is_in_medium { "it faces away" } else { "it is behind the surface, or faces away" }
             );
         };
         writeln!(
@@ -195,7 +215,10 @@ impl Excerpt<'_> {
         if sample.f_cos.iter().all(|lane| *lane == 0.0) {
             return writeln!(f, "      f cos = 0: the surface scatters none of it along this path");
         }
-        writeln!(f, "      f cos = {}", lanes(&sample.f_cos))?;
+        match is_in_medium {
+            true => writeln!(f, "      f cos = {}: the phase function", lanes(&sample.f_cos))?,
+            false => writeln!(f, "      f cos = {}", lanes(&sample.f_cos))?,
+        }
         write_microfacets(f, &sample.microfacets)?;
         if let Some(point) = sample.point {
             writeln!(f, "      from the point {}", vector(&point))?;
@@ -213,7 +236,8 @@ impl Excerpt<'_> {
         }
         match sample.bsdf_pdf {
             Some(q) => {
-                writeln!(f, "      q = {}: pdf of this direction in BSDF sampling", full(q))?;
+                let sampling = if is_in_medium { "by the phase function" } else { "in BSDF sampling" };
+                writeln!(f, "      q = {}: pdf of this direction {sampling}", full(q))?;
                 writeln!(f, "      w = p² / (p² + q²) = {}", full(sample.weight))?;
             }
             None => {

@@ -53,8 +53,12 @@ impl TraceLogBuilder<'_> {
         self.emission(light, sample.li).into_iter().chain(of_sample).collect()
     }
 
-    /// The point and the normal for which lights are sampled at the hit of a ray.
+    /// The point and the normal for which lights are sampled at the hit of a ray, or where a medium scatters it.
     fn light_context(&self, address: u64) -> Option<(LightSampleContext, IncompletePdf)> {
+        if let Some(point) = self.in_media.get(&address) {
+            let at = LightSampleContext { point: point.as_dvec3(), n: Vec3::ZERO };
+            return Some((at, IncompletePdf::Allowed));
+        }
         let (_, surface) = self.hits.get(&address)?;
         let surface = surface.as_ref()?;
         let point = DVec3::from_array(surface.point.position);

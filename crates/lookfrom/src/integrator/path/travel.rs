@@ -37,7 +37,7 @@ impl PathTracer {
 
         // What a medium emits where no path goes on is left out, as in pbrt.
         if path.depth < self.depth {
-            output.add(path, Term::Emission, path.beta * medium.emitted(limit));
+            output.add(path, Term::Medium, path.beta * medium.emitted(limit));
         }
         let Some(phase) = medium.phase else { return Traveled::Arrived(output.absorbed(world, path, hit)) };
         let flight = Flight::sample(&medium, path.beta, limit, stream.two(dimension::FLIGHT));
