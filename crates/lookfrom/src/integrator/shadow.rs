@@ -99,6 +99,15 @@ pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
     Ray { t_max: 1.0, ..Ray::new(origin, direction) }
 }
 
+/// The length of a shadow ray behind a surface at `t`, where it was `t_max` from its origin before. It is a little less than the
+/// difference: that and the new origin are rounded, and a light must not block its own ray.
+#[inline(always)]
+fn rest(t_max: f32, t: f32) -> f32 {
+    const PART: f32 = 1.0 / 65536.0;
+    const OF_WHOLE: f32 = 1.0 / 2_097_152.0;
+    ((t_max - t) * (1.0 - PART) - t * OF_WHOLE).max(0.0)
+}
+
 /// The surfaces that let shadow rays pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -31,8 +31,8 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("coffee/scene", "coffee", 1024, 4, 0.005),
     ("staircase2/scene", "staircase2", 512, 5, 0.005),
     ("cornell-sensor/scene", "cornell-sensor", 256, 16, 0.005),
-    ("medium-fog/scene", "medium-fog", 384, 16, 0.01),
-    ("medium-inside/scene", "medium-inside", 384, 16, 0.01),
+    ("medium-fog/scene", "medium-fog", 384, 16, 0.005),
+    ("medium-inside/scene", "medium-inside", 384, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how

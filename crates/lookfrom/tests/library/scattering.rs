@@ -131,6 +131,29 @@ fn a_lamp_in_fog_is_what_quadrature_says() {
     }
 }
 
+/// Behind an interface a shadow ray is continued from there: rounding must not let it reach into its light.
+#[test]
+fn a_light_behind_an_interface_does_not_block_its_own_light() {
+    let lit = |between: &str| {
+        let world = format!(
+            r#"AttributeBegin Translate 0 0 2 Material "diffuse" Shape "disk" "float radius" 1 AttributeEnd
+            AttributeBegin Translate 1 0 0.5 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+            AreaLightSource "diffuse" "rgb L" [ 9 9 9 ] "bool twosided" true Shape "disk" "float radius" 0.25 AttributeEnd
+            {between}"#
+        );
+        mean(scene(1, 1 << 12, "", "", &world))
+    };
+    let interface = |z: f32| {
+        format!(
+            r#"AttributeBegin Translate 1 0 {z} Material "interface" Shape "disk" "float radius" 0.8 AttributeEnd"#
+        )
+    };
+    let expected = lit("");
+    for z in [0.501, 0.58, 1.0, 1.9] {
+        assert_near(lit(&interface(z)), expected, 1e-4, &format!("interface at {z}"));
+    }
+}
+
 #[test]
 fn a_medium_shines_by_what_it_absorbs() {
     // Along 4 to a black wall; in a medium without end; and where it scatters as well, in a furnace of its own radiance.

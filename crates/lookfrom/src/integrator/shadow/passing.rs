@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use super::lanes::Crossings;
-use super::{ShadowLight, ShadowTransparency, Shadows};
+use super::{ShadowLight, ShadowTransparency, Shadows, rest};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Event, Probe, Queues};
@@ -122,7 +122,7 @@ impl ShadowLight {
     fn go_on_behind(&mut self, world: &World, ray: &mut Ray, hit: &Hit, surface: &SurfaceInteraction) {
         let direction = Vec3::from_array(ray.direction);
         ray.origin = surface.origin(direction);
-        ray.t_max -= hit.t;
+        ray.t_max = rest(ray.t_max, hit.t);
         if !world.is_open_front(surface) && meets(world, ray, hit, surface) {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
