@@ -100,7 +100,7 @@ pub(super) fn toward(origin: [f32; 3], target: [f64; 3]) -> Ray {
 }
 
 /// The length of a shadow ray behind a surface at `t`, where it was `t_max` from its origin before. It is a little less than the
-/// difference: that and the new origin are rounded, and a light must not block its own ray.
+/// difference: that and the new origin are rounded, and a light must not block its own ray. (In Whitted's model it is the difference.)
 #[inline(always)]
 fn rest(t_max: f32, t: f32) -> f32 {
     const PART: f32 = 1.0 / 65536.0;

@@ -4,7 +4,7 @@
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
 
-use super::{ShadowLight, rest};
+use super::ShadowLight;
 use crate::core::lanes::{LANES, by_lane, filled, gather_rays, scatter};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::SpectralModes;
@@ -106,7 +106,7 @@ impl Kernel for GoOn<'_> {
                     passed[place as usize] = factor;
                 }
                 ray.origin = origins[lane];
-                ray.t_max = rest(ray.t_max, hit.t);
+                ray.t_max -= hit.t;
                 are_all_lit &= !light.contribution.is_black();
             }
         }

@@ -61,6 +61,10 @@ pub(super) fn let_through<P: Probe>(
                 light.contribution *= passed;
                 let Some(surface) = surface.filter(|_| !light.contribution.is_black()) else { continue };
                 light.go_on_behind(world, &mut ray, &hit, &surface);
+                ray.t_max = match shadow_transparency {
+                    ShadowTransparency::AlphaTested => rest(ray.t_max, hit.t),
+                    ShadowTransparency::Transparent => ray.t_max - hit.t,
+                };
                 origin_primitive = surface.origin_primitive;
             }
             (rays[count], origin_primitives[count], hits[count]) = (ray, origin_primitive, hit);
@@ -122,7 +126,6 @@ impl ShadowLight {
     fn go_on_behind(&mut self, world: &World, ray: &mut Ray, hit: &Hit, surface: &SurfaceInteraction) {
         let direction = Vec3::from_array(ray.direction);
         ray.origin = surface.origin(direction);
-        ray.t_max = rest(ray.t_max, hit.t);
         if !world.is_open_front(surface) && meets(world, ray, hit, surface) {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
