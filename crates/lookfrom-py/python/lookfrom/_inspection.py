@@ -121,8 +121,8 @@ class Addition:
     """One addition to the sample.
 
     address: The ray whose hit made it.
-    term: The reason: `sky`, `emission`, `ambient`, `view`, `open sky`, or the light's name (`found` or
-        `sampled` along a path).
+    term: The reason: `sky`, `emission`, `medium` (its emission), `ambient`, `view`, `open sky`, or the
+        light's name (`found` or `sampled` along a path).
     value: The light that was added.
     """
 
@@ -313,8 +313,8 @@ class Contribution:
     depth: Number of reflections, refractions and bounces before that hit.
     light: The light that it comes from: its name, `sky`, `ambient`, or the shape that emits it.
     expression: From the camera to the light: `camera → glass (R) → window`. Letters: `R` specular reflection,
-        `T` specular transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `S` Whitted's
-        highlight.
+        `T` specular transmission, `D` diffuse, `G` glossy (with `T`, through the surface), `V` a medium, `S`
+        Whitted's highlight.
     why: Its factors, and the one that makes it large.
     """
 
@@ -365,6 +365,37 @@ class Derivation:
 
     formula: str
     numbers: list[tuple[str, tuple[float, ...]]]
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight in a medium that scatters. The distance is sampled with the extinction of one lane, chosen by
+    the throughput.
+
+    extinction: σ_t: the extinction coefficient, per unit of length.
+    scattering: σ_s: the scattering coefficient.
+    choice: P: the probability of each lane, β / Σ β.
+    lane: The index of the lane that was chosen.
+    limit: The distance of what the ray hits; infinite where it hits nothing.
+    distance: The distance that was sampled, `−ln(1 − u) / σ_t`: the ray is scattered where it is less than
+        `limit`.
+    scattered_at: The point where it is scattered, in the world; null where it arrives.
+    transmittance: T: `exp(−σ_t · length)` up to the point or the hit.
+    density: The density `q = Σ P σ_t T` of the distance, per unit of length, where it is scattered; else the
+        probability `Q = Σ P T` of arriving.
+    throughput: The throughput after it: `β σ_s T / q`, or `β T / Q`.
+    """
+
+    extinction: tuple[float, ...]
+    scattering: tuple[float, ...]
+    choice: tuple[float, ...]
+    lane: int
+    limit: float
+    distance: float
+    scattered_at: tuple[float, float, float] | None
+    transmittance: tuple[float, ...]
+    density: float
+    throughput: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -637,6 +668,24 @@ class MultipleScattering:
 
 
 @dataclass(frozen=True)
+class Phase:
+    """Scattering by the phase function of a medium, which is its own density: β stays.
+
+    wi: The sampled direction, unit length.
+    pdf: The phase function in that direction, per steradian: its value and its density.
+    survival: The survival probability of Russian roulette.
+    survives: Whether the path goes on.
+    next_throughput: β of the next ray: β / survival; null where there is none.
+    """
+
+    wi: tuple[float, float, float]
+    pdf: float
+    survival: float
+    survives: bool
+    next_throughput: tuple[float, ...] | None
+
+
+@dataclass(frozen=True)
 class Ray:
     """One ray.
 
@@ -655,8 +704,11 @@ class Ray:
         bounces and in Whitted's tree.
     traversal: The cost of finding its hit.
     candidates: Every primitive that was tested, in the order of the tests.
-    met: Its hit; null for a miss.
+    met: Its hit; null for a miss, and where a medium scatters it before.
     absorption: What a medium absorbs on the way to the hit.
+    flight: How far it went in a medium that scatters: to the hit, or to a point before it.
+    medium_emission: The light that the medium emits on the way, as far as the hit; it is added.
+    phase: The continuation of the path where a medium scatters it, even if Russian roulette ends it.
     eta_scale: The product of η² over the refractions before, by which Russian roulette multiplies the
         throughput.
     throughput_there: The throughput at the hit, after absorption on the way and dispersion there, along a
@@ -689,6 +741,9 @@ class Ray:
     candidates: list[Candidate]
     met: Met | None
     absorption: Absorption | None
+    flight: Flight | None
+    medium_emission: Amount | None
+    phase: Phase | None
     eta_scale: float
     throughput_there: tuple[float, ...] | None
     only_color: str
