@@ -25,14 +25,14 @@ pub struct Keyword {
     pub value: Option<String>,
 }
 
-/// What keyword arguments ask for.
+/// Session options of keyword arguments.
 #[derive(Clone, Debug)]
 pub struct Asked {
     /// The options of the session, without an environment map.
     pub options: Options,
     /// The file of the environment map.
     pub environment: Option<PathBuf>,
-    /// The same as arguments of `lookfrom render`.
+    /// Arguments of `lookfrom render` for the same session.
     pub typed: Vec<String>,
 }
 
@@ -41,7 +41,7 @@ pub struct Asked {
 pub struct Fault {
     /// The keyword.
     pub name: String,
-    /// What is wrong, and what is expected.
+    /// Fault and expectation.
     pub message: String,
 }
 
@@ -58,7 +58,7 @@ impl std::error::Error for Fault {}
 pub struct Described {
     /// The keyword.
     pub name: String,
-    /// What it is, in a line.
+    /// Help text, one line.
     pub help: String,
     /// Whether it is a switch.
     pub is_switch: bool,
@@ -67,9 +67,7 @@ pub struct Described {
 /// All keywords, by name.
 pub fn all() -> Vec<Described> {
     let command = command();
-    let mut all: Vec<Described> = command
-        .get_arguments()
-        .filter(|argument| is_keyword(argument))
+    let mut all: Vec<Described> = of_session(&command)
         .map(|argument| Described {
             name: argument.get_id().to_string(),
             help: argument.get_help().map(ToString::to_string).unwrap_or_default(),
@@ -86,10 +84,11 @@ pub fn all() -> Vec<Described> {
 /// A [`Fault`] for a keyword that does not exist, a value that it cannot have, and keywords that exclude each other.
 pub fn options(keywords: &[Keyword]) -> Result<Asked, Fault> {
     let command = command();
+    let known: Vec<&Arg> = of_session(&command).collect();
     let mut words = vec!["render".to_owned()];
     for Keyword { name, value } in keywords {
-        let argument = command.get_arguments().find(|argument| argument.get_id() == name.as_str());
-        let argument = argument.filter(|argument| is_keyword(argument)).ok_or_else(|| unknown(name))?;
+        let argument = known.iter().find(|argument| argument.get_id() == name.as_str());
+        let argument = argument.ok_or_else(|| unknown(name))?;
         let long = argument.get_long().unwrap_or_default();
         words.push(match value {
             Some(value) => format!("--{long}={value}"),
@@ -118,10 +117,13 @@ fn command() -> Command {
     RenderArguments::augment_args(Command::new("render"))
 }
 
-fn is_keyword(argument: &Arg) -> bool {
-    let id = argument.get_id().as_str();
+/// The arguments of `render` that are options of a session.
+fn of_session(command: &Command) -> impl Iterator<Item = &Arg> {
     let overrides = Overrides::augment_args(Command::new("overrides"));
-    OF_SESSION.contains(&id) || overrides.get_arguments().any(|argument| argument.get_id() == id)
+    command.get_arguments().filter(move |argument| {
+        let id = argument.get_id();
+        OF_SESSION.contains(&id.as_str()) || overrides.get_arguments().any(|other| other.get_id() == id)
+    })
 }
 
 fn unknown(name: &str) -> Fault {

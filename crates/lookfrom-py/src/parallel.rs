@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 
-/// How often the calling thread looks for signals.
+/// Interval at which the calling thread checks for signals.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
 /// The number of threads for a call that asks for `threads`: 0 stands for all cores.
@@ -75,10 +75,15 @@ pub(crate) fn for_each<T: Send, W: FnMut(T)>(
 
 /// Runs a function that divides its work by `rayon`, on threads of its own, without the GIL.
 pub(crate) fn in_pool<R: Send>(py: Python<'_>, threads: usize, run: impl FnOnce() -> R + Send) -> R {
-    py.detach(|| match rayon::ThreadPoolBuilder::new().num_threads(thread_count(threads)).build() {
+    py.detach(|| on_threads(threads, run))
+}
+
+/// Runs a function on threads of its own, or where there are none for it, on this one.
+fn on_threads<R: Send>(threads: usize, run: impl FnOnce() -> R + Send) -> R {
+    match rayon::ThreadPoolBuilder::new().num_threads(thread_count(threads)).build() {
         Ok(pool) => pool.install(run),
         Err(_) => run(),
-    })
+    }
 }
 
 /// Runs a function that divides its work by `rayon`, on threads of its own, without the GIL; meanwhile the calling thread looks for
@@ -95,10 +100,7 @@ pub(crate) fn watched<R: Send>(
     let result = thread::scope(|scope| {
         let work = scope.spawn(|| {
             let _ending = Ending(caller);
-            match rayon::ThreadPoolBuilder::new().num_threads(thread_count(threads)).build() {
-                Ok(pool) => pool.install(run),
-                Err(_) => run(),
-            }
+            on_threads(threads, run)
         });
         while !work.is_finished() {
             py.detach(|| thread::park_timeout(BETWEEN_LOOKS));

@@ -11,6 +11,7 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error as Status, MeshGLP, OpType, WindingRule};
 
 use crate::budget::Reservation;
+use crate::duplicates::turned;
 use crate::error::Result;
 use crate::model::weld::Weld;
 use crate::shape::Mesh;
@@ -145,7 +146,7 @@ impl Solid {
     }
 }
 
-/// What the engine of rational numbers makes; `None` where it gives up, which it does by a panic: one in 170,000 heaps of random
+/// Result of the engine of rational numbers; `None` where it gives up, which it does by a panic: one in 170,000 heaps of random
 /// triangles leaves it no direction in which to count what a ray crosses.
 fn exactly(make: impl FnOnce() -> Manifold) -> Option<Manifold> {
     catch_unwind(AssertUnwindSafe(make)).ok()
@@ -156,14 +157,11 @@ fn has_equal_triangles(solid: &Manifold) -> bool {
     let solid = solid.as_impl();
     let mut triangles: Vec<[[u32; 3]; 3]> = (0..solid.num_tri())
         .map(|triangle| {
-            let mut corners = [0, 1, 2].map(|corner| {
+            turned([0, 1, 2].map(|corner| {
                 let vertex = solid.halfedge[3 * triangle + corner].start_vert;
                 let place = solid.vert_pos[vertex as usize];
                 position(&[place.x, place.y, place.z]).to_array().map(f32::to_bits)
-            });
-            let first = (0..3).min_by_key(|&corner| corners[corner]).unwrap_or(0);
-            corners.rotate_left(first);
-            corners
+            }))
         })
         .collect();
     triangles.sort_unstable();

@@ -55,7 +55,7 @@ fn of_mesh(mesh: &mut Mesh) -> usize {
 }
 
 /// The corners, with the least one first.
-fn turned<T: Ord>(mut corners: [T; 3]) -> [T; 3] {
+pub(crate) fn turned<T: Ord>(mut corners: [T; 3]) -> [T; 3] {
     let least = (0..3).min_by_key(|&k| &corners[k]).unwrap_or(0);
     corners.rotate_left(least);
     corners

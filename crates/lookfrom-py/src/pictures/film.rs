@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lookfrom::scene::{Budget, Disk, Error, ErrorKind, LoadContext, Location, Result as SceneResult};
-use lookfrom::session::FilmFile;
+use lookfrom::session::{Exposure, FilmFile, Fireflies};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -47,7 +47,7 @@ impl Film {
 
     /// A copy with the samples of another film of the same picture.
     fn merged(&self, py: Python<'_>, other: PyRef<'_, Self>) -> PyResult<Self> {
-        let (mut file, other) = (FilmFile::clone(&self.file()), other.file());
+        let (mut file, other) = (FilmFile::clone(&self.file), other.file());
         let merged = parallel::in_pool(py, 0, || file.merge(&other));
         merged.map_err(|error| raised(py, &error, &Disk))?;
         Ok(Self::new(file))
@@ -65,32 +65,31 @@ impl Film {
     /// The picture, developed as it was to be, or otherwise.
     fn develop(&self, py: Python<'_>, words: Words) -> PyResult<Picture> {
         let asked = asked(words)?;
-        let file = self.file();
+        let file = &self.file;
         let mut development = file.provenance.development;
         let options = asked.options;
-        if let Some(lookfrom::session::Exposure::Stops(stops)) = options.exposure {
+        if let Some(Exposure::Stops(stops)) = options.exposure {
             development.exposure = stops;
         }
         development.tonemap = options.tonemap.unwrap_or(development.tonemap);
         development.background = options.background.unwrap_or(development.background);
         development.denoise = options.denoise.unwrap_or(development.denoise);
-        if options.fireflies != lookfrom::session::Fireflies::Keep {
+        if options.fireflies != Fireflies::Keep {
             development.fireflies = options.fireflies;
         }
-        Ok(Picture::of_film(&file, parallel::in_pool(py, 0, || file.develop(&development))))
+        Ok(Picture::of_film(file, parallel::in_pool(py, 0, || file.develop(&development))))
     }
 
     /// Columns and rows, samples of all pixels together, and whether all are there that were to be.
     fn told(&self) -> (u32, u32, u64, bool) {
-        let file = self.file();
-        let FilmFile { film, provenance } = &*file;
+        let FilmFile { film, provenance } = &*self.file;
         (film.width(), film.height(), film.ledger().total(), provenance.is_complete(film))
     }
 
     /// The scene and the keywords of the command that it is of.
     fn origin(&self) -> (Option<String>, Vec<String>) {
-        let file = self.file();
-        (file.provenance.scene.clone(), file.provenance.arguments.clone())
+        let provenance = &self.file.provenance;
+        (provenance.scene.clone(), provenance.arguments.clone())
     }
 }
 

@@ -18,13 +18,13 @@ use crate::parallel;
 pub(crate) struct Picture {
     developed: Developed,
     film: Arc<Sums>,
-    /// What the film is of, if it is kept.
+    /// Provenance of the film, if it is kept.
     provenance: Option<Provenance>,
     /// Mean number of samples per pixel, why the render ended, rays, and the relative error.
     told: Told,
 }
 
-/// What a picture tells of its render.
+/// Statistics of a render.
 #[derive(Clone, Debug, Default)]
 struct Told {
     samples: u64,

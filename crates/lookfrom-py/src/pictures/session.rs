@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use lookfrom::glam::DMat4;
 use lookfrom::inspect::{self, SvgView};
@@ -74,7 +74,7 @@ impl Session {
         if of_scene.is_some() {
             return Ok(of_scene);
         }
-        self.exchange(py, 0, |session| session.change(&asked.options))?;
+        self.exchange(py, |session| session.change(&asked.options))?;
         Ok(None)
     }
 
@@ -87,11 +87,11 @@ impl Session {
         look: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Picture> {
         let session = self.now();
-        let film = film.map(|film| film.file());
+        let film = film.as_ref().map(|film| film.file());
         let heard = Heard::default();
         let render = || -> SceneResult<Finished> {
-            match film {
-                Some(film) => session.resume(FilmFile::clone(&film), &heard),
+            match &film {
+                Some(film) => session.resume(FilmFile::clone(film), &heard),
                 None => session.render(&heard),
             }
         };
@@ -114,7 +114,7 @@ impl Session {
         }
     }
 
-    /// What is seen at the middle of each pixel: arrays by name.
+    /// Labels of all pixels: arrays by name.
     fn labels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let session = self.now();
         let labels = parallel::in_pool(py, 0, || session.renderer().labels());
@@ -162,20 +162,20 @@ impl Session {
             )));
         };
         let material = parts::material(text).map_err(|error| raised(py, &error, &parts::files(text)))?;
-        self.exchange(py, 0, |session| session.set_material(MaterialId(index as u32), material))
+        self.exchange(py, |session| session.set_material(MaterialId(index as u32), material))
     }
 
     /// Replaces all lights that are no shapes by those of a text in the scene format.
     fn set_lights(&self, py: Python<'_>, text: &str) -> PyResult<()> {
         let lights = parts::lights(text).map_err(|error| raised(py, &error, &parts::files(text)))?;
-        self.exchange(py, 0, |session| session.set_lights(lights))
+        self.exchange(py, |session| session.set_lights(lights))
     }
 
     /// Moves instances: index and map from the object's space to the world, by rows.
     fn set_poses(&self, py: Python<'_>, poses: Vec<(usize, [[f64; 4]; 4])>) -> PyResult<()> {
         let poses = poses.iter().map(|(index, rows)| (*index, DMat4::from_cols_array_2d(rows).transpose()));
         let poses: Vec<_> = poses.collect();
-        self.exchange(py, 0, |session| session.set_poses(poses))
+        self.exchange(py, |session| session.set_poses(poses))
     }
 
     /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).
@@ -191,7 +191,7 @@ impl Session {
         report.map_err(|error| raised(py, &error, &self.files))
     }
 
-    /// The same report as text for people.
+    /// The report on a sample as text for people.
     fn inspect_text(&self, py: Python<'_>, x: u32, y: u32, sample: u32) -> PyResult<String> {
         let session = self.checked(x, y, Some(sample))?;
         let id = SampleId { pixel: [x, y], sample };
@@ -220,11 +220,10 @@ impl Session {
     fn exchange(
         &self,
         py: Python<'_>,
-        threads: usize,
         change: impl FnOnce(&mut session::Session) -> SceneResult<()> + Send,
     ) -> PyResult<()> {
         let mut session = self.now();
-        let changed = parallel::in_pool(py, threads, || change(&mut session));
+        let changed = parallel::in_pool(py, 0, || change(&mut session));
         changed.map_err(|error| raised(py, &error, &self.files))?;
         *self.inner.lock().unwrap_or_else(PoisonError::into_inner) = session;
         Ok(())
@@ -246,7 +245,7 @@ impl Session {
         Ok(session)
     }
 
-    /// What films of this session are of, if it keeps them.
+    /// Provenance of this session's films, if it keeps them.
     fn provenance(&self, session: &session::Session) -> Option<session::Provenance> {
         let mut provenance = session.provenance().ok()?;
         let scene = Path::new(session.name());
@@ -261,7 +260,7 @@ impl Session {
 struct Heard {
     done: AtomicU64,
     total: AtomicU64,
-    is_cancelled: Arc<AtomicBool>,
+    is_cancelled: AtomicBool,
 }
 
 impl Heard {

@@ -152,7 +152,7 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// How many hits ahead primitives are fetched to the cache.
+/// Prefetch distance in hits: primitives are fetched into the cache so far ahead.
 const AHEAD: usize = 16;
 
 /// No kernel's ray reaches a tree after this.

@@ -41,7 +41,7 @@ pub(super) struct WorldRay {
     pub(super) direction: [f64; 3],
 }
 
-/// How a kernel's ray relates to the ray in the world.
+/// Map from a kernel's ray to the ray in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Relation {
     /// Kernel's t = `factor` · t − `start`.

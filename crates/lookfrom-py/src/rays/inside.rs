@@ -111,7 +111,7 @@ impl Tree {
         winding
     }
 
-    /// How many times a ray crosses surfaces.
+    /// Number of surfaces that a ray crosses.
     fn crossings(
         &self,
         origin: [f64; 3],

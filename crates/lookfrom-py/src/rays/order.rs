@@ -12,7 +12,7 @@ const SIDE: usize = 8;
 /// How many times as far apart as neighbours in a row those in a column may be: then they are still neighbours.
 const STRETCH: f64 = 16.0;
 
-/// How rays are divided among threads, and in which order a thread casts its share of them.
+/// Partition of rays among threads, and the order in which a thread casts its share of them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
     /// Rays in a share.

@@ -38,7 +38,7 @@ impl FineHit {
 /// Least sine of the angle between a ray and a plane, relative to the triangle's own, for Cramer's rule: 2⁻³⁰.
 const GRAZING: f64 = 9.313_225_746_154_785e-10;
 
-/// How far, in units of the frame and relative to the distance, a hit may be beside the ray: 2⁻¹⁷.
+/// Largest distance of a hit beside the ray, in units of the frame and relative to the distance along it: 2⁻¹⁷.
 const BESIDE: f64 = 7.629_394_531_25e-6;
 
 /// A hit of the kernel with its numbers in f64.

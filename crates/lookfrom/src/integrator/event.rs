@@ -86,7 +86,7 @@ pub enum Event {
         address: u64,
         /// The media that the path is inside of.
         interior: InteriorStack,
-        /// How far it went, and its throughput there.
+        /// Free flight, with the throughput at its end.
         flight: Box<Flight>,
         /// The point where it is scattered, if it is.
         point: Vec3,

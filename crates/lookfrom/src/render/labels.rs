@@ -7,7 +7,7 @@ use super::Renderer;
 use crate::core::parallel;
 use crate::integrator::Path;
 
-/// What is seen at the middle of a pixel, through the middle of the lens.
+/// The first visible surface at the centre of a pixel, through the centre of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Label {
     /// Index of the shape in the world's [names](crate::world::Names::shapes); [`Label::NONE`] where nothing is seen.

@@ -1,10 +1,10 @@
 //! Options that change a session's picture and its camera, for which no scene is read and no tree is built.
 
 use lookfrom_scene::camera::Camera;
-use lookfrom_scene::settings::Allocation;
 use lookfrom_scene::{CameraChoice, ImportOptions, Result};
 
-use super::options::{MOST_SAMPLES, unsuitable};
+use super::options::unsuitable;
+use super::prepare::settle_limits;
 use super::{Exposure, Fireflies, Options, Session};
 use crate::render::StopCriteria;
 
@@ -34,17 +34,9 @@ impl Session {
         let mut changed = self.clone();
         let (mut image, mut settings) = (self.image().clone(), self.settings().clone());
         options.apply_to_settings(&mut image, &mut settings)?;
-        let has_limit = options.stop.time.is_some() || options.stop.noise.is_some();
-        if has_limit {
-            let StopCriteria { time, noise } = options.stop;
-            changed.stop = StopCriteria { time: time.or(self.stop.time), noise: noise.or(self.stop.noise) };
-            if options.samples.is_none() {
-                settings.samples = MOST_SAMPLES;
-            }
-        }
-        if options.stop.noise.is_some() {
-            settings.allocation = Allocation::Uniform;
-        }
+        settle_limits(&mut settings, options);
+        let StopCriteria { time, noise } = options.stop;
+        changed.stop = StopCriteria { time: time.or(self.stop.time), noise: noise.or(self.stop.noise) };
         let range = options.range(&settings)?;
         if options.samples.is_some() || options.part.is_some() {
             changed.first_sample = range.start;

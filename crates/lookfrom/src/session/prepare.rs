@@ -4,12 +4,13 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::scene::SourceFormat;
-use lookfrom_scene::settings::Allocation;
+use lookfrom_scene::settings::{Allocation, RenderSettings};
 use lookfrom_scene::studio::{Turntable, Viewpoint};
 use lookfrom_scene::{CameraChoice, ImportOptions, Location, Remedy, Result, Scene, Warning, load, studio};
 
 use super::options::{MOST_SAMPLES, Options};
 use crate::film::allocation::LEAST_MEAN;
+use crate::render::StopCriteria;
 
 /// Results of the preparation besides the scene.
 pub(super) struct Prepared {
@@ -39,9 +40,6 @@ pub(super) fn prepare(
         format.check_background(scene.image.background)?;
     }
     let origin = scene.source_format;
-    if options.stop.noise.is_some() {
-        scene.render.allocation = Allocation::Uniform;
-    }
     decide_settings(scene, options);
     if scene.render.allocation == Allocation::Adaptive && scene.render.samples < LEAST_MEAN {
         let samples = scene.render.samples;
@@ -150,14 +148,22 @@ fn decide_settings(scene: &mut Scene, options: &Options) {
         // Models are denoised by default.
         scene.image.denoise = options.denoise.unwrap_or(scene.render.integrator.is_path_traced());
     }
-    if options.samples.is_some() {
-        return;
-    }
-    let is_allocated = scene.render.allocation == Allocation::Adaptive;
-    if options.stop.time.is_some() && !is_allocated || options.stop.noise.is_some() {
-        // A limit of time or noise replaces the scene's number of samples; but what is allocated must be known beforehand.
-        scene.render.samples = MOST_SAMPLES;
-    } else if is_model {
+    if !settle_limits(&mut scene.render, options) && options.samples.is_none() && is_model {
         scene.render.samples = studio::samples_for_models(&scene.image);
     }
+}
+
+/// Settles what limits mean for samples: one of noise decides itself which pixels get them, and it, or one of time, replaces a number
+/// that no option asks for; but what is allocated must be known beforehand. Returns whether the number was replaced.
+pub(super) fn settle_limits(render: &mut RenderSettings, options: &Options) -> bool {
+    let StopCriteria { time, noise } = options.stop;
+    if noise.is_some() {
+        render.allocation = Allocation::Uniform;
+    }
+    let is_allocated = render.allocation == Allocation::Adaptive;
+    let is_replaced = options.samples.is_none() && (time.is_some() || noise.is_some()) && !is_allocated;
+    if is_replaced {
+        render.samples = MOST_SAMPLES;
+    }
+    is_replaced
 }

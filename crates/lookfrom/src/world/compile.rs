@@ -22,7 +22,7 @@ use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{self, Material, MaterialKind};
 use crate::shading::texture::{SpectrumType, Textures};
 
-/// What is kept of a world whose scene is compiled again.
+/// Parts of a world that are kept when its scene is compiled again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kept {
     /// All trees: of a scene of the same shapes, objects and instances, which may have other materials, textures and lights.

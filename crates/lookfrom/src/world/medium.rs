@@ -15,7 +15,7 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, SpectrumType, Textu
 pub struct Medium {
     /// Absorption coefficient, per unit of length.
     pub absorption: SpectrumTexture,
-    /// How it scatters light; `None` in a medium that only absorbs.
+    /// Scattering coefficient and phase function; `None` in a medium that only absorbs.
     pub scattering: Option<Scattering>,
     /// The radiance that it emits, times the absorption coefficient, per unit of length.
     pub emission: Option<EmissionSpectrum>,
@@ -23,7 +23,7 @@ pub struct Medium {
     pub scale: f32,
 }
 
-/// How a medium scatters light.
+/// Scattering coefficient and phase function of a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Scattering {
     /// Scattering coefficient, per unit of length.

@@ -40,7 +40,7 @@ pub struct RayReport {
     pub met: Option<MetReport>,
     /// What a medium absorbs on the way to the hit.
     pub absorption: Option<AbsorptionReport>,
-    /// How far it went in a medium that scatters: to the hit, or to a point before it.
+    /// Free flight in a scattering medium: to the hit, or to a point before it.
     pub flight: Option<FlightReport>,
     /// The light that the medium emits on the way, as far as the hit; it is added.
     pub medium_emission: Option<Amount>,

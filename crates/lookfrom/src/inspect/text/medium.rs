@@ -6,7 +6,7 @@ use super::hit::write_absorption;
 use super::{RayReport, amount, full, lanes, vector, vector32};
 use crate::inspect::report::{FlightReport, PhaseReport};
 
-/// What media do on the way of a ray.
+/// Media along a ray.
 pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
     write_absorption(f, ray, "  ")?;
     if let Some(added) = &ray.medium_emission {

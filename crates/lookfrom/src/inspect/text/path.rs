@@ -175,7 +175,7 @@ impl Excerpt<'_> {
         writeln!(f, "      + β L w = {}", amount(&found.added))
     }
 
-    /// What sampled the direction of a ray: a phase function, or a BSDF.
+    /// Source of a ray's direction: a phase function, or a BSDF.
     fn sampling_before(&self, ray: &RayReport) -> &'static str {
         let parent_of = |ray: &RayReport| self.inspection.ray(ray.parent?);
         let before = std::iter::successors(parent_of(ray), |ray| parent_of(ray));

@@ -11,7 +11,7 @@ use crate::world::World;
 
 /// The end of a path's way.
 pub(super) enum Traveled {
-    /// What it has hit, or the sky.
+    /// At the hit, or in the sky.
     Arrived(Path),
     /// A point of a medium before, which scatters it.
     Scattered(MediumVertex),
