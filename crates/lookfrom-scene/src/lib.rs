@@ -23,6 +23,7 @@ pub mod files;
 mod format;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+pub mod grid;
 pub mod ies;
 pub mod image;
 pub mod inputs;

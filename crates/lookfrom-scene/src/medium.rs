@@ -1,10 +1,13 @@
 //! Participating media.
 
+use glam::{DMat4, Vec3};
+
 use crate::error::Location;
-use crate::material::Color;
+use crate::grid::Placed;
+use crate::material::{Color, Scalar};
 use crate::scene::MediumId;
 
-/// A participating medium, the same everywhere.
+/// A participating medium: the same everywhere, or varying in space.
 #[derive(Clone, Debug)]
 pub struct Medium {
     /// The name that interfaces use.
@@ -24,17 +27,88 @@ pub struct Medium {
     pub emission: Color,
     /// … and a factor of it: ≥ 0.
     pub emission_scale: f32,
+    /// How it varies in space; `None` where it is the same everywhere.
+    pub variation: Option<Variation>,
+}
+
+/// How a medium varies in space.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// From medium space, in which everything here is told, to world space. Coefficients are per unit of length in the world.
+    pub world_from_medium: DMat4,
+    /// The corners of a box outside of which there is nothing of the medium; `None` where it has no end.
+    pub bounds: Option<[Vec3; 2]>,
+    /// What multiplies the coefficients.
+    pub density: Density,
+    /// A factor of the emission.
+    pub emission_scale: Option<Placed<f32>>,
+    /// What emits in the place of [`Medium::emission`].
+    pub temperature: Option<Temperature>,
+}
+
+/// Density of a medium.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Density {
+    /// Numbers of a grid, interpolated between the centres of its cells: ≥ 0.
+    Grid(Placed<f32>),
+    /// Colours of grids, in linear Rec. 709; what is missing is 1, or without emission.
+    Colors {
+        /// What multiplies the absorption coefficient.
+        absorption: Option<Placed<[f32; 3]>>,
+        /// What multiplies the scattering coefficient.
+        scattering: Option<Placed<[f32; 3]>>,
+        /// What takes the place of [`Medium::emission`].
+        emission: Option<Placed<[f32; 3]>>,
+    },
+    /// pbrt-v4's cloud: noise that decreases with y.
+    Cloud {
+        /// Factor of the noise.
+        density: f32,
+        /// How far noise displaces noise.
+        wispiness: f32,
+        /// Of the noise, over medium space.
+        frequency: f32,
+    },
+    /// A number or texture by the position in space, clamped to 0 … `most`.
+    Texture {
+        /// The number at a point.
+        of: Scalar,
+        /// Its largest value.
+        most: f32,
+    },
+}
+
+/// Temperatures of a medium, which emits as a blackbody: Planck's law relative to its maximum, times the scales of the emission.
+#[derive(Clone, Debug)]
+pub struct Temperature {
+    /// The numbers t of a temperature (t − offset) · scale in kelvin; below 100 K nothing is emitted.
+    pub grid: Placed<f32>,
+    /// Subtracted from the numbers.
+    pub offset: f32,
+    /// Multiplies the difference.
+    pub scale: f32,
 }
 
 impl Medium {
     /// Whether it may scatter light.
     pub fn scatters(&self) -> bool {
-        self.scale > 0.0 && !is_black(self.scattering)
+        let has_color = match self.variation.as_ref().map(|variation| &variation.density) {
+            Some(Density::Colors { scattering: Some(placed), .. }) => {
+                placed.grid.stored().iter().any(|rgb| *rgb != [0.0; 3])
+            }
+            _ => true,
+        };
+        self.scale > 0.0 && !is_black(self.scattering) && has_color
     }
 
     /// Whether it may emit light.
     pub fn emits(&self) -> bool {
-        self.scale > 0.0 && self.emission_scale > 0.0 && !is_black(self.emission)
+        let has_own = self.variation.as_ref().is_some_and(|variation| {
+            variation.temperature.is_some()
+                || matches!(&variation.density, Density::Colors { emission: Some(_), .. })
+        });
+        self.scale > 0.0 && self.emission_scale > 0.0 && (has_own || !is_black(self.emission))
     }
 }
 

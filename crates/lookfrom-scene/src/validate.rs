@@ -9,14 +9,15 @@ mod texture;
 
 use std::fmt::Display;
 
-use glam::DMat4;
+use glam::{DMat4, Vec3};
 
 use crate::chain;
 use crate::error::{Error, Location, Result};
+use crate::grid::Placed;
 use crate::image::Image;
 use crate::light::Power;
 use crate::material::{Color, Scalar};
-use crate::medium::Medium;
+use crate::medium::{Density, Medium};
 use crate::scene::{CurveId, ImageId, Instance, MaterialId, MediumId, Scene, TextureId};
 use crate::spectrum::Curve;
 
@@ -79,7 +80,60 @@ fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
     part.color("emission", medium.emission)?;
     part.at_least_zero("scale", medium.scale.into())?;
     part.at_least_zero("emission_scale", medium.emission_scale.into())?;
-    part.number("g", medium.g.into(), "between −1 and 1", medium.g.abs() < 1.0)
+    part.number("g", medium.g.into(), "between −1 and 1", medium.g.abs() < 1.0)?;
+    let Some(variation) = &medium.variation else { return Ok(()) };
+    part.matrix("world_from_medium", &variation.world_from_medium)?;
+    if variation.world_from_medium.determinant() == 0.0 {
+        return Err(part.fault("world_from_medium has no inverse"));
+    }
+    if let Some(bounds) = variation.bounds {
+        check_box(part, bounds)?;
+    }
+    match &variation.density {
+        Density::Grid(placed) => check_numbers(part, "density", placed)?,
+        Density::Colors { absorption, scattering, emission } => {
+            for (name, colors) in
+                [("absorption", absorption), ("scattering", scattering), ("emission", emission)]
+            {
+                let Some(placed) = colors else { continue };
+                check_box(part, placed.bounds)?;
+                let is_color = |rgb: &[f32; 3]| rgb.iter().all(|value| *value >= 0.0 && value.is_finite());
+                part.all(name, placed.grid.stored(), "a colour of finite numbers ≥ 0", is_color)?;
+            }
+        }
+        Density::Cloud { density, wispiness, frequency } => {
+            part.finite("cloud", &[*density, *wispiness, *frequency].map(f64::from))?;
+        }
+        Density::Texture { of, most } => {
+            part.scalar("density", *of)?;
+            part.at_least_zero("most", f64::from(*most))?;
+        }
+    }
+    if let Some(placed) = &variation.emission_scale {
+        check_numbers(part, "emission_scale", placed)?;
+    }
+    let Some(temperature) = &variation.temperature else { return Ok(()) };
+    check_box(part, temperature.grid.bounds)?;
+    part.all("temperature", temperature.grid.grid.stored(), "finite", |value| value.is_finite())?;
+    part.finite("temperature", &[temperature.offset, temperature.scale].map(f64::from))
+}
+
+fn check_numbers(part: &Part<'_>, name: &str, placed: &Placed<f32>) -> Result<()> {
+    check_box(part, placed.bounds)?;
+    let is_valid = |value: &f32| *value >= 0.0 && value.is_finite();
+    part.all(name, placed.grid.stored(), "a finite number ≥ 0", is_valid)
+}
+
+fn check_box(part: &Part<'_>, [low, high]: [Vec3; 2]) -> Result<()> {
+    part.finite(
+        "bounds",
+        &[low.to_array(), high.to_array()].concat().into_iter().map(f64::from).collect::<Vec<_>>(),
+    )?;
+    if low.cmple(high).all() {
+        Ok(())
+    } else {
+        Err(part.fault("bounds has a first corner beyond the second"))
+    }
 }
 
 fn check_instance(part: &Part<'_>, instance: &Instance) -> Result<()> {

@@ -18,7 +18,7 @@ export function showEquations(app) {
     const show = () => {
         const ray = app.selectedRay();
         if (!ray) return replace(element);
-        const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theFlight(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), thePhase(ray), theSum(ray)];
+        const sections = [theRay(ray), theTests(ray), theAbsorption(ray), theFlight(ray), theCollisions(ray), theHit(ray), ...theLights(ray), theLightSample(ray), ...theFound(ray), theBranches(ray), theBounce(ray), thePhase(ray), theSum(ray)];
         replace(element, sections.filter((section) => section !== null).map((section) => {
             const { title, content } = /** @type {Section} */ (section);
             const details = h("details", { open: !closed.has(title) }, h("summary", {}, title), ...content);
@@ -99,6 +99,27 @@ function theFlight({ flight }) {
 }
 
 /** @param {Ray} ray */
+function theCollisions({ tracking }) {
+    if (!tracking) return null;
+    const { collisions, limit, scattered_at: place } = tracking;
+    return section("Collisions in a medium that varies",
+        display("β′ = ", frac("β (m − σ_t)", "m (1 − q)"), " null, ", frac("β σ_s", "m q"), " real"),
+        terms([
+            ["d", "the distance of what is hit", exact(limit)],
+            ...collisions.flatMap(({ t, majorant, absorption, scattering, emitted, probability, is_real, throughput }) => [
+                /** @type {Row} */ (["t", `a ${is_real ? "real" : "null"} collision`, exact(t)]),
+                /** @type {Row} */ (["m", "majorant: the density of collisions", exact(majorant)]),
+                /** @type {Row} */ (["σ_a", "absorption coefficient there", lanes(absorption)]),
+                /** @type {Row} */ (["σ_s", "scattering coefficient there", lanes(scattering)]),
+                /** @type {Row} */ (["q", "probability that it is real: Σ P σ_t / m", exact(probability)]),
+                ...(emitted.some((lane) => lane !== 0) ? [/** @type {Row} */ (["β σ_a L / m", "light that the medium adds", lanes(emitted)])] : []),
+                /** @type {Row} */ (["β′", "throughput after it", lanes(throughput)]),
+            ]),
+            ...(place ? [/** @type {Row} */ (["p", "the point where the medium scatters it", point(place, 9)])] : []),
+        ]));
+}
+
+/** @param {Ray} ray */
 function thePhase({ phase, ends: reason }) {
     if (!phase) return null;
     return section("Goes on by the phase function",
@@ -115,8 +136,8 @@ function thePhase({ phase, ends: reason }) {
 
 /** @param {Ray} ray */
 function theHit(ray) {
-    const { met, flight } = ray;
-    if (flight?.scattered_at) return section("Hit", h("p", {}, "None: a medium scatters it before."));
+    const { met, flight, tracking } = ray;
+    if (flight?.scattered_at || tracking?.scattered_at) return section("Hit", h("p", {}, "None: a medium scatters it before."));
     if (!met) return section("Hit", h("p", {}, "It leaves the scene."));
     const k = met.coefficients;
     return section(`Hit: ${fileName(met.shape)}`,

@@ -106,6 +106,6 @@ export function showTree(app) {
 
 /** What a ray meets, in words. @param {Ray} ray */
 export const ends = (ray) => {
-    if (ray.flight?.scattered_at) return "→ is scattered by a medium";
+    if (ray.flight?.scattered_at || ray.tracking?.scattered_at) return "→ is scattered by a medium";
     return ray.met ? `→ ${fileName(ray.met.shape)}` : "→ leaves the scene";
 };

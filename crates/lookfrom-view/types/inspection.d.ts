@@ -166,6 +166,26 @@ export interface Coefficients {
     transmission: Factor;
 }
 
+/** A collision of a ray with a medium that varies. */
+export interface Collision {
+    /** σ_a: the absorption coefficient there. */
+    absorption: Factor;
+    /** β σ_a L_e / m: the light that the medium adds. */
+    emitted: Factor;
+    /** Whether it is real: the ray is scattered. */
+    is_real: boolean;
+    /** m: the majorant, the density of collisions. */
+    majorant: number;
+    /** q: the probability that it is real, `Σ σ_t β / Σ β / m`. */
+    probability: number;
+    /** σ_s: the scattering coefficient there. */
+    scattering: Factor;
+    /** Its distance. */
+    t: number;
+    /** The throughput after it: `β σ_s / (m q)` where it is real, else `β (m − σ_t) / (m (1 − q))`. What has become weak may be ended by Russian roulette, or four times as strong. */
+    throughput: Factor;
+}
+
 /** A contribution to a sample, as an expression. */
 export interface Contribution {
     /** The ray whose hit made it. */
@@ -213,7 +233,7 @@ export interface Development {
 /** A factor of light, per lane: red, green and blue, or one for each of four wavelengths. */
 export type Factor = number[];
 
-/** A flight in a medium that scatters. The distance is sampled with the extinction of one lane, chosen by the throughput. */
+/** A flight in a homogeneous medium that scatters. The distance is sampled with the extinction of one lane, chosen by the throughput. */
 export interface Flight {
     /** P: the probability of each lane, β / Σ β. */
     choice: Factor;
@@ -461,6 +481,18 @@ export interface MultipleScattering {
     mean_fresnel: Factor;
 }
 
+/** A null collision of a shadow ray with a medium that varies. */
+export interface NullCollision {
+    /** σ_t: the extinction coefficient there. */
+    extinction: Factor;
+    /** m: the majorant, the density of collisions. */
+    majorant: number;
+    /** Its distance. */
+    t: number;
+    /** The estimate of the transmittance after it, by `(m − σ_t) / m`, and by Russian roulette where it is weak. */
+    transmittance: Factor;
+}
+
 export type Pair = [number, number];
 
 /** Scattering by the phase function of a medium, which is its own density: β stays. */
@@ -529,7 +561,7 @@ export interface Ray {
     ends: string | null;
     /** The product of η² over the refractions before, by which Russian roulette multiplies the throughput. */
     eta_scale: number;
-    /** How far it went in a medium that scatters: to the hit, or to a point before it. */
+    /** Free flight in a homogeneous medium that scatters: to the hit, or to a point before it. */
     flight: Flight | null;
     /** Lights that it hit, along a path. */
     found: Found[];
@@ -563,6 +595,8 @@ export interface Ray {
     throughput: Factor;
     /** The throughput at the hit, after absorption on the way and dispersion there, along a path. */
     throughput_there: Factor | null;
+    /** Collisions in a medium that varies: to the hit, or to a point before it. */
+    tracking: Tracking | null;
     /** The cost of finding its hit. */
     traversal: Traversal;
 }
@@ -707,6 +741,8 @@ export interface Sensor {
 export interface Shadow {
     /** The surfaces that it hit, in order. */
     blockers: Blocker[];
+    /** The collisions with media that vary, by which their transmittance is estimated: of all its parts, each from 1 on. */
+    collisions: NullCollision[];
     /** How it follows from the point that is lit. */
     departure: Departure | null;
     /** Its origin. */
@@ -754,6 +790,18 @@ export interface TestNumbers {
 }
 
 export type ThreeVectors = [Vector, Vector, Vector];
+
+/** The way of a ray through a medium that varies, by collisions whose density is a majorant of the extinction. */
+export interface Tracking {
+    /** Its collisions, in order: all are null, but for the last where the medium scatters it. */
+    collisions: Collision[];
+    /** The distance of what the ray hits; infinite where it hits nothing. */
+    limit: number;
+    /** The point where it is scattered, in the world; null where it arrives. */
+    scattered_at: Vector | null;
+    /** The throughput at the end. */
+    throughput: Factor;
+}
 
 /** The cost of a ray, traced alone. (In packets, rays share nodes.) */
 export interface Traversal {

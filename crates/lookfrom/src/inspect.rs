@@ -35,9 +35,10 @@ pub use lights::{LightPlace, lights};
 pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
-    AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport, Departure,
-    DevelopmentReport, Factor, FlightReport, Inspection, LiftReport, LightReport, MatrixStep, MetReport,
-    PhaseReport, RayReport, SensorReport, ShadowReport, SphereMapping, WavelengthsReport,
+    AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
+    CollisionReport, Departure, DevelopmentReport, Factor, FlightReport, Inspection, LiftReport, LightReport,
+    MatrixStep, MetReport, NullReport, PhaseReport, RayReport, SensorReport, ShadowReport, SphereMapping,
+    TrackingReport, WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,

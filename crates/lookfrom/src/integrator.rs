@@ -27,6 +27,7 @@ use crate::aov::FirstSurfaces;
 use crate::core::hash;
 use crate::core::sampler::PixelSampler;
 use crate::core::spectrum::Spectrum;
+use crate::medium::Way;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -39,7 +40,7 @@ pub use false_color::FalseColor;
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
-pub use path::{Flight, LightSampling, PathTracer, PreviousVertex};
+pub use path::{Flight, LightSampling, PathTracer, PreviousVertex, Tracked, Tracking};
 pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
 pub(crate) use scratch::Scratch;
@@ -170,8 +171,13 @@ impl<S: PathState> Path<S> {
         if self.interior.is_empty() {
             return *self;
         }
-        let transmittance = world.transmittance(self.interior, self.length_to(hit), mode);
+        let transmittance = world.transmittance(self.interior, &self.way_to(hit), mode);
         Self { beta: self.beta * transmittance, ..*self }
+    }
+
+    /// The way to `hit`.
+    fn way_to(&self, hit: &Hit) -> Way {
+        Way::new(&self.ray, self.length_to(hit))
     }
 
     /// The length of the way to `hit`; infinite for a miss.
@@ -322,7 +328,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
                 address: path.address,
                 interior: path.interior,
                 length: length(),
-                transmittance: world.transmittance(path.interior, length(), &mode),
+                transmittance: world.transmittance(path.interior, &path.way_to(hit), &mode),
                 beta: absorbed.beta,
             })
         });

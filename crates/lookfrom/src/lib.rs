@@ -6,6 +6,7 @@ pub mod film;
 pub mod inspect;
 pub mod integrator;
 pub mod light;
+pub mod medium;
 pub mod post;
 pub mod primitive;
 pub mod render;

@@ -18,8 +18,6 @@ mod sides;
 
 use class::Class;
 pub(crate) use compile::Kept;
-pub(crate) use medium::Coefficients as MediumCoefficients;
-pub use medium::{Medium, Scattering};
 
 use std::sync::Arc;
 
@@ -31,6 +29,7 @@ use crate::core::math;
 use crate::core::points::{Points, StoredPlacement, amplification};
 use crate::core::spectrum::Spectrum;
 use crate::light::{ChosenLight, IncompletePdf, Light, LightChoice, LightSample, LightSampleContext};
+use crate::medium::Medium;
 use crate::primitive::{Mesh, Primitives, SurfacePoint, VertexData};
 use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::SurfaceInteraction;

@@ -166,6 +166,13 @@ fn every_report_is_of_the_schema() {
     );
     stage.write("odd.pbrt", ODD);
     stage.write("fog.pbrt", FOG);
+    stage.write(
+        "smoke.pbrt",
+        &FOG.replace(
+            "\"homogeneous\"",
+            "\"uniformgrid\" \"float density\" 1 \"point3 p0\" [ -9 -9 -9 ] \"point3 p1\" [ 9 9 9 ]",
+        ),
+    );
     for (name, width) in [("t.png", 2), ("square.png", 1)] {
         let picture = lookfrom_scene::image::encode_png(width, 1, &[200; 6][..3 * width as usize]).unwrap();
         std::fs::write(stage.path(name), picture).unwrap();
@@ -174,7 +181,8 @@ fn every_report_is_of_the_schema() {
     let odd = [[2, 0], [10, 2], [5, 5], [12, 7], [8, 9], [3, 12]];
     let odd = odd.map(|[x, y]| format!("odd.pbrt {x} {y} --samples 4 --sample 1"));
     let fog = [0, 1, 2, 3].map(|sample| format!("fog.pbrt 7 7 --samples 4 --sample {sample}"));
-    for inspected in INSPECTED.map(str::to_owned).into_iter().chain(odd).chain(fog) {
+    let smoke = [0, 1].map(|sample| format!("smoke.pbrt 7 7 --samples 4 --sample {sample}"));
+    for inspected in INSPECTED.map(str::to_owned).into_iter().chain(odd).chain(fog).chain(smoke) {
         let path = if inspected.contains("/") { root().join(&inspected) } else { inspected.clone().into() };
         let document = stage.json_document(&format!("inspect {} --json", path.display()));
         accepts(&validator, &document, &inspected);

@@ -304,6 +304,31 @@ class Coefficients:
 
 
 @dataclass(frozen=True)
+class Collision:
+    """A collision of a ray with a medium that varies.
+
+    t: Its distance.
+    majorant: m: the majorant, the density of collisions.
+    absorption: σ_a: the absorption coefficient there.
+    scattering: σ_s: the scattering coefficient there.
+    emitted: β σ_a L_e / m: the light that the medium adds.
+    probability: q: the probability that it is real, `Σ σ_t β / Σ β / m`.
+    is_real: Whether it is real: the ray is scattered.
+    throughput: The throughput after it: `β σ_s / (m q)` where it is real, else `β (m − σ_t) / (m (1 − q))`.
+        What has become weak may be ended by Russian roulette, or four times as strong.
+    """
+
+    t: float
+    majorant: float
+    absorption: tuple[float, ...]
+    scattering: tuple[float, ...]
+    emitted: tuple[float, ...]
+    probability: float
+    is_real: bool
+    throughput: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Contribution:
     """A contribution to a sample, as an expression.
 
@@ -369,8 +394,8 @@ class Derivation:
 
 @dataclass(frozen=True)
 class Flight:
-    """A flight in a medium that scatters. The distance is sampled with the extinction of one lane, chosen by
-    the throughput.
+    """A flight in a homogeneous medium that scatters. The distance is sampled with the extinction of one
+    lane, chosen by the throughput.
 
     extinction: σ_t: the extinction coefficient, per unit of length.
     scattering: σ_s: the scattering coefficient.
@@ -668,6 +693,23 @@ class MultipleScattering:
 
 
 @dataclass(frozen=True)
+class NullCollision:
+    """A null collision of a shadow ray with a medium that varies.
+
+    t: Its distance.
+    majorant: m: the majorant, the density of collisions.
+    extinction: σ_t: the extinction coefficient there.
+    transmittance: The estimate of the transmittance after it, by `(m − σ_t) / m`, and by Russian roulette
+        where it is weak.
+    """
+
+    t: float
+    majorant: float
+    extinction: tuple[float, ...]
+    transmittance: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Phase:
     """Scattering by the phase function of a medium, which is its own density: β stays.
 
@@ -706,7 +748,8 @@ class Ray:
     candidates: Every primitive that was tested, in the order of the tests.
     met: Its hit; null for a miss, and where a medium scatters it before.
     absorption: What a medium absorbs on the way to the hit.
-    flight: How far it went in a medium that scatters: to the hit, or to a point before it.
+    flight: Free flight in a homogeneous medium that scatters: to the hit, or to a point before it.
+    tracking: Collisions in a medium that varies: to the hit, or to a point before it.
     medium_emission: The light that the medium emits on the way, as far as the hit; it is added.
     phase: The continuation of the path where a medium scatters it, even if Russian roulette ends it.
     eta_scale: The product of η² over the refractions before, by which Russian roulette multiplies the
@@ -742,6 +785,7 @@ class Ray:
     met: Met | None
     absorption: Absorption | None
     flight: Flight | None
+    tracking: Tracking | None
     medium_emission: Amount | None
     phase: Phase | None
     eta_scale: float
@@ -892,6 +936,8 @@ class Shadow:
     is_endless: Whether it has no end.
     blockers: The surfaces that it hit, in order.
     traversal: The cost of finding them, of all its parts.
+    collisions: The collisions with media that vary, by which their transmittance is estimated: of all its
+        parts, each from 1 on.
     rest: Transmittance of the medium on the rest of the way to the light; null if it is blocked before.
     """
 
@@ -901,6 +947,7 @@ class Shadow:
     is_endless: bool
     blockers: list[Blocker]
     traversal: Traversal
+    collisions: list[NullCollision]
     rest: tuple[float, ...] | None
 
 
@@ -934,6 +981,23 @@ class TestNumbers:
 
     inputs: list[tuple[str, tuple[float, ...]]]
     numbers: list[tuple[str, Twice]]
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """The way of a ray through a medium that varies, by collisions whose density is a majorant of the
+    extinction.
+
+    limit: The distance of what the ray hits; infinite where it hits nothing.
+    collisions: Its collisions, in order: all are null, but for the last where the medium scatters it.
+    scattered_at: The point where it is scattered, in the world; null where it arrives.
+    throughput: The throughput at the end.
+    """
+
+    limit: float
+    collisions: list[Collision]
+    scattered_at: tuple[float, float, float] | None
+    throughput: tuple[float, ...]
 
 
 @dataclass(frozen=True)

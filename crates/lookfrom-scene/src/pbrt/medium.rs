@@ -1,26 +1,30 @@
-//! The `MakeNamedMedium` directive. Homogeneous media are rendered, others are not.
+//! The `MakeNamedMedium` directive, and the media of shapes and cameras.
 
 use std::rc::Rc;
+use std::sync::Arc;
+
+use glam::Vec3;
 
 use super::Reader;
 use super::lexer::{Lexer, Token};
-use super::params::Parameters;
+use super::params::{ParameterType, Parameters};
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
 use crate::error::Result;
+use crate::grid::{Grid, Placed};
 use crate::material::Color;
-use crate::medium::{Medium, Sides};
+use crate::medium::{Density, Medium, Sides, Temperature, Variation};
 use crate::scene::MediumId;
+use crate::spectrum::observer;
 use crate::warning::Warning;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 
-/// pbrt's default `sigma_a` and `sigma_s`, in mm⁻¹: whole milk.
-const SIGMA_A: [f32; 3] = [0.0011, 0.0024, 0.014];
-const SIGMA_S: [f32; 3] = [2.55, 3.21, 3.77];
-
 /// The integrators that support media; the others treat all media as a vacuum.
 const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
+
+/// The luminance of what pbrt does not divide by that of white: blackbodies by temperature, and emission by `rgbgrid`.
+const UNSCALED: f32 = observer::Y_INTEGRAL as f32;
 
 /// A named medium.
 pub(super) struct NamedMedium {
@@ -36,33 +40,99 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        if kind != "homogeneous" || p.has("preset") {
+        if kind == "nanovdb" || p.has("preset") {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
             let warning = Some(Warning::new(&p.place.location(), message));
             self.media.insert(name, NamedMedium { id: None, warning });
             return Ok(());
         }
-        let absorption = self.color(p, "sigma_a", Color::Value(SIGMA_A), Unbounded)?;
-        let scattering = self.color(p, "sigma_s", Color::Value(SIGMA_S), Unbounded)?;
-        let emission = self.light_color(p, "Le")?.unwrap_or(Color::Value([0.0; 3]));
+        let mut medium = self.even_medium(name.clone(), &kind, p)?;
+        medium.variation = match &*kind {
+            "uniformgrid" => Some(self.uniform_grid(p, &mut medium)?),
+            "rgbgrid" => Some(self.rgb_grid(p, &mut medium)?),
+            "cloud" => Some(self.cloud(p)?),
+            _ => None,
+        };
+        let id = MediumId(self.scene.media.len() as u32);
+        self.scene.media.push(medium);
+        self.media.insert(name, NamedMedium { id: Some(id), warning: None });
+        Ok(())
+    }
+
+    /// What is the same everywhere in a medium of a kind.
+    fn even_medium(&mut self, name: String, kind: &str, p: &Parameters) -> Result<Medium> {
+        let one = Color::Value([1.0; 3]);
+        let [absorption, scattering] = match kind {
+            "rgbgrid" => [one; 2],
+            _ => [self.color(p, "sigma_a", one, Unbounded)?, self.color(p, "sigma_s", one, Unbounded)?],
+        };
+        let has_emission = matches!(kind, "homogeneous" | "uniformgrid");
+        let emission = if has_emission { self.light_color(p, "Le")? } else { None };
         let at_least_zero =
             |name, default| p.float_where(name, default, "a number of at least 0", |v| v >= 0.0);
-        let (scale, emission_scale) = (at_least_zero("scale", 1.0)?, at_least_zero("Lescale", 1.0)?);
-        let g = p.float_where("g", 0.0, "a number between -1 and 1", |g| g.abs() < 1.0)?;
-        let id = MediumId(self.scene.media.len() as u32);
-        self.scene.media.push(Medium {
-            name: name.clone(),
+        let emission_scale = if kind == "homogeneous" { at_least_zero("Lescale", 1.0)? } else { 1.0 };
+        let scale = if kind == "cloud" { 1.0 } else { at_least_zero("scale", 1.0)? };
+        Ok(Medium {
+            name,
             at: p.place.location(),
             absorption,
             scattering,
-            g,
+            g: p.float_where("g", 0.0, "a number between -1 and 1", |g| g.abs() < 1.0)?,
             scale,
-            emission,
+            emission: emission.unwrap_or(Color::Value([0.0; 3])),
             emission_scale,
-        });
-        self.media.insert(name, NamedMedium { id: Some(id), warning: None });
-        Ok(())
+            variation: None,
+        })
+    }
+
+    /// A medium that varies in its own space, by default in the unit cube there.
+    fn variation(&self, p: &Parameters, density: Density) -> Result<Variation> {
+        Ok(Variation {
+            world_from_medium: self.state.matrix,
+            bounds: Some(bounds(p)?),
+            density,
+            emission_scale: None,
+            temperature: None,
+        })
+    }
+
+    fn uniform_grid(&self, p: &Parameters, medium: &mut Medium) -> Result<Variation> {
+        let required = || p.place.invalid("the medium has no \"density\"".to_owned());
+        let density = numbers(p, "density")?.ok_or_else(required)?;
+        let mut variation = self.variation(p, Density::Grid(density))?;
+        // Without a grid pbrt has one of a single cell, which fades from its centre to half outside of it.
+        let bounds = bounds(p)?;
+        let even = || Grid::from_values([1; 3], &[1.0]).map(|grid| Placed { grid: Arc::new(grid), bounds });
+        variation.emission_scale = numbers(p, "Lescale")?.or_else(even);
+        let Some(grid) = numbers(p, "temperature")? else { return Ok(variation) };
+        if p.has("Le") {
+            return Err(p.refuse("Le", "no \"Le\" beside \"temperature\""));
+        }
+        medium.emission_scale = UNSCALED;
+        variation.temperature = Some(temperature(p, grid)?);
+        Ok(variation)
+    }
+
+    fn rgb_grid(&mut self, p: &Parameters, medium: &mut Medium) -> Result<Variation> {
+        let [absorption, scattering, emission] =
+            [colors(p, "sigma_a")?, colors(p, "sigma_s")?, colors(p, "Le")?];
+        if absorption.is_none() && scattering.is_none() {
+            return Err(p.place.invalid("the medium has neither \"sigma_a\" nor \"sigma_s\"".to_owned()));
+        }
+        if emission.is_some() && absorption.is_none() {
+            return Err(p.refuse("Le", "\"sigma_a\" beside \"Le\""));
+        }
+        let scale = p.float_where("Lescale", 1.0, "a number of at least 0", |v| v >= 0.0)?;
+        medium.emission_scale = scale * UNSCALED;
+        self.variation(p, Density::Colors { absorption, scattering, emission })
+    }
+
+    fn cloud(&self, p: &Parameters) -> Result<Variation> {
+        let finite = |name, default| p.float_where(name, default, "a finite number", f32::is_finite);
+        let (density, wispiness) = (finite("density", 1.0)?, finite("wispiness", 1.0)?);
+        let frequency = finite("frequency", 5.0)?;
+        self.variation(p, Density::Cloud { density, wispiness, frequency })
     }
 
     pub(super) fn medium_interface(&mut self, lexer: &mut Lexer<'_>) -> Result<()> {
@@ -124,4 +194,65 @@ impl Reader<'_, '_> {
             None => {}
         }
     }
+}
+
+/// The corners of the box that a medium is in.
+fn bounds(p: &Parameters) -> Result<[Vec3; 2]> {
+    let corner = |name, default: Vec3| p.vector(name, ParameterType::Point3, default.as_dvec3());
+    let [p0, p1] = [corner("p0", Vec3::ZERO)?.as_vec3(), corner("p1", Vec3::ONE)?.as_vec3()];
+    Ok([p0.min(p1), p0.max(p1)])
+}
+
+/// Number of cells along x, y and z.
+fn size(p: &Parameters) -> Result<[u32; 3]> {
+    let mut size = [1; 3];
+    for (name, cells) in ["nx", "ny", "nz"].into_iter().zip(&mut size) {
+        *cells = p.integer(name, 1, 1, i32::MAX)?.unsigned_abs();
+    }
+    Ok(size)
+}
+
+/// A grid of numbers.
+fn numbers(p: &Parameters, name: &'static str) -> Result<Option<Placed<f32>>> {
+    let Some(values) = p.floats(name, ParameterType::Float)? else { return Ok(None) };
+    let expected = "numbers of at least 0";
+    if name != "temperature" && values.iter().any(|value| *value < 0.0) {
+        return Err(p.refuse(name, expected));
+    }
+    placed(p, name, values).map(Some)
+}
+
+/// A grid of colours.
+fn colors(p: &Parameters, name: &'static str) -> Result<Option<Placed<[f32; 3]>>> {
+    let Some(values) = p.floats(name, ParameterType::Rgb)? else { return Ok(None) };
+    if values.iter().any(|value| *value < 0.0) {
+        return Err(p.refuse(name, "colours without negative numbers"));
+    }
+    let values: Vec<[f32; 3]> = values.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2]]).collect();
+    placed(p, name, &values).map(Some)
+}
+
+fn placed<T: Copy + Default + PartialEq>(p: &Parameters, name: &str, values: &[T]) -> Result<Placed<T>> {
+    let size @ [x, y, z] = size(p)?;
+    let grid = Grid::from_values(size, values).ok_or_else(|| {
+        let found = values.len();
+        p.refuse(
+            name,
+            &format!(
+                "{x}·{y}·{z} values by \"nx\", \"ny\", \"nz\", at most 2²⁰ along an axis; found {found}"
+            ),
+        )
+    })?;
+    Ok(Placed { grid: Arc::new(grid), bounds: bounds(p)? })
+}
+
+/// What emits by temperature.
+fn temperature(p: &Parameters, grid: Placed<f32>) -> Result<Temperature> {
+    let finite = |name, default| p.float_where(name, default, "a finite number", f32::is_finite);
+    let cutoff = finite("temperaturecutoff", 0.0)?;
+    Ok(Temperature {
+        grid,
+        offset: finite("temperatureoffset", cutoff)?,
+        scale: finite("temperaturescale", 1.0)?,
+    })
 }

@@ -7,6 +7,7 @@
 //! light of luminance 1 to 1; in pbrt, lights are divided by their luminous integral and the sensor is not. RGB is
 //! linear with the primaries of Rec. 709.
 
+mod blackbody;
 mod calibration;
 mod densely_sampled;
 mod sensor;
@@ -19,6 +20,7 @@ use std::sync::OnceLock;
 
 use lookfrom_scene::spectrum::{observer, space};
 
+pub use blackbody::{blackbody, blackbody_rgb};
 pub use densely_sampled::{DenselySampledSpectrum, standard_illuminant};
 pub use sensor::Sensor;
 pub use sigmoid::{Sigmoid, Unbounded};

@@ -2,6 +2,7 @@
 
 mod camera;
 mod light;
+mod medium;
 mod ray;
 
 use serde::Serialize;
@@ -11,10 +12,8 @@ use super::segments::RaySegment;
 
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
-pub use ray::{
-    AbsorptionReport, CoefficientsReport, Departure, FlightReport, LiftReport, MetReport, PhaseReport,
-    RayReport,
-};
+pub use medium::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
+pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.
 pub type Factor = Vec<f32>;

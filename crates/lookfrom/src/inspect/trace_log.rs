@@ -4,6 +4,7 @@
 //! integrator.
 
 mod lights;
+mod media;
 mod rays;
 
 use std::collections::BTreeMap;
@@ -12,11 +13,11 @@ use glam::Vec3;
 use lookfrom_scene::settings::Integrator;
 
 use super::microfacets::MicrofacetReport;
-use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, PhaseReport, RayReport};
+use super::report::{AbsorptionReport, Addition, Amount, BranchReport, Factor, RayReport};
 use super::scatter::FoundReport;
 use super::segments::RayKind;
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Branch, Cut, Event, Path, PhaseSample, PreviousVertex, Term};
+use crate::integrator::{Branch, Cut, Event, Path, PreviousVertex, Term};
 use crate::render::Renderer;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
@@ -87,7 +88,8 @@ impl<'a> TraceLogBuilder<'a> {
                 self.hits.insert(path.address, (*path, surface));
             }
             Event::Absorbed { address, interior, length, transmittance, beta } => {
-                let Some((sigma, scale)) = self.world.extinction(*interior, &self.mode) else { return };
+                let Some(medium) = self.world.medium(*interior) else { return };
+                let (sigma, scale) = self.world.extinction(medium, &self.mode);
                 let material =
                     interior.material().map(|index| self.world.names.materials[index as usize].clone());
                 let report = AbsorptionReport {
@@ -104,12 +106,8 @@ impl<'a> TraceLogBuilder<'a> {
                 });
             }
             Event::Flown { address, flight, point, .. } => self.flown(*address, flight, *point),
-            Event::ScatteredInMedium { address, sample } => {
-                let PhaseSample { wi, pdf, survival, survives, .. } = *sample;
-                let report =
-                    PhaseReport { wi: wi.to_array(), pdf, survival, survives, next_throughput: None };
-                self.at(*address, |ray| ray.phase = Some(report));
-            }
+            Event::Tracked { address, tracking, point } => self.tracked(*address, tracking, *point),
+            Event::ScatteredInMedium { address, sample } => self.phase(*address, sample),
             Event::Surface { address, coefficients, .. } => {
                 let report = coefficients.as_deref().map(|k| self.coefficients(k));
                 if let Some(met) = self.rays.get_mut(address).and_then(|ray| ray.met.as_mut()) {

@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Flight, Path, PreviousVertex, Shadow};
+use crate::integrator::{Flight, Path, PreviousVertex, Shadow, Tracking};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -80,16 +80,23 @@ pub enum Event {
         /// The throughput after it.
         beta: Spectrum,
     },
-    /// A path has travelled in a medium that scatters.
+    /// A path has travelled in a homogeneous medium that scatters.
     Flown {
         /// Address of the path.
         address: u64,
-        /// The media that the path is inside of.
-        interior: InteriorStack,
         /// Free flight, with the throughput at its end.
         flight: Box<Flight>,
         /// The point where it is scattered, if it is.
         point: Vec3,
+    },
+    /// A path has travelled in a medium that varies.
+    Tracked {
+        /// Address of the path.
+        address: u64,
+        /// Its collisions, with the throughput at their end.
+        tracking: Box<Tracking>,
+        /// The point where it is scattered, if it is.
+        point: Option<Vec3>,
     },
     /// A direction was sampled by a medium's phase function; the path goes on, or Russian roulette ends it.
     ScatteredInMedium {

@@ -10,6 +10,7 @@ mod catcher;
 mod flight;
 mod in_medium;
 mod lanes;
+mod tracking;
 mod travel;
 
 use glam::Vec3;
@@ -17,6 +18,7 @@ use lookfrom_bvh::Hit;
 
 pub use flight::Flight;
 use lanes::Waiting;
+pub use tracking::{Tracked, Tracking};
 use travel::Traveled;
 
 use crate::core::lanes::{LANES, are_shaded_together};

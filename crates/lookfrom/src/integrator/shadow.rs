@@ -175,7 +175,11 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     world.bvh.query().origins(origin_primitives).occluded_many(rays, blocked);
     for (index, (light, blocked)) in lights.iter_mut().zip(&*blocked).enumerate() {
         let mode = &modes[light.slot as usize];
-        let passed = if *blocked { Spectrum::BLACK } else { light.reached(world, &rays[index], mode) };
+        let passed = if *blocked {
+            Spectrum::BLACK
+        } else {
+            light.transmittance(world, &rays[index], rays[index].t_max, mode)
+        };
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {
             let shadow = light.of(rays[index], origin_primitives[index]);

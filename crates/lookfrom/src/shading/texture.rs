@@ -30,6 +30,7 @@ use lookfrom_scene::shape::Mesh;
 use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::{Channel, TextureKind, Wrap};
 
+pub(crate) use self::input::uplift;
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
 pub use self::look_ups::{LookUps, LookedUp, PictureSet};
 pub use self::mapping::sphere_uv;
@@ -153,6 +154,11 @@ impl Textures {
     /// A colour of the scene, compiled for its spectrum type.
     pub fn spectrum_texture(&self, color: Color, spectrum_type: SpectrumType) -> SpectrumTexture {
         SpectrumTexture::new(Input::new(color, self.uplifts), spectrum_type, &self.curves)
+    }
+
+    /// Whether constants are uplifted to spectra when they are compiled: whether those will be evaluated.
+    pub(crate) fn uplifts(&self) -> bool {
+        self.uplifts
     }
 
     /// An image by its index.

@@ -158,7 +158,8 @@ impl World {
             compiler.lights.add(light, origin);
         }
         let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
-        let radius = scene.bounds().radius() as f32;
+        let bounds = scene.bounds();
+        let (radius, around) = (bounds.radius() as f32, (bounds.center(), 2.0 * bounds.radius()));
         let Lights { lights, names: light_names, brightness, ambient, .. } = lights;
         let light_choice = LightChoice::new(scene.render.light_sampler, &lights, brightness, radius);
         if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
@@ -202,7 +203,7 @@ impl World {
         let mut names = Names { shapes, lights: light_names, ..Names::default() };
         let mut materials: Vec<Material> = Vec::new();
         let mut media: Vec<Medium> =
-            written_media.iter().map(|written| Medium::compile(&textures, written)).collect();
+            written_media.iter().map(|written| Medium::compile(&textures, written, origin, around)).collect();
         let mut compiler = material::Compiler::new(&textures, vertex_normals);
         for written in written_materials {
             let (mut material, absorption) = compiler.compile(&written);

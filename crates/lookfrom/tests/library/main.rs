@@ -40,4 +40,5 @@ mod smooth_meshes;
 mod support;
 mod surfaces;
 mod valid;
+mod varying_media;
 mod warnings;

@@ -33,6 +33,9 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("cornell-sensor/scene", "cornell-sensor", 256, 16, 0.005),
     ("medium-fog/scene", "medium-fog", 384, 16, 0.005),
     ("medium-inside/scene", "medium-inside", 384, 16, 0.005),
+    ("medium-grid/scene", "medium-grid", 512, 16, 0.005),
+    ("medium-rgbgrid/scene", "medium-rgbgrid", 256, 16, 0.005),
+    ("medium-cloud/scene", "medium-cloud", 256, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how

@@ -9,13 +9,18 @@ use lookfrom::render::SampleId;
 use lookfrom_scene::settings::{ColorMode, Integrator};
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
 
-/// A scene whose camera looks along z from the origin, through 2 × 2 pixels.
+/// A scene whose camera looks along z from the origin, through 2 × 2 pixels, with a homogeneous medium.
 fn scene(depth: u32, samples: u32, medium: &str, before: &str, world: &str) -> Scene {
+    scene_of(depth, samples, &format!(r#""homogeneous" {medium}"#), before, world)
+}
+
+/// The same with a medium of any type.
+pub(super) fn scene_of(depth: u32, samples: u32, medium: &str, before: &str, world: &str) -> Scene {
     let text = format!(
         r#"Integrator "volpath" "integer maxdepth" {depth}
         Film "rgb" "integer xresolution" 2 "integer yresolution" 2 PixelFilter "box"
         Sampler "independent" "integer pixelsamples" {samples}
-        MakeNamedMedium "fog" "string type" "homogeneous" {medium}
+        MakeNamedMedium "fog" "string type" {medium}
         {before} Camera "perspective" "float fov" 0.1
         WorldBegin {world}"#
     );
@@ -28,7 +33,7 @@ fn scene(depth: u32, samples: u32, medium: &str, before: &str, world: &str) -> S
     scene
 }
 
-fn mean(scene: Scene) -> [f64; 3] {
+pub(super) fn mean(scene: Scene) -> [f64; 3] {
     let film = Compiled::new(scene).film();
     assert_eq!(film.dropped(), 0);
     let pixels = film.picture().pixels;
@@ -36,17 +41,17 @@ fn mean(scene: Scene) -> [f64; 3] {
     sum.map(|sum| sum / pixels.len() as f64)
 }
 
-fn assert_near(found: [f64; 3], expected: [f64; 3], tolerance: f64, what: &str) {
+pub(super) fn assert_near(found: [f64; 3], expected: [f64; 3], tolerance: f64, what: &str) {
     for (found, expected) in found.into_iter().zip(expected) {
         assert!((found / expected - 1.0).abs() < tolerance, "{what}: {found}, expected {expected}");
     }
 }
 
 /// The whole space is filled.
-const AROUND: &str = r#"MediumInterface "" "fog""#;
+pub(super) const AROUND: &str = r#"MediumInterface "" "fog""#;
 
 /// A small black ball out of sight, by which the world has a size.
-const SPECK: &str = r#"AttributeBegin Translate 0 -9 0 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+pub(super) const SPECK: &str = r#"AttributeBegin Translate 0 -9 0 Material "diffuse" "rgb reflectance" [ 0 0 0 ]
     Shape "sphere" "float radius" 0.01 AttributeEnd "#;
 
 /// In a furnace a medium that absorbs nothing is invisible: light that is scattered away comes from elsewhere as well.

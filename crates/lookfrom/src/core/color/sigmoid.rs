@@ -13,7 +13,7 @@ use crate::core::spectrum::Spectrum;
 ///
 /// pbrt-v4 has the same functions as polynomials of λ itself; the normalised t preserves the digits of single
 /// precision.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sigmoid<R = f32>(pub [R; 3]);
 
 /// The wavelength where t is 0, in nm.
@@ -51,6 +51,16 @@ impl Sigmoid {
     }
 }
 
+impl Sigmoid {
+    /// The largest value, from 360 to 830 nm: at an end, or at the vertex of the parabola.
+    fn most(&self) -> f32 {
+        let Self([a, b, _]) = *self;
+        let vertex = (MIDDLE - 0.5 * REACH * b / a).clamp(360.0, 830.0);
+        // Without a vertex the division has no meaning, and an end is largest.
+        [360.0, 830.0, vertex].into_iter().map(|nm| self.value(nm)).fold(0.0, f32::max)
+    }
+}
+
 impl<R: Real> Sigmoid<R> {
     /// The values at wavelengths in nm.
     #[inline(always)]
@@ -84,7 +94,7 @@ fn grey([r, g, b]: [f32; 3]) -> Option<f32> {
 /// A spectrum that may exceed 1: a scale times a smooth spectrum, for a colour of at most ½.
 ///
 /// For indices of refraction and the like. For light, multiply by [`super::standard_illuminant`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Unbounded<R = f32> {
     /// The factor: of a colour, twice the largest component.
     pub scale: R,
@@ -106,6 +116,11 @@ impl Unbounded {
     /// As [`Unbounded::from_rgb`], but exactly, for the constants of a scene.
     pub fn exact_from_rgb(rgb: [f32; 3]) -> Self {
         Self::with(rgb, Sigmoid::exact_from_rgb)
+    }
+
+    /// The largest value, from 360 to 830 nm.
+    pub fn most(&self) -> f32 {
+        self.sigmoid.most() * self.scale
     }
 
     fn with(rgb: [f32; 3], lift: fn([f32; 3]) -> Sigmoid) -> Self {

@@ -13,7 +13,7 @@ use super::permutation::PERMUTATION;
 use super::{EDGES, fade, mix_linearly};
 
 /// Ratio of frequencies of successive octaves: not quite two, so that their zeros do not coincide.
-const LACUNARITY: f32 = 1.99;
+pub const LACUNARITY: f32 = 1.99;
 
 /// The mean magnitude of noise assumed by pbrt.
 const MEAN_MAGNITUDE: f32 = 0.2;
@@ -57,6 +57,13 @@ pub fn noise(p: Vec3) -> f32 {
     let edge = |j, k| mix_linearly(corner(0, j, k), corner(1, j, k), u);
     let face = |k| mix_linearly(edge(0, k), edge(1, k), v);
     mix_linearly(face(0), face(1), w)
+}
+
+/// The gradient of the noise, by differences over 0.01, as in pbrt.
+pub fn gradient(p: Vec3) -> Vec3 {
+    const STEP: f32 = 0.01;
+    let here = noise(p);
+    Vec3::from_array(Vec3::AXES.map(|axis| (noise(p + axis * STEP) - here) / STEP))
 }
 
 /// Fractional Brownian motion: the sum of `octaves` noises, each of 1.99 times the frequency and `roughness` times

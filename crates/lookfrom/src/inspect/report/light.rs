@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Amount, Departure, Factor};
+use super::{Amount, Departure, Factor, NullReport};
 use crate::inspect::candidate::TraversalReport;
 use crate::inspect::segments::RayKind;
 use crate::light::derivation::Derivation;
@@ -57,6 +57,8 @@ pub struct ShadowReport {
     pub blockers: Vec<Blocker>,
     /// The cost of finding them, of all its parts.
     pub traversal: TraversalReport,
+    /// The collisions with media that vary, by which their transmittance is estimated: of all its parts, each from 1 on.
+    pub collisions: Vec<NullReport>,
     /// Transmittance of the medium on the rest of the way to the light; `None` if it is blocked before.
     pub rest: Option<Factor>,
 }

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use super::{Amount, BranchReport, Factor, LightReport, ShadowReport};
+use super::{
+    Amount, BranchReport, Factor, FlightReport, LightReport, PhaseReport, ShadowReport, TrackingReport,
+};
 use crate::inspect::candidate::{Candidate, TraversalReport};
 use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
 use crate::inspect::segments::RayKind;
@@ -40,8 +42,10 @@ pub struct RayReport {
     pub met: Option<MetReport>,
     /// What a medium absorbs on the way to the hit.
     pub absorption: Option<AbsorptionReport>,
-    /// Free flight in a scattering medium: to the hit, or to a point before it.
+    /// Free flight in a homogeneous medium that scatters: to the hit, or to a point before it.
     pub flight: Option<FlightReport>,
+    /// Collisions in a medium that varies: to the hit, or to a point before it.
+    pub tracking: Option<TrackingReport>,
     /// The light that the medium emits on the way, as far as the hit; it is added.
     pub medium_emission: Option<Amount>,
     /// The continuation of the path where a medium scatters it, even if Russian roulette ends it.
@@ -118,51 +122,11 @@ pub struct AbsorptionReport {
     pub throughput: Factor,
 }
 
-/// A flight in a medium that scatters. The distance is sampled with the extinction of one lane, chosen by the throughput.
-#[derive(Clone, Debug, Serialize)]
-pub struct FlightReport {
-    /// σ_t: the extinction coefficient, per unit of length.
-    pub extinction: Factor,
-    /// σ_s: the scattering coefficient.
-    pub scattering: Factor,
-    /// P: the probability of each lane, β / Σ β.
-    pub choice: Factor,
-    /// The index of the lane that was chosen.
-    pub lane: u32,
-    /// The distance of what the ray hits; infinite where it hits nothing.
-    pub limit: f32,
-    /// The distance that was sampled, `−ln(1 − u) / σ_t`: the ray is scattered where it is less than `limit`.
-    pub distance: f32,
-    /// The point where it is scattered, in the world; `None` where it arrives.
-    pub scattered_at: Option<[f64; 3]>,
-    /// T: `exp(−σ_t · length)` up to the point or the hit.
-    pub transmittance: Factor,
-    /// The density `q = Σ P σ_t T` of the distance, per unit of length, where it is scattered; else the probability `Q = Σ P T` of
-    /// arriving.
-    pub density: f32,
-    /// The throughput after it: `β σ_s T / q`, or `β T / Q`.
-    pub throughput: Factor,
-}
-
-/// Scattering by the phase function of a medium, which is its own density: β stays.
-#[derive(Clone, Debug, Serialize)]
-pub struct PhaseReport {
-    /// The sampled direction, unit length.
-    pub wi: [f32; 3],
-    /// The phase function in that direction, per steradian: its value and its density.
-    pub pdf: f32,
-    /// The survival probability of Russian roulette.
-    pub survival: f32,
-    /// Whether the path goes on.
-    pub survives: bool,
-    /// β of the next ray: β / survival; `None` where there is none.
-    pub next_throughput: Option<Factor>,
-}
-
 impl RayReport {
     /// The point where a medium scatters it before it hits anything.
     pub fn scattered_at(&self) -> Option<[f64; 3]> {
-        self.flight.as_ref()?.scattered_at
+        let in_flight = self.flight.as_ref().and_then(|flight| flight.scattered_at);
+        in_flight.or_else(|| self.tracking.as_ref()?.scattered_at)
     }
 
     /// Where it ends, in the world; `None` for a miss.

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use super::candidates::work;
+use super::medium::write_null_collisions;
 use super::{exact, full, full64, lanes, vector, vector32};
 use crate::inspect::{AbsorptionReport, Departure, LiftReport, MetReport, RayReport, ShadowReport};
 use crate::light::derivation::Derivation;
@@ -129,6 +130,7 @@ pub(super) fn write_shadow(
             }
         }
     }
+    write_null_collisions(f, &shadow.collisions, pad)?;
     match &shadow.rest {
         Some(rest) if rest.iter().any(|lane| *lane != 1.0) => {
             writeln!(f, "{pad}    shadow ray: {end}, after absorption on the rest of the way {}", lanes(rest))

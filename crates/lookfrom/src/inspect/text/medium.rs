@@ -1,10 +1,12 @@
-//! Media in the text report: absorption, flights, and scattering by phase functions.
+//! Media in the text report: absorption, flights, collisions, and scattering by phase functions.
 
 use std::fmt::{self, Write};
 
+use lookfrom_scene::plural::counted;
+
 use super::hit::write_absorption;
 use super::{RayReport, amount, full, lanes, vector, vector32};
-use crate::inspect::report::{FlightReport, PhaseReport};
+use crate::inspect::report::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
 
 /// Media along a ray.
 pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
@@ -13,7 +15,71 @@ pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
         writeln!(f, "    the medium shines along the way")?;
         writeln!(f, "      + β σ_a L (1 − T) / σ_t = {}", amount(added))?;
     }
-    ray.flight.as_ref().map_or(Ok(()), |flight| write_flight(f, flight))
+    if let Some(flight) = &ray.flight {
+        write_flight(f, flight)?;
+    }
+    ray.tracking.as_ref().map_or(Ok(()), |tracking| write_tracking(f, tracking))
+}
+
+/// Collisions that are written; the others are in JSON.
+const MOST_COLLISIONS: usize = 24;
+
+fn write_tracking(f: &mut String, tracking: &TrackingReport) -> fmt::Result {
+    let (count, limit) = (tracking.collisions.len(), full(tracking.limit));
+    writeln!(
+        f,
+        "    collides {} with a medium that varies, before what is at {limit}",
+        counted(count, "time")
+    )?;
+    for collision in tracking.collisions.iter().take(MOST_COLLISIONS) {
+        let CollisionReport { t, majorant, absorption, scattering, .. } = collision;
+        let (t, majorant, probability) = (full(*t), full(*majorant), full(collision.probability));
+        writeln!(
+            f,
+            "      at t = {t}: majorant m = {majorant}   σ_a = {}   σ_s = {}",
+            lanes(absorption),
+            lanes(scattering)
+        )?;
+        if collision.emitted.iter().any(|lane| *lane != 0.0) {
+            writeln!(f, "        + β σ_a L / m = {}", lanes(&collision.emitted))?;
+        }
+        let throughput = lanes(&collision.throughput);
+        match collision.is_real {
+            true => writeln!(
+                f,
+                "        real, with q = Σ P σ_t / m = {probability}: β σ_s / (m q) = {throughput}"
+            )?,
+            false => writeln!(
+                f,
+                "        null, with q = Σ P σ_t / m = {probability}: β (m − σ_t) / (m (1 − q)) = {throughput}"
+            )?,
+        }
+    }
+    if count > MOST_COLLISIONS {
+        writeln!(f, "      and {} more", count - MOST_COLLISIONS)?;
+    }
+    if let Some(point) = &tracking.scattered_at {
+        writeln!(f, "      is scattered there: p = {}", vector(point))?;
+    }
+    Ok(())
+}
+
+/// The null collisions of a shadow ray.
+pub(super) fn write_null_collisions(f: &mut String, collisions: &[NullReport], pad: &str) -> fmt::Result {
+    for collision in collisions.iter().take(MOST_COLLISIONS) {
+        let NullReport { t, majorant, extinction, transmittance } = collision;
+        let (t, majorant) = (full(*t), full(*majorant));
+        writeln!(
+            f,
+            "{pad}    shadow ray: collides at t = {t}: m = {majorant}   σ_t = {}   Π (m − σ_t) / m = {}",
+            lanes(extinction),
+            lanes(transmittance)
+        )?;
+    }
+    match collisions.len().saturating_sub(MOST_COLLISIONS) {
+        0 => Ok(()),
+        more => writeln!(f, "{pad}    shadow ray: and {more} more collisions"),
+    }
 }
 
 fn write_flight(f: &mut String, flight: &FlightReport) -> fmt::Result {

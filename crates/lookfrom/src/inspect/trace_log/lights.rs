@@ -189,6 +189,7 @@ impl TraceLogBuilder<'_> {
             true => candidate::of_shadow(world, &shadow.ray),
             false => TraversalReport::default(),
         };
+        let collisions = self.null_collisions(shadow, if hit.is_hit() { hit.t } else { shadow.ray.t_max });
         let Some(ray) = self.rays.get_mut(&shadow.address) else { return };
         let report = match shadow.term {
             Term::Light(light) => match ray.lights.iter_mut().find(|report| report.index == light) {
@@ -212,6 +213,7 @@ impl TraceLogBuilder<'_> {
             to,
             is_endless,
             blockers: Vec::new(),
+            collisions: Vec::new(),
             rest: None,
             traversal: TraversalReport::default(),
         });
@@ -221,6 +223,7 @@ impl TraceLogBuilder<'_> {
         report.traversal.culled += traversal.culled;
         report.traversal.tests += traversal.tests;
         report.blockers.extend(blocker);
+        report.collisions.extend(collisions);
     }
 }
 

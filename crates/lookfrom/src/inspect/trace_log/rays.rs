@@ -6,12 +6,10 @@ use lookfrom_bvh::{Hit, NONE, Ray};
 use super::TraceLogBuilder;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
-use crate::inspect::report::{
-    Amount, CoefficientsReport, Departure, FlightReport, LiftReport, MetReport, RayReport,
-};
+use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 use crate::inspect::scatter::{self, BounceReport};
 use crate::inspect::segments::RayKind;
-use crate::integrator::{Bounce, Flight, Path, PreviousVertex};
+use crate::integrator::{Bounce, Path, PreviousVertex};
 use crate::primitive::Primitives;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, Shading};
@@ -52,6 +50,7 @@ impl TraceLogBuilder<'_> {
             met: surface.map(|surface| met_report(self.world, hit, surface)),
             absorption: None,
             flight: None,
+            tracking: None,
             medium_emission: None,
             phase: None,
             eta_scale: path.state.eta_scale,
@@ -91,36 +90,6 @@ impl TraceLogBuilder<'_> {
             transmission: self.factor(k.transmission),
             ior: k.ior,
         }
-    }
-
-    /// The flight of a ray in a medium, which may have scattered it before its hit.
-    pub(super) fn flown(&mut self, address: u64, flight: &Flight, point: Vec3) {
-        let is_scattered = flight.is_scattered();
-        let report = FlightReport {
-            extinction: self.factor(flight.extinction),
-            scattering: self.factor(flight.scattering),
-            choice: self.factor(flight.choice),
-            lane: flight.lane,
-            limit: flight.limit,
-            distance: flight.distance,
-            scattered_at: is_scattered.then(|| in_world(self.world, point.to_array())),
-            transmittance: self.factor(flight.transmittance),
-            density: flight.density,
-            throughput: self.factor(flight.after),
-        };
-        if is_scattered {
-            self.in_media.insert(address, point);
-            if let Some((_, surface)) = self.hits.get_mut(&address) {
-                *surface = None;
-            }
-        }
-        self.at(address, |ray| {
-            ray.throughput_there = Some(report.throughput.clone());
-            if is_scattered {
-                ray.met = None;
-            }
-            ray.flight = Some(report);
-        });
     }
 
     pub(super) fn shaded(&mut self, address: u64, shading: &Shading, beta: Spectrum) {
@@ -205,6 +174,6 @@ fn lift_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> Option
     })
 }
 
-fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
+pub(super) fn in_world(world: &World, point: [f32; 3]) -> [f64; 3] {
     (world.origin + Vec3::from_array(point).as_dvec3()).to_array()
 }

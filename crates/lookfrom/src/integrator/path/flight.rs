@@ -7,7 +7,7 @@
 //! nothing the sum of the lanes stays what it was.
 
 use crate::core::spectrum::Spectrum;
-use crate::world::MediumCoefficients;
+use crate::medium::Coefficients;
 
 /// A sampled flight.
 #[derive(Clone, Copy, Debug)]
@@ -36,12 +36,7 @@ pub struct Flight {
 
 impl Flight {
     /// Samples a flight of a path with a throughput, which is not black, by `u ∈ [0, 1)²`: the lane and the distance.
-    pub(super) fn sample(
-        medium: &MediumCoefficients,
-        beta: Spectrum,
-        limit: f32,
-        [which, u]: [f32; 2],
-    ) -> Self {
+    pub(super) fn sample(medium: &Coefficients, beta: Spectrum, limit: f32, [which, u]: [f32; 2]) -> Self {
         let (extinction, scattering) = (medium.extinction(), medium.scattering);
         let choice = beta / beta.0.iter().sum::<f32>();
         let lane = chosen(choice, which);

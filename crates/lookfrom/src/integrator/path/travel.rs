@@ -5,8 +5,11 @@ use lookfrom_bvh::Hit;
 
 use super::flight::Flight;
 use super::in_medium::MediumVertex;
+use super::tracking::Tracking;
 use super::{Path, PathTracer, StepOutput, dimension};
+use crate::core::spectrum::Spectrum;
 use crate::integrator::{Event, Probe, SampleStream, Term};
+use crate::medium::{Medium, Way};
 use crate::world::World;
 
 /// The end of a path's way.
@@ -26,33 +29,79 @@ impl PathTracer {
         (path, hit): (&Path, &Hit),
         output: &mut StepOutput<'_, P>,
     ) -> Traveled {
-        let limit = path.length_to(hit);
+        let way = path.way_to(hit);
         // A body must end somewhere: where a ray in it hits nothing, it is in none.
         let is_in_medium = !path.interior.is_empty() && (hit.is_hit() || path.interior.space().is_some());
         let medium = match is_in_medium && !path.beta.is_black() {
-            true => world.coefficients(path.interior, &output.mode(path)),
+            true => world.medium(path.interior),
             false => None,
         };
-        let Some(medium) = medium else { return Traveled::Arrived(output.absorbed(world, path, hit)) };
+        match medium {
+            Some(medium) if medium.varying.is_some() => {
+                self.track(world, stream, (path, medium), &way, output)
+            }
+            Some(medium) if medium.scattering.is_some() || medium.emission.is_some() => {
+                self.fly(world, stream, (path, hit), (medium, &way), output)
+            }
+            _ => Traveled::Arrived(output.absorbed(world, path, hit)),
+        }
+    }
 
-        // What a medium emits where no path goes on is left out, as in pbrt.
+    /// Travels in a homogeneous medium that scatters or emits.
+    fn fly<P: Probe>(
+        &self,
+        world: &World,
+        stream: &SampleStream,
+        (path, hit): (&Path, &Hit),
+        (medium, way): (&Medium, &Way),
+        output: &mut StepOutput<'_, P>,
+    ) -> Traveled {
+        let coefficients = medium.coefficients(&world.textures, &output.mode(path));
+        if medium.emission.is_some() {
+            self.add_emission_of_medium(path, path.beta * coefficients.emitted(way.length), output);
+        }
+        if medium.scattering.is_none() {
+            return Traveled::Arrived(output.absorbed(world, path, hit));
+        }
+        let flight = Flight::sample(&coefficients, path.beta, way.length, stream.two(dimension::FLIGHT));
+        let point = way.origin + way.direction * flight.distance;
+        output.probe.notice(|| Event::Flown { address: path.address, flight: Box::new(flight), point });
+        end(medium, Path { beta: flight.after, ..*path }, flight.is_scattered().then_some(point))
+    }
+
+    /// Travels in a medium that varies.
+    fn track<P: Probe>(
+        &self,
+        world: &World,
+        stream: &SampleStream,
+        (path, medium): (&Path, &Medium),
+        way: &Way,
+        output: &mut StepOutput<'_, P>,
+    ) -> Traveled {
+        let mode = output.mode(path);
+        let tracking =
+            Tracking::sample(medium, (&world.textures, &mode), (way, path.beta), stream, P::LISTENS);
+        if medium.emission.is_some() {
+            self.add_emission_of_medium(path, tracking.emitted, output);
+        }
+        let point = tracking.scattered_at.map(|distance| way.origin + way.direction * distance);
+        let path = Path { beta: tracking.after, ..*path };
+        output.probe.notice(|| Event::Tracked { address: path.address, tracking: Box::new(tracking), point });
+        end(medium, path, point)
+    }
+
+    /// Adds what a medium emits on the way of a path. Where no path goes on, that is left out, as in pbrt.
+    fn add_emission_of_medium<P: Probe>(&self, path: &Path, light: Spectrum, output: &mut StepOutput<'_, P>) {
         if path.depth < self.depth {
-            output.add(path, Term::Medium, path.beta * medium.emitted(limit));
+            output.add(path, Term::Medium, light);
         }
-        let Some(phase) = medium.phase else { return Traveled::Arrived(output.absorbed(world, path, hit)) };
-        let flight = Flight::sample(&medium, path.beta, limit, stream.two(dimension::FLIGHT));
-        let way = Vec3::from_array(path.ray.direction).normalize() * flight.distance;
-        let point = Vec3::from_array(path.ray.origin) + way;
-        output.probe.notice(|| Event::Flown {
-            address: path.address,
-            interior: path.interior,
-            flight: Box::new(flight),
-            point,
-        });
-        let path = Path { beta: flight.after, ..*path };
-        match flight.is_scattered() {
-            true => Traveled::Scattered(MediumVertex { path, point, phase }),
-            false => Traveled::Arrived(path),
-        }
+    }
+}
+
+/// The end of a way: at the point where the medium scatters the path, if there is one.
+fn end(medium: &Medium, path: Path, point: Option<Vec3>) -> Traveled {
+    match (point, medium.phase()) {
+        (Some(point), Some(phase)) => Traveled::Scattered(MediumVertex { path, point, phase }),
+        _ => Traveled::Arrived(path),
     }
 }

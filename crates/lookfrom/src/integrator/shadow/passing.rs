@@ -55,7 +55,7 @@ pub(super) fn let_through<P: Probe>(
                 let passed = match surface.as_ref() {
                     Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
                     None if hit.is_hit() => Spectrum::BLACK,
-                    None => light.reached(world, &ray, mode),
+                    None => light.transmittance(world, &ray, ray.t_max, mode),
                 };
                 probe.notice(|| Event::Shadow { shadow: light.of(ray, origin_primitive), hit, passed });
                 light.contribution *= passed;

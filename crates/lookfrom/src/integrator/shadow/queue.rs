@@ -6,6 +6,7 @@ use lookfrom_bvh::{OriginPrimitive, Ray};
 use super::Shadow;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::Term;
+use crate::medium::Way;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
@@ -55,25 +56,27 @@ impl ShadowLight {
         Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering }
     }
 
-    /// Transmittance of the medium up to a hit.
+    /// Transmittance of the medium up to a hit, or on the rest of the way.
     #[inline]
     pub(super) fn transmittance(&self, world: &World, ray: &Ray, t: f32, mode: &SpectralMode) -> Spectrum {
         if self.interior.is_empty() {
             return mode.one();
         }
-        world.transmittance(self.interior, Vec3::from_array(ray.direction).length() * t, mode)
+        world.transmittance(self.interior, &way(world, ray, t, self.interior), mode)
     }
+}
 
-    /// Transmittance of the medium on the rest of the way.
-    #[inline]
-    pub(super) fn reached(&self, world: &World, ray: &Ray, mode: &SpectralMode) -> Spectrum {
-        if self.interior.is_empty() {
-            return mode.one();
-        }
-        let length = Vec3::from_array(ray.direction).length() * ray.t_max;
-        // Lights infinitely far emit light from twice the scene's radius away, as far as media are concerned, as in
-        // pbrt.
-        let is_far = length.is_infinite() && self.interior.space().is_some();
-        world.transmittance(self.interior, if is_far { 2.0 * world.radius } else { length }, mode)
+impl Shadow {
+    /// The way of the ray as far as `t`, as media attenuate light on it.
+    pub(crate) fn way(&self, world: &World, t: f32) -> Way {
+        way(world, &self.ray, t, self.interior)
     }
+}
+
+/// The way of a shadow ray as far as `t`. Lights infinitely far emit light from twice the scene's radius away, as far as media are
+/// concerned, as in pbrt.
+fn way(world: &World, ray: &Ray, t: f32, interior: InteriorStack) -> Way {
+    let length = Vec3::from_array(ray.direction).length() * t;
+    let is_far = length.is_infinite() && interior.space().is_some();
+    Way::new(ray, if is_far { 2.0 * world.radius } else { length })
 }

@@ -83,7 +83,7 @@ impl Uplifts {
 }
 
 /// The spectrum that a colour is uplifted to, of an illuminant over that of daylight. A grey needs no table.
-pub(super) fn uplift(spectrum_type: SpectrumType, rgb: [f32; 3]) -> Unbounded {
+pub(crate) fn uplift(spectrum_type: SpectrumType, rgb: [f32; 3]) -> Unbounded {
     let rgb = within(spectrum_type, rgb);
     match spectrum_type {
         _ if rgb[0] == rgb[1] && rgb[1] == rgb[2] => Unbounded::gray(rgb[0]),

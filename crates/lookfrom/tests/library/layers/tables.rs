@@ -17,6 +17,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("clock", ""),
     ("parallel", ""),
     ("hash", ""),
+    ("random", "hash"),
     ("vector", ""),
     ("elementary", ""),
     ("optics", "vector"),
@@ -46,9 +47,10 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "distribution elementary lanes math parallel points sampler primitive spectrum interaction \
          texture vector warp",
     ),
+    ("medium", "bsdf color hash light noise random spectrum texture"),
     (
         "world",
-        "bsdf distribution footprint interior_stack light material math points primitive spectrum \
+        "bsdf distribution footprint interior_stack light material math medium points primitive spectrum \
          interaction texture warp",
     ),
     ("aov", "accumulator fixed_point interaction lanes material sampler vector world"),
@@ -59,8 +61,8 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("view", "camera"),
     (
         "integrator",
-        "aov bsdf hash interior_stack lanes light material math optics points sampler primitive spectrum \
-         interaction texture vector warp world",
+        "aov bsdf hash interior_stack lanes light material math medium optics points random sampler primitive \
+         spectrum interaction texture vector warp world",
     ),
     (
         "render",
@@ -69,7 +71,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ),
     (
         "inspect",
-        "bsdf camera develop film integrator light material math render primitive spectrum interaction \
+        "bsdf camera develop film integrator light material math medium render primitive spectrum interaction \
          texture world",
     ),
     ("session", "math clock color denoise develop exposure film inspect integrator render view world"),
@@ -114,7 +116,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-scene",
         rungs: &[
             "remedy",
-            "error json parallel plural stamps suggest variables",
+            "error grid json parallel plural stamps suggest variables",
             "budget camera material warning",
             "contents files medium",
             "digest inputs packed spectrum",

@@ -3,12 +3,11 @@
 use super::*;
 
 /// A medium whose lanes differ widely, the last without extinction.
-fn medium() -> MediumCoefficients {
-    MediumCoefficients {
+fn medium() -> Coefficients {
+    Coefficients {
         absorption: Spectrum([0.5, 0.0, 1.0, 0.0]),
         scattering: Spectrum([0.5, 4.0, 0.2, 0.0]),
         emission: Spectrum::BLACK,
-        phase: None,
     }
 }
 
@@ -69,7 +68,7 @@ fn light_is_kept_in_the_mean() {
 
 #[test]
 fn a_medium_that_absorbs_nothing_keeps_the_sum_of_lanes() {
-    let medium = MediumCoefficients { absorption: Spectrum::BLACK, ..medium() };
+    let medium = Coefficients { absorption: Spectrum::BLACK, ..medium() };
     for u in [[0.0, 0.0], [0.1, 0.3], [0.4, 0.999], [0.9, 0.5], [0.99, 0.2]] {
         let flight = Flight::sample(&medium, BETA, 0.7, u);
         let [before, after] = [flight.before, flight.after].map(|beta| beta.0.iter().sum::<f32>());
@@ -81,7 +80,7 @@ fn a_medium_that_absorbs_nothing_keeps_the_sum_of_lanes() {
 fn extremes_stay_finite() {
     for sigma in [0.0, 1e-30, 1e18] {
         let even = Spectrum([sigma; 4]);
-        let medium = MediumCoefficients { absorption: Spectrum::BLACK, scattering: even, ..medium() };
+        let medium = Coefficients { absorption: Spectrum::BLACK, scattering: even, ..medium() };
         for limit in [1e-30, 1.0, f32::INFINITY] {
             for u in [0.0, 0.5, 1.0 - f32::EPSILON / 2.0] {
                 let flight = Flight::sample(&medium, BETA, limit, [u, u]);

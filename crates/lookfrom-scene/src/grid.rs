@@ -1,0 +1,213 @@
+//! Grids of values in space: densities, temperatures, colours of media.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+/// Values at the centres of the cells of a grid, in bricks of 8³ cells. Outside of the grid, and in bricks that were never
+/// written, they are zero; such bricks take no memory.
+#[derive(Clone, Debug, Default)]
+pub struct Grid<T> {
+    size: [u32; 3],
+    /// Number of bricks along x, y and z.
+    count: [u32; 3],
+    /// By bricks, x fastest: the number of their block of values, or [`EMPTY`].
+    bricks: Vec<u32>,
+    /// Blocks of [`BRICK`]³ values, x fastest.
+    values: Vec<T>,
+}
+
+/// A grid in the box that it fills.
+#[derive(Clone, Debug)]
+pub struct Placed<T> {
+    /// The values.
+    pub grid: Arc<Grid<T>>,
+    /// The corners of the box, in medium space.
+    pub bounds: [Vec3; 2],
+}
+
+/// Number of cells along a side of a brick.
+pub const BRICK: u32 = 8;
+
+/// Number of values of a brick.
+const BLOCK: usize = (BRICK * BRICK * BRICK) as usize;
+
+/// A brick without values.
+const EMPTY: u32 = u32::MAX;
+
+/// Largest number of cells along an axis: coordinates of cells are exact in `f32`.
+const MOST_CELLS: u32 = 1 << 20;
+
+/// Largest number of bricks: their table takes 1 GiB.
+const MOST_BRICKS: u64 = 1 << 28;
+
+impl<T: Copy + Default + PartialEq> Grid<T> {
+    /// A grid of zeros; `None` if it is empty, has more than 2²⁰ cells along an axis, or more than 2²⁸ bricks.
+    pub fn new(size: [u32; 3]) -> Option<Self> {
+        let count = size.map(|cells| cells.div_ceil(BRICK));
+        let bricks = count.iter().try_fold(1_u64, |product, &bricks| product.checked_mul(bricks.into()))?;
+        if size.iter().any(|&cells| cells == 0 || cells > MOST_CELLS) || bricks > MOST_BRICKS {
+            return None;
+        }
+        Some(Self { size, count, bricks: vec![EMPTY; bricks as usize], values: Vec::new() })
+    }
+
+    /// A grid of all its values, x fastest. `None` as in [`Grid::new`], or if there are more or fewer of them.
+    pub fn from_values(size: [u32; 3], values: &[T]) -> Option<Self> {
+        let mut grid = Self::new(size)?;
+        let [width, height, depth] = size.map(|cells| cells as usize);
+        if width.checked_mul(height)?.checked_mul(depth)? != values.len() {
+            return None;
+        }
+        let rows = values.chunks_exact(width).zip((0..depth).flat_map(|z| (0..height).map(move |y| (y, z))));
+        for (row, (y, z)) in rows {
+            for (x, &value) in row.iter().enumerate().filter(|(_, value)| **value != T::default()) {
+                grid.set([x as u32, y as u32, z as u32], value);
+            }
+        }
+        Some(grid)
+    }
+
+    /// Writes the value of a cell; nothing happens outside of the grid.
+    pub fn set(&mut self, cell: [u32; 3], value: T) {
+        if (0..3).any(|axis| cell[axis] >= self.size[axis]) {
+            return;
+        }
+        let block = &mut self.bricks[brick(self.count, cell)];
+        if *block == EMPTY {
+            *block = (self.values.len() / BLOCK) as u32;
+            self.values.resize(self.values.len() + BLOCK, T::default());
+        }
+        self.values[*block as usize * BLOCK + place(cell)] = value;
+    }
+
+    /// The value of a cell: zero outside of the grid.
+    #[inline]
+    pub fn value(&self, cell: [i32; 3]) -> T {
+        // Negative coordinates are large ones.
+        let cell = cell.map(|coordinate| coordinate as u32);
+        if (0..3).any(|axis| cell[axis] >= self.size[axis]) {
+            return T::default();
+        }
+        match self.bricks[brick(self.count, cell)] {
+            EMPTY => T::default(),
+            block => self.values[block as usize * BLOCK + place(cell)],
+        }
+    }
+
+    /// The values of eight neighbouring cells, x fastest, of which the first has the least coordinates.
+    #[inline]
+    pub fn corners(&self, first: [i32; 3]) -> [T; 8] {
+        let cell = first.map(|coordinate| coordinate as u32);
+        let is_within = (0..3).all(|axis| cell[axis] < self.size[axis] && cell[axis] % BRICK != BRICK - 1);
+        if is_within {
+            let block = self.bricks[brick(self.count, cell)];
+            if block == EMPTY {
+                return [T::default(); 8];
+            }
+            let first = block as usize * BLOCK + place(cell);
+            let values = &self.values[first..];
+            let (y, z) = (BRICK as usize, (BRICK * BRICK) as usize);
+            return [0, 1, y, y + 1, z, z + 1, z + y, z + y + 1].map(|offset| values[offset]);
+        }
+        let [x, y, z] = first;
+        std::array::from_fn(|corner| {
+            let step = |bit: usize| (corner >> bit & 1) as i32;
+            self.value([x.wrapping_add(step(0)), y.wrapping_add(step(1)), z.wrapping_add(step(2))])
+        })
+    }
+
+    /// Calls a function with all cells that are stored, and their values; those that are left out are zero.
+    pub fn for_each(&self, mut of: impl FnMut([u32; 3], T)) {
+        let [width, height, _] = self.count.map(|bricks| bricks as usize);
+        for (index, &block) in self.bricks.iter().enumerate().filter(|(_, block)| **block != EMPTY) {
+            let first = [index % width, index / width % height, index / width / height]
+                .map(|brick| brick as u32 * BRICK);
+            let values = &self.values[block as usize * BLOCK..][..BLOCK];
+            for (place, &value) in (0..).zip(values) {
+                let offset = [place % BRICK, place / BRICK % BRICK, place / BRICK / BRICK];
+                let cell = std::array::from_fn(|axis| first[axis] + offset[axis]);
+                if (0..3).all(|axis| cell[axis] < self.size[axis]) {
+                    of(cell, value);
+                }
+            }
+        }
+    }
+
+    /// Number of cells along x, y and z.
+    pub fn size(&self) -> [u32; 3] {
+        self.size
+    }
+
+    /// All values that are stored, in no order: those that are missing are zero.
+    pub fn stored(&self) -> &[T] {
+        &self.values
+    }
+
+    /// Memory in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.bricks) + size_of_val(&*self.values)
+    }
+
+    /// The same grid of other values; zero must become zero.
+    pub fn map<U>(&self, of: impl Fn(T) -> U) -> Grid<U> {
+        let values = self.values.iter().map(|value| of(*value)).collect();
+        Grid { size: self.size, count: self.count, bricks: self.bricks.clone(), values }
+    }
+}
+
+/// The index of the brick of a cell.
+#[inline(always)]
+fn brick(count: [u32; 3], cell: [u32; 3]) -> usize {
+    let [x, y, z] = cell.map(|coordinate| (coordinate / BRICK) as usize);
+    x + count[0] as usize * (y + count[1] as usize * z)
+}
+
+/// The place of a cell in its block.
+#[inline(always)]
+fn place(cell: [u32; 3]) -> usize {
+    let [x, y, z] = cell.map(|coordinate| coordinate % BRICK);
+    (x + BRICK * (y + BRICK * z)) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_where_they_were_written() {
+        let size = [19, 8, 13];
+        let count = size.iter().product::<u32>() as usize;
+        let values: Vec<f32> = (0..count).map(|index| (index as f32 * 0.37).sin()).collect();
+        let grid = Grid::from_values(size, &values).unwrap();
+        let at = |[x, y, z]: [i32; 3]| {
+            let inside = [x, y, z].iter().zip(size).all(|(&at, cells)| (0..cells as i32).contains(&at));
+            if inside { values[(x + 19 * (y + 8 * z)) as usize] } else { 0.0 }
+        };
+        for z in -2..15 {
+            for y in -2..10 {
+                for x in -2..21 {
+                    assert_eq!(grid.value([x, y, z]), at([x, y, z]));
+                    let corners = grid.corners([x, y, z]);
+                    for (corner, value) in corners.into_iter().enumerate() {
+                        let step = |bit: usize| (corner >> bit & 1) as i32;
+                        assert_eq!(value, at([x + step(0), y + step(1), z + step(2)]));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_empty_takes_no_memory_and_what_is_too_large_is_refused() {
+        let mut sparse = Grid::<f32>::new([800, 800, 800]).unwrap();
+        sparse.set([500, 3, 799], 2.0);
+        assert_eq!(sparse.value([500, 3, 799]), 2.0);
+        assert!(sparse.bytes() < 5_000_000, "{}", sparse.bytes());
+        assert!(Grid::<f32>::new([0, 1, 1]).is_none());
+        assert!(Grid::<f32>::new([u32::MAX, 1, 1]).is_none());
+        assert!(Grid::<f32>::new([1 << 20, 1 << 20, 1 << 20]).is_none());
+        assert!(Grid::from_values([2, 2, 2], &[1.0; 7]).is_none());
+        assert!(Grid::from_values([1 << 16, 1 << 16, 1], &[1.0]).is_none());
+    }
+}
