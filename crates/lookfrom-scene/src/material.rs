@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::error::Location;
-use crate::scene::{CurveId, ImageId, MaterialId, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, MediumId, TextureId};
 
 /// A colour, constant or textured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,12 +45,14 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
+    /// What closed bodies of it are filled with, besides what absorbs by the material itself.
+    pub medium: Option<MediumId>,
 }
 
 impl Material {
     /// A material without bump mapping.
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
-        Self { name: name.into(), at, kind, bump_mapping: BumpMapping::None }
+        Self { name: name.into(), at, kind, bump_mapping: BumpMapping::None, medium: None }
     }
 
     /// Whether the material depends on the direction of u on the surface.

@@ -91,6 +91,21 @@ pub struct Temperature {
 }
 
 impl Medium {
+    /// A medium that does nothing.
+    pub fn clear(name: impl Into<String>, at: Location) -> Self {
+        Self {
+            name: name.into(),
+            at,
+            absorption: Color::BLACK,
+            scattering: Color::BLACK,
+            g: 0.0,
+            scale: 1.0,
+            emission: Color::BLACK,
+            emission_scale: 1.0,
+            variation: None,
+        }
+    }
+
     /// Whether it may scatter light.
     pub fn scatters(&self) -> bool {
         let has_color = match self.variation.as_ref().map(|variation| &variation.density) {

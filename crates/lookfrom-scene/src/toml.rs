@@ -21,6 +21,7 @@ mod keyframes;
 mod light;
 mod mapping;
 mod material;
+mod medium;
 mod mesh;
 mod model;
 mod object;
@@ -58,13 +59,14 @@ use self::table::{SCENE, Table};
 use self::value::Value;
 use self::variables::Variables;
 use self::vocabulary::TOP;
+use crate::camera::Camera;
 use crate::error::{Error, Location, Result};
 use crate::files::{ImportOptions, LoadContext};
 use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
 use crate::material::MaterialKind;
-use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
@@ -92,6 +94,8 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         scene_file: Location::file(path),
         materials: BTreeMap::new(),
         textures: BTreeMap::new(),
+        media: BTreeMap::new(),
+        filled: BTreeMap::new(),
         objects: BTreeMap::new(),
         images: BTreeMap::new(),
         curves: BTreeMap::new(),
@@ -115,12 +119,14 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
     if let Some(error) = Error::all(reader.errors) {
         return Err(error);
     }
-    // Only path tracing renders physically based materials completely.
+    // Only path tracing renders physically based materials and media completely.
     let mut scene = reader.scene;
     scene.contents.duration = reader.variables.duration();
     scene.contents.variables = reader.variables.into_all();
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
-    if !reader.names_integrator && scene.materials.iter().any(|material| is_physical(&material.kind)) {
+    if !reader.names_integrator
+        && (!scene.media.is_empty() || scene.materials.iter().any(|material| is_physical(&material.kind)))
+    {
         scene.render.integrator = Integrator::Path;
     }
     Ok(scene)
@@ -140,6 +146,9 @@ struct Reader<'s, 'f> {
     time: Option<f64>,
     materials: BTreeMap<String, MaterialId>,
     textures: BTreeMap<String, TextureId>,
+    media: BTreeMap<String, MediumId>,
+    /// Materials of bodies that are filled with a medium, by their own.
+    filled: BTreeMap<(Option<MaterialId>, MediumId), MaterialId>,
     objects: BTreeMap<String, ObjectId>,
     /// By file, and whether it contains data rather than colours.
     images: BTreeMap<(PathBuf, Option<String>, bool), ImageId>,
@@ -213,14 +222,17 @@ impl Reader<'_, '_> {
 
     fn tables(&mut self, top: &Table<'_>) {
         top.allow(&[TOP, &shape::kinds()]);
-        self.knows_all_names &= !top.means(&["import", "materials", "textures", "objects"]);
+        self.knows_all_names &= !top.means(&["import", "materials", "media", "textures", "objects"]);
         if let Some(value) = top.find("import") {
             self.imports(value);
         }
-        self.settings(top);
         if let Some(value) = top.find("textures") {
             self.read_textures(value);
         }
+        if let Some(value) = top.find("media") {
+            self.read_media(value);
+        }
+        self.settings(top);
         if let Some(value) = top.find("materials") {
             self.read_materials(value);
         }
@@ -241,7 +253,8 @@ impl Reader<'_, '_> {
     fn settings(&mut self, top: &Table<'_>) {
         if let Some(table) = top.maybe("camera", |value| value.table("[camera]")) {
             let camera = camera::camera(&table).map_err(|error| table.note(error));
-            self.scene.camera = camera.ok();
+            let medium = table.maybe("medium", |value| self.medium_named(value));
+            self.scene.camera = camera.ok().map(|camera| Camera { medium, ..camera });
         }
         if let Some(table) = top.maybe("image", |value| value.table("[image]")) {
             self.scene.image = settings::image(&table);
@@ -348,6 +361,7 @@ impl Reader<'_, '_> {
             let count = names().count();
             let example = match what {
                 "object" => format!("[[objects.{name}.sphere]]"),
+                "medium" => format!("[media.{name}]"),
                 _ => format!("[{what}s.{name}]"),
             };
             match nearest(name, names().take(MOST_COMPARED)) {

@@ -20,6 +20,7 @@ pub(super) const KEYS: &[&str] = &[
     "focus",
     "window",
     "distance",
+    "medium",
 ];
 /// The keys of `window`.
 pub(super) const WINDOW: &[&str] = &["x", "y"];

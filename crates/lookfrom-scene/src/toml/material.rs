@@ -61,7 +61,7 @@ pub(super) const KEYS: Kinds = &[
     ("interface", &[]),
 ];
 /// Keys of all materials.
-pub(super) const COMMON: &[&str] = &["type", "emission", "power", "two_sided"];
+pub(super) const COMMON: &[&str] = &["type", "medium", "emission", "power", "two_sided"];
 
 /// The default material of shapes.
 pub(super) const DEFAULT: &str = "default";
@@ -109,6 +109,7 @@ impl Reader<'_, '_> {
         };
         self.scene.materials[id.index()].kind = kind;
         self.scene.materials[id.index()].bump_mapping = self.bump_mapping(table);
+        self.scene.materials[id.index()].medium = table.maybe("medium", |value| self.medium_named(value));
         if let Some(glow) = self.emission(table) {
             self.glows.insert(id, glow);
         }

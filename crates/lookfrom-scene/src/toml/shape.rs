@@ -50,7 +50,7 @@ pub(super) const KEYS: Kinds = &[
 ];
 /// Keys of all shapes.
 pub(super) const COMMON: &[&str] =
-    &["name", "material", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
+    &["name", "material", "medium", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
 /// Keys of all shapes that are parts of a solid.
 pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "power", "two_sided", "alpha"];
 /// The keys of `[[instance]]`.
@@ -87,8 +87,12 @@ impl Reader<'_, '_> {
 
     fn shape(&mut self, kind: &str, table: &Table<'_>, shapes: &mut Vec<Shape>) -> Result<()> {
         let reverse_orientation = table.or("reverse_orientation", false, Value::boolean);
+        let medium = table.maybe("medium", |value| self.medium_named(value));
         for part in self.parts(kind, table)? {
-            let material = part.material.unwrap_or_else(|| self.default_material());
+            let material = match medium {
+                Some(medium) => self.filled(part.material, medium),
+                None => part.material.unwrap_or_else(|| self.default_material()),
+            };
             let glow = || self.glows.get(&material).copied().filter(|_| part.material.is_none());
             shapes.push(Shape {
                 name: part.name,

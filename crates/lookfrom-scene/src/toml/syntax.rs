@@ -56,7 +56,10 @@ pub(super) fn readable(document: &Document) -> Readable {
 fn gives_names(section: &str) -> bool {
     section.lines().map(str::trim_start).any(|line| {
         let is_header = line.starts_with('[');
-        is_header && ["materials", "textures", "objects", "variables"].iter().any(|word| line.contains(word))
+        is_header
+            && ["materials", "media", "textures", "objects", "variables"]
+                .iter()
+                .any(|word| line.contains(word))
             || line.starts_with("import")
     })
 }

@@ -1,7 +1,9 @@
 //! The list of all tables and keys of the format, for documentation, editors and tests.
 
 use super::table::Kinds;
-use super::{camera, keyframes, light, mapping, material, settings, shape, spectrum, texture, transform};
+use super::{
+    camera, keyframes, light, mapping, material, medium, settings, shape, spectrum, texture, transform,
+};
 
 /// The top-level keys of a file, except the kinds of shapes.
 pub(super) const TOP: &[&str] = &[
@@ -11,6 +13,7 @@ pub(super) const TOP: &[&str] = &[
     "image",
     "render",
     "materials",
+    "media",
     "textures",
     "objects",
     "instance",
@@ -32,6 +35,8 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("[render]".to_owned(), settings::RENDER.to_vec()),
         ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
         ("a picture".to_owned(), texture::PICTURE.to_vec()),
+        ("[media.NAME]".to_owned(), [medium::KEYS, transform::KEYS].concat()),
+        ("numbers by the place".to_owned(), medium::VOLUME.to_vec()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
         ("[[solid.of]]".to_owned(), [shape::OPERAND, transform::KEYS].concat()),

@@ -10,6 +10,7 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
         let part = Part::new(scene, &material.at, "material").numbered(index, Some(&material.name));
         check_kind(&part, &material.kind)?;
         check_bump_mapping(&part, &material.bump_mapping)?;
+        part.medium(material.medium)?;
     }
     Ok(())
 }

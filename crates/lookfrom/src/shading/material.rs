@@ -215,8 +215,8 @@ impl Material {
     pub fn is_body(&self) -> bool {
         match &self.kind {
             MaterialKind::Whitted(_) => true,
-            MaterialKind::Principled(look) => look.is_solid,
-            _ => false,
+            MaterialKind::Principled(look) => look.is_solid || self.medium.is_some(),
+            _ => self.medium.is_some(),
         }
     }
 }

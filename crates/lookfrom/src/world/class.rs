@@ -53,7 +53,9 @@ impl World {
             Primitives::Mesh(mesh) => {
                 let binding = &mesh.binding;
                 let is_whole = binding.is_only_material() && !(self.has_open_fronts && binding.single_sided);
-                let bsdf = self.materials[binding.material as usize].class().filter(|_| is_whole);
+                let material = &self.materials[binding.material as usize];
+                // Paths into what fills a body leave its surface one by one.
+                let bsdf = material.class().filter(|_| is_whole && material.medium.is_none());
                 Class::Mesh { bsdf, bare: bare(binding) }
             }
             Primitives::Spheres(spheres) => {

@@ -208,7 +208,8 @@ impl World {
         for written in written_materials {
             let (mut material, absorption) = compiler.compile(&written);
             // An absorbing body is filled with a medium of its own.
-            if absorption != [0.0; 3] {
+            material.medium = written.medium.map(|id| id.0);
+            if absorption != [0.0; 3] && material.medium.is_none() {
                 material.medium = Some(media.len() as u32);
                 media.push(Medium::absorbing(&textures, absorption));
             }

@@ -1,0 +1,201 @@
+//! `[media]`: participating media, and the bodies that they fill.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::evaluate::{Allowance, evaluate};
+use super::expression::{Fault, parse};
+use super::quantity::Quantity;
+use super::table::Table;
+use super::value::Value;
+use super::{Reader, transform};
+use crate::error::Result;
+use crate::grid::{Grid, Placed};
+use crate::material::{Color, Material, MaterialKind, Scalar};
+use crate::medium::{Density, Medium, Temperature, Variation};
+use crate::scene::{MaterialId, MediumId};
+use crate::spectrum::observer;
+
+/// The keys of media, besides those of transforms.
+pub(super) const KEYS: &[&str] =
+    &["absorption", "scattering", "g", "density", "max_density", "emission", "temperature"];
+
+/// The keys of numbers by the place.
+pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
+
+/// Number of cells along the longest side of a box where a file does not set it.
+const CELLS: u64 = 64;
+
+/// The names of coordinates in formulas.
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+
+impl Reader<'_, '_> {
+    /// Reads `[media]`.
+    pub(super) fn read_media(&mut self, value: Value<'_>) {
+        self.knows_all_names &= value.is_table();
+        for entry in value.named("[media]") {
+            let name = entry.key();
+            let id = MediumId(self.scene.media.len() as u32);
+            if let Some(before) = self.media.insert(name.to_owned(), id) {
+                entry.note(super::twice(entry, "medium", &self.scene.media[before.index()].at));
+            }
+            let table = entry.table(format!("[media.{name}]"));
+            let medium = match entry.noting(table.map(Some), None) {
+                Some(table) => self.medium(name, &table),
+                None => Medium::clear(name, entry.at()),
+            };
+            self.scene.media.push(medium);
+        }
+    }
+
+    fn medium(&mut self, name: &str, table: &Table<'_>) -> Medium {
+        table.allow(&[KEYS, transform::KEYS]);
+        let mut medium = Medium::clear(name, table.at());
+        medium.absorption = table.or("absorption", Color::BLACK, |value| self.coefficient(value));
+        medium.scattering = table.or("scattering", Color::BLACK, |value| self.coefficient(value));
+        medium.g = table.or("g", 0.0, |value| {
+            value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
+        });
+        (medium.emission, medium.emission_scale) =
+            table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false));
+        let density =
+            table.find("density").map(|value| value.noting(self.density(value, table), Number::Even(1.0)));
+        let temperature = table.maybe("temperature", volume);
+        if temperature.is_some() {
+            // Blackbodies are relative to their maximum: their light is not that of luminance 1.
+            let factor =
+                table.or("emission", 1.0, |value| value.single_where("a factor of at least 0", |v| v >= 0.0));
+            medium.emission_scale = factor * observer::Y_INTEGRAL as f32;
+            medium.emission = Color::BLACK;
+        }
+        let density = match density {
+            Some(Number::Even(density)) => {
+                medium.scale = density;
+                None
+            }
+            Some(Number::Varying(density)) => Some(density),
+            None => None,
+        };
+        if density.is_none() && temperature.is_none() {
+            return medium;
+        }
+        let even = Density::Texture { of: Scalar::Value(1.0), most: 1.0 };
+        medium.variation = Some(Variation {
+            world_from_medium: transform::world_from_object(table),
+            bounds: match &density {
+                Some(Density::Grid(placed)) => Some(placed.bounds),
+                _ => temperature.as_ref().map(|placed| placed.bounds),
+            },
+            density: density.unwrap_or(even),
+            emission_scale: None,
+            temperature: temperature.map(|grid| Temperature { grid, offset: 0.0, scale: 1.0 }),
+        });
+        medium
+    }
+
+    /// A coefficient per unit of length: the same everywhere.
+    fn coefficient(&mut self, value: Value<'_>) -> Result<Color> {
+        match self.color(value)? {
+            Color::Texture(_) => Err(value
+                .error(format!("`{}` is a texture; expected a number or a colour", value.key()))
+                .hint("what varies is the `density`")),
+            color => Ok(color),
+        }
+    }
+
+    /// A density: a number, a texture, or numbers by the place.
+    fn density(&mut self, value: Value<'_>, table: &Table<'_>) -> Result<Number> {
+        if value.is_table() && !value.table("a density")?.has("type") {
+            return Ok(Number::Varying(Density::Grid(volume(value)?)));
+        }
+        let most = table.or("max_density", 1.0, |value| {
+            value.single_where("a number greater than 0", |most| most > 0.0 && most.is_finite())
+        });
+        Ok(match self.scalar_where(value, "a number of at least 0", |density| density >= 0.0)? {
+            Scalar::Value(density) => Number::Even(density),
+            of => Number::Varying(Density::Texture { of, most }),
+        })
+    }
+
+    /// The medium with the name in `value`.
+    pub(super) fn medium_named(&self, value: Value<'_>) -> Result<MediumId> {
+        let name = value.text("the name of a medium")?;
+        self.named(&self.media, "medium", value, name)
+    }
+
+    /// A material, or where there is none an interface, of bodies that are filled with a medium.
+    pub(super) fn filled(&mut self, material: Option<MaterialId>, medium: MediumId) -> MaterialId {
+        if let Some(&id) = self.filled.get(&(material, medium)) {
+            return id;
+        }
+        let written = match material {
+            Some(id) => self.scene.materials[id.index()].clone(),
+            None => {
+                let Medium { name, at, .. } = &self.scene.media[medium.index()];
+                Material::new(name.clone(), at.clone(), MaterialKind::Interface)
+            }
+        };
+        let id = MaterialId(self.scene.materials.len() as u32);
+        self.scene.materials.push(Material { medium: Some(medium), ..written });
+        self.filled.insert((material, medium), id);
+        id
+    }
+}
+
+/// A number that may vary.
+enum Number {
+    Even(f32),
+    Varying(Density),
+}
+
+/// Numbers by the place: a formula in a box, at the centres of its cells.
+fn volume(value: Value<'_>) -> Result<Placed<f32>> {
+    let table = value.table("numbers by the place")?;
+    table.allow(&[VOLUME]);
+    let min = table.or("min", DVec3::NEG_ONE, Value::vector);
+    let max = table.or("max", DVec3::ONE, Value::vector);
+    let cells = table.or("cells", CELLS, |value| value.integer(1, 512));
+    let formula =
+        table.need("formula", "\"1 - sqrt(x*x + y*y + z*z)\"", "0", |value| value.text("a formula"));
+    table.sound(&["min", "max", "cells", "formula"])?;
+    if min.cmpge(max).any() {
+        return Err(table.error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis")));
+    }
+    let size = max - min;
+    let side = size.max_element() / cells as f64;
+    let count = size.to_array().map(|length| (length / side).ceil().clamp(1.0, cells as f64) as u32);
+    let fault = |Fault { at, message, hint }| {
+        let error = table.error_at("formula", format!("at byte {at}: {message}"));
+        match hint {
+            Some(hint) => error.hint(hint),
+            None => error.hint("x, y and z are the coordinates; functions are those of variables"),
+        }
+    };
+    let expression = parse(formula, 0).map_err(fault)?;
+    let mut grid = Grid::new(count).ok_or_else(|| table.error_at("cells", "too many cells".to_owned()))?;
+    for z in 0..count[2] {
+        for y in 0..count[1] {
+            for x in 0..count[0] {
+                let cell = [x, y, z];
+                let place: [f64; 3] = std::array::from_fn(|axis| {
+                    min[axis] + size[axis] * (f64::from(cell[axis]) + 0.5) / f64::from(count[axis])
+                });
+                let named = |name: &str, at: usize| match COORDINATES.iter().position(|axis| *axis == name) {
+                    Some(axis) => Ok(Quantity::Number(place[axis])),
+                    None => Err(Fault::new(at, format!("{name:?} is no coordinate"))),
+                };
+                match evaluate(&expression, &named, &Allowance::default()).map_err(fault)? {
+                    // What is negative, or no number, is nothing.
+                    Quantity::Number(number) if number > 0.0 => grid.set(cell, (number as f32).min(f32::MAX)),
+                    Quantity::Number(_) => {}
+                    other => {
+                        let message = format!("it is {}; expected a number", other.what());
+                        return Err(table.error_at("formula", message));
+                    }
+                }
+            }
+        }
+    }
+    Ok(Placed { grid: Arc::new(grid), bounds: [min.as_vec3(), max.as_vec3()] })
+}
