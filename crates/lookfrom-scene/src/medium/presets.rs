@@ -4,6 +4,8 @@
 //! Properties of Participating Media by Dilution. Both measured reduced scattering coefficients, which belong to a phase
 //! function that is the same in all directions (g = 0).
 
+use crate::material::{Color, SubsurfaceMedium};
+
 /// A measured medium: coefficients in mm⁻¹, for the primaries of Rec. 709.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
@@ -24,6 +26,15 @@ impl Preset {
     /// All of them.
     pub fn all() -> &'static [Self] {
         PRESETS
+    }
+}
+
+impl From<&Preset> for SubsurfaceMedium {
+    fn from(preset: &Preset) -> Self {
+        Self::Coefficients {
+            absorption: Color::Value(preset.absorption),
+            scattering: Color::Value(preset.scattering),
+        }
     }
 }
 
