@@ -1,6 +1,10 @@
 //! Materials: reflectance, transmission and emission of surfaces, and the values that textures may vary.
 
+mod subsurface;
+
 use glam::Vec3;
+
+pub use subsurface::{Subsurface, SubsurfaceMedium};
 
 use crate::error::Location;
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, TextureId};
@@ -63,6 +67,7 @@ impl Material {
                 MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
                     uneven(roughness)
                 }
+                MaterialKind::Subsurface(below) => uneven(&below.roughness),
                 MaterialKind::CoatedDiffuse { coat, .. } => uneven(&coat.roughness),
                 MaterialKind::CoatedConductor { roughness, coat, .. } => {
                     uneven(roughness) || uneven(&coat.roughness)
@@ -157,6 +162,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: Coat,
     },
+    /// Light is scattered below a dielectric surface: skin, wax, marble, milk.
+    Subsurface(Box<Subsurface>),
     /// A stochastic mix: one of two materials is chosen at random at each intersection.
     Mix {
         /// The two materials; neither may contain this one, directly or indirectly.
@@ -213,6 +220,7 @@ impl MaterialKind {
             Self::Principled(look) => {
                 vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
             }
+            Self::Subsurface(below) => below.medium.colors().into(),
             Self::Unlit { color } => vec![*color],
             Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
@@ -255,6 +263,10 @@ impl MaterialKind {
                 ("sheen_color", look.sheen_color),
                 ("diffuse_transmission_color", look.diffuse_transmission_color),
             ],
+            Self::Subsurface(below) => match below.medium {
+                SubsurfaceMedium::Reflectance { reflectance, .. } => vec![("reflectance", reflectance)],
+                SubsurfaceMedium::Coefficients { .. } => Vec::new(),
+            },
             Self::Conductor { metal: Metal::Indices { .. }, .. }
             | Self::Dielectric { .. }
             | Self::ThinDielectric { .. }

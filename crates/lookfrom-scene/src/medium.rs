@@ -1,5 +1,7 @@
 //! Participating media.
 
+pub mod presets;
+
 use glam::{DMat4, Vec3};
 
 use crate::error::Location;

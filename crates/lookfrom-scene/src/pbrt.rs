@@ -23,6 +23,7 @@ mod realistic;
 mod shape;
 mod spectra;
 mod state;
+mod subsurface;
 mod text;
 mod texture;
 mod transform;

@@ -36,6 +36,7 @@ mod shape;
 mod sky;
 mod solid;
 mod spectrum;
+mod subsurface;
 mod synonyms;
 mod syntax;
 mod table;

@@ -230,6 +230,20 @@ export interface Development {
     tonemap: string;
 }
 
+/** A point where light leaves a medium below a surface. */
+export interface Exit {
+    /** q: the density of the point, per area, over all axes and lanes, without the choice among several points. */
+    pdf: number;
+    /** The point, in the world. */
+    point: Vector;
+    /** Q: the probability of its choice among the points where the line meets the material. */
+    probability: number;
+    /** S_p: the part of the light that has entered which leaves there, per area. */
+    sp: Factor;
+    /** The throughput there: `β S_p / (q Q)`. */
+    throughput: Factor;
+}
+
 /** A factor of light, per lane: red, green and blue, or one for each of four wavelengths. */
 export type Factor = number[];
 
@@ -533,6 +547,36 @@ export interface Pixel {
     variance: Vector | null;
 }
 
+/** Subsurface scattering: the path has entered a medium in which light diffuses, and leaves it where a random line meets the same material. The next ray of the report is that line. */
+export interface Probe {
+    /** P: the probability of each lane, by its part of the light that leaves. */
+    choice: Factor;
+    /** How often it meets the material. */
+    count: number;
+    /** One of these points, chosen by the light that leaves there; null where the path ends. */
+    exit: Exit | null;
+    /** The line; null where it would be outside of the sphere in which points are looked for. */
+    segment: ProbeSegment | null;
+    /** β of the path that has entered. */
+    throughput_before: Factor;
+}
+
+/** A line that is searched for the point where light leaves. */
+export interface ProbeSegment {
+    /** The axis of the shading frame along which it is. */
+    axis: "first tangent" | "second tangent" | "normal";
+    /** Its direction, unit length. */
+    direction: Vector;
+    /** Its start, in the world. */
+    from: Vector;
+    /** The index of the lane whose profile sampled its distance. */
+    lane: number;
+    /** Its length. */
+    length: number;
+    /** Its distance from the point where the path has entered. */
+    radius: number;
+}
+
 export type Quadruple = [number, number, number, number];
 
 /** One ray. */
@@ -587,6 +631,8 @@ export interface Ray {
     pdf: number | null;
     /** The continuation of the path where a medium scatters it, even if Russian roulette ends it. */
     phase: Phase | null;
+    /** The search for the point where the path leaves, where it has entered a medium below the surface. */
+    probe: Probe | null;
     /** The BSDF at the hit, along a path. */
     scattering: Scattering | null;
     /** The contribution of this ray and of all rays that come from it. */

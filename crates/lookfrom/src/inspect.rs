@@ -36,9 +36,9 @@ pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
-    CollisionReport, Departure, DevelopmentReport, Factor, FlightReport, Inspection, LiftReport, LightReport,
-    MatrixStep, MetReport, NullReport, PhaseReport, RayReport, SensorReport, ShadowReport, SphereMapping,
-    TrackingReport, WavelengthsReport,
+    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection, LiftReport,
+    LightReport, MatrixStep, MetReport, NullReport, PhaseReport, ProbeReport, ProbeSegmentReport, RayReport,
+    SensorReport, ShadowReport, SphereMapping, TrackingReport, WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,

@@ -393,6 +393,25 @@ class Derivation:
 
 
 @dataclass(frozen=True)
+class Exit:
+    """A point where light leaves a medium below a surface.
+
+    point: The point, in the world.
+    sp: S_p: the part of the light that has entered which leaves there, per area.
+    pdf: q: the density of the point, per area, over all axes and lanes, without the choice among several
+        points.
+    probability: Q: the probability of its choice among the points where the line meets the material.
+    throughput: The throughput there: `β S_p / (q Q)`.
+    """
+
+    point: tuple[float, float, float]
+    sp: tuple[float, ...]
+    pdf: float
+    probability: float
+    throughput: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class Flight:
     """A flight in a homogeneous medium that scatters. The distance is sampled with the extinction of one
     lane, chosen by the throughput.
@@ -728,6 +747,45 @@ class Phase:
 
 
 @dataclass(frozen=True)
+class Probe:
+    """Subsurface scattering: the path has entered a medium in which light diffuses, and leaves it where a
+    random line meets the same material. The next ray of the report is that line.
+
+    throughput_before: β of the path that has entered.
+    choice: P: the probability of each lane, by its part of the light that leaves.
+    segment: The line; null where it would be outside of the sphere in which points are looked for.
+    count: How often it meets the material.
+    exit: One of these points, chosen by the light that leaves there; null where the path ends.
+    """
+
+    throughput_before: tuple[float, ...]
+    choice: tuple[float, ...]
+    segment: ProbeSegment | None
+    count: int
+    exit: Exit | None
+
+
+@dataclass(frozen=True)
+class ProbeSegment:
+    """A line that is searched for the point where light leaves.
+
+    axis: The axis of the shading frame along which it is.
+    lane: The index of the lane whose profile sampled its distance.
+    radius: Its distance from the point where the path has entered.
+    from_: Its start, in the world.
+    direction: Its direction, unit length.
+    length: Its length.
+    """
+
+    axis: str
+    lane: int
+    radius: float
+    from_: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    length: float
+
+
+@dataclass(frozen=True)
 class Ray:
     """One ray.
 
@@ -764,6 +822,7 @@ class Ray:
     light_sample: The light that was sampled at the hit, along a path.
     openness: The shadow ray of ambient occlusion.
     bounce: The continuation of the path, even if Russian roulette ends it.
+    probe: The search for the point where the path leaves, where it has entered a medium below the surface.
     branches: The branches of the tree here, followed or not.
     ends: The reason why the path ends here, if it does.
     added: The contribution of this ray's own hit to the sample.
@@ -797,6 +856,7 @@ class Ray:
     light_sample: LightSample | None
     openness: Shadow | None
     bounce: Bounce | None
+    probe: Probe | None
     branches: list[Branch]
     ends: str | None
     added: Amount

@@ -175,7 +175,7 @@ impl Reader<'_, '_> {
         Ok(Metal::Indices { eta, k })
     }
 
-    fn roughness(
+    pub(super) fn roughness(
         &mut self,
         p: &Parameters,
         [u, v, both]: [&'static str; 3],
@@ -239,23 +239,6 @@ impl Reader<'_, '_> {
             }
         };
         Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })
-    }
-
-    /// A coat over a diffuse base with the colour that subsurface scattering would give.
-    fn subsurface(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let message = "subsurface scattering is not rendered yet: \"coateddiffuse\" is used instead";
-        self.warn_once("subsurface", &p.place, message);
-        p.ignore(&["name", "mfp", "scale", "sigma_a", "sigma_s", "g"]);
-        let reflectance = self.color(p, "reflectance", Color::Value([0.83, 0.79, 0.75]), Reflectance)?;
-        let roughness = self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?;
-        let coat = Coat {
-            eta: self.index_of_refraction(p, "eta", 1.33)?,
-            roughness,
-            max_depth: COAT_DEPTH,
-            estimate: CoatEstimate::Pbrt,
-            ..Coat::default()
-        };
-        Ok(MaterialKind::CoatedDiffuse { reflectance, coat })
     }
 
     fn hair(&mut self, p: &Parameters) -> Result<MaterialKind> {

@@ -13,6 +13,7 @@ use super::text::Place;
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::Color;
+use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Sides, Temperature, Variation};
 use crate::scene::MediumId;
 use crate::spectrum::observer;
@@ -40,7 +41,7 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        if kind == "nanovdb" || p.has("preset") {
+        if kind == "nanovdb" {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
             let warning = Some(Warning::new(&p.place.location(), message));
@@ -65,6 +66,7 @@ impl Reader<'_, '_> {
         let one = Color::Value([1.0; 3]);
         let [absorption, scattering] = match kind {
             "rgbgrid" => [one; 2],
+            "homogeneous" if p.has("preset") => self.preset(p)?,
             _ => [self.color(p, "sigma_a", one, Unbounded)?, self.color(p, "sigma_s", one, Unbounded)?],
         };
         let has_emission = matches!(kind, "homogeneous" | "uniformgrid");
@@ -84,6 +86,15 @@ impl Reader<'_, '_> {
             emission_scale,
             variation: None,
         })
+    }
+
+    /// The coefficients of a medium that was measured, per mm.
+    fn preset(&self, p: &Parameters) -> Result<[Color; 2]> {
+        let name = p.string("preset")?.unwrap_or_default();
+        let known = Preset::all().iter().map(|preset| preset.name);
+        let preset = Preset::named(name).ok_or_else(|| Self::unknown(&p.place, "preset", name, known))?;
+        p.ignore(&["sigma_a", "sigma_s"]);
+        Ok([preset.absorption, preset.scattering].map(Color::Value))
     }
 
     /// A medium that varies in its own space, by default in the unit cube there.

@@ -13,13 +13,14 @@ use super::{Reader, transform};
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Material, MaterialKind, Scalar};
+use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Temperature, Variation};
 use crate::scene::{MaterialId, MediumId};
 use crate::spectrum::observer;
 
 /// The keys of media, besides those of transforms.
 pub(super) const KEYS: &[&str] =
-    &["absorption", "scattering", "g", "density", "max_density", "emission", "temperature"];
+    &["preset", "absorption", "scattering", "g", "density", "max_density", "emission", "temperature"];
 
 /// The keys of numbers by the place.
 pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
@@ -52,8 +53,12 @@ impl Reader<'_, '_> {
     fn medium(&mut self, name: &str, table: &Table<'_>) -> Medium {
         table.allow(&[KEYS, transform::KEYS]);
         let mut medium = Medium::clear(name, table.at());
-        medium.absorption = table.or("absorption", Color::BLACK, |value| self.coefficient(value));
-        medium.scattering = table.or("scattering", Color::BLACK, |value| self.coefficient(value));
+        let names: Vec<_> = Preset::all().iter().map(|preset| (preset.name, preset)).collect();
+        let preset = table.maybe("preset", |value| value.choice(&names));
+        let [absorption, scattering] =
+            preset.map_or([[0.0; 3]; 2], |preset| [preset.absorption, preset.scattering]).map(Color::Value);
+        medium.absorption = table.or("absorption", absorption, |value| self.coefficient(value));
+        medium.scattering = table.or("scattering", scattering, |value| self.coefficient(value));
         medium.g = table.or("g", 0.0, |value| {
             value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
         });

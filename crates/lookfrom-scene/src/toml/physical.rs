@@ -52,6 +52,7 @@ impl Reader<'_, '_> {
                 roughness: self.roughness(table, "base_roughness"),
                 coat: self.coat(table),
             },
+            "subsurface" => MaterialKind::Subsurface(Box::new(self.subsurface(table))),
             "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
             "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {
@@ -121,7 +122,7 @@ impl Reader<'_, '_> {
     }
 
     /// One roughness for all directions, or a list of two along u and v; smooth by default.
-    fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
+    pub(super) fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
         table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
             let [u, v] = if value.is_list() {
                 let [u, v] = value.list_of("a number from 0 to 1, a texture, or two of them, [u, v]")?;

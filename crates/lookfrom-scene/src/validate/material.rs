@@ -2,7 +2,9 @@
 
 use super::Part;
 use crate::error::Result;
-use crate::material::{BumpMapping, Coat, Ior, MaterialKind, NormalTexture, Principled, Roughness, Whitted};
+use crate::material::{
+    BumpMapping, Coat, Ior, MaterialKind, NormalTexture, Principled, Roughness, Subsurface, Whitted,
+};
 use crate::scene::Scene;
 
 pub(super) fn check(scene: &Scene) -> Result<()> {
@@ -38,6 +40,7 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
             part.scalar("amount", *amount)
         }
         MaterialKind::Principled(look) => check_principled(part, look),
+        MaterialKind::Subsurface(below) => check_subsurface(part, below),
         MaterialKind::ShadowCatcher { normal } => part.finite("normal", &normal.to_array().map(f64::from)),
         MaterialKind::Diffuse { .. } | MaterialKind::Unlit { .. } | MaterialKind::Interface => Ok(()),
     }
@@ -86,6 +89,13 @@ fn check_coat(part: &Part<'_>, coat: &Coat) -> Result<()> {
     part.scalar("g", coat.g)?;
     part.number("max_depth", coat.max_depth.into(), "1 to 1048576", (1..=1 << 20).contains(&coat.max_depth))?;
     part.number("samples", coat.samples.into(), "1 to 65536", (1..=1 << 16).contains(&coat.samples))
+}
+
+fn check_subsurface(part: &Part<'_>, below: &Subsurface) -> Result<()> {
+    part.at_least_zero("scale", below.scale.into())?;
+    part.number("g", below.g.into(), "between -1 and 1", below.g.abs() < 1.0)?;
+    part.positive("eta", below.eta.into())?;
+    check_roughness(part, &below.roughness)
 }
 
 fn check_principled(part: &Part<'_>, look: &Principled) -> Result<()> {

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::light::{LightKind, Power, Sky};
-use lookfrom_scene::material::{Color, Energy, Ior, MaterialKind, Metal, Scalar};
+use lookfrom_scene::material::{
+    Color, Energy, Ior, MaterialKind, Metal, Scalar, Subsurface, SubsurfaceMedium,
+};
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
 use lookfrom_scene::settings::{ColorMode, Filter, Integrator, Layers, PixelBounds, Sampler};
@@ -274,18 +276,61 @@ fn what_is_not_rendered_is_warned_of_once() {
         "a.pbrt",
         "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
          MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"fog\" \"\" Shape \"disk\" MediumInterface \"fog\"\n\
-         Material \"hair\" Material \"hair\" Material \"subsurface\" \"float mfp\" 2\n\
+         Material \"hair\" Material \"hair\"\n\
          Shape \"sphere\" \"float raduis\" 2",
     )]);
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
         "a.pbrt:2:1: the medium \"fog\" is not rendered yet: it is treated as a vacuum",
         "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" is used instead",
-        "a.pbrt:3:33: subsurface scattering is not rendered yet: \"coateddiffuse\" is used instead",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);
     assert_eq!(scene.render.samples, 12);
+}
+
+/// The material of the last shape.
+fn subsurface(parameters: &str) -> (Subsurface, Vec<String>) {
+    let (scene, warnings) = read_files(&[(
+        "a.pbrt",
+        &format!("WorldBegin Material \"subsurface\" {parameters} Shape \"sphere\""),
+    )]);
+    let MaterialKind::Subsurface(below) = &scene.materials[1].kind else {
+        panic!("{:?}", scene.materials[1])
+    };
+    ((**below).clone(), warnings)
+}
+
+#[test]
+fn media_below_surfaces_have_names_coefficients_or_effects() {
+    let coefficients = |absorption, scattering| SubsurfaceMedium::Coefficients {
+        absorption: Color::Value(absorption),
+        scattering: Color::Value(scattering),
+    };
+    let (milk, warnings) = subsurface("");
+    assert_eq!((milk.medium, milk.scale, milk.g, milk.eta), (SubsurfaceMedium::MILK, 1.0, 0.0, 1.33));
+    assert_eq!((milk.roughness.u, milk.roughness.remap, warnings.len()), (Scalar::Value(0.0), true, 0));
+
+    let (skin, warnings) = subsurface("\"string name\" \"Skin1\" \"float scale\" 12 \"float g\" 0.5");
+    assert_eq!(skin.medium, coefficients([0.032, 0.17, 0.48], [0.74, 0.88, 1.01]));
+    assert_eq!((skin.scale, skin.g), (12.0, 0.0));
+    let message =
+        "a.pbrt:1:12: \"g\" has no effect on a medium by \"name\": its coefficients are those for 0";
+    assert_eq!(warnings, [message]);
+
+    let (wax, _) = subsurface(
+        "\"rgb sigma_a\" [ 1 2 3 ] \"rgb sigma_s\" [ 4 5 6 ] \"float g\" 0.5 \"float eta\" 1.4 \"float vroughness\" 0.2",
+    );
+    assert_eq!(wax.medium, coefficients([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]));
+    assert_eq!((wax.g, wax.eta, wax.roughness.v), (0.5, 1.4, Scalar::Value(0.2)));
+
+    let (jade, _) = subsurface("\"rgb reflectance\" [ 0.3 0.7 0.4 ] \"rgb mfp\" [ 0.1 0.2 0.3 ]");
+    let reflectance = Color::Value([0.3, 0.7, 0.4]);
+    let mean_free_path = Color::Value([0.1, 0.2, 0.3]);
+    assert_eq!(jade.medium, SubsurfaceMedium::Reflectance { reflectance, mean_free_path });
+    // Of two ways to describe it the first counts, and the other has no effect.
+    let (_, warnings) = subsurface("\"string name\" \"Apple\" \"rgb sigma_s\" [ 1 1 1 ]");
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
 }
 
 #[test]

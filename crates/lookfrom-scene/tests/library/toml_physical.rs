@@ -5,7 +5,9 @@ use std::path::Path;
 use glam::{DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
-use lookfrom_scene::material::{BumpMapping, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
+use lookfrom_scene::material::{
+    BumpMapping, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar, SubsurfaceMedium,
+};
 use lookfrom_scene::medium::Density;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
@@ -558,4 +560,54 @@ material = "liquid"
     assert_eq!(scene.shapes[0].material, scene.shapes[1].material);
     let of = |shape: usize| &scene.materials[scene.shapes[shape].material.index()].kind;
     assert!(matches!(of(0), MaterialKind::Interface) && matches!(of(2), MaterialKind::Dielectric { .. }));
+}
+
+#[test]
+fn media_below_surfaces() {
+    let scene = read(
+        r#"
+        [materials.milk]
+        type = "subsurface"
+
+        [materials.skin]
+        type = "subsurface"
+        preset = "Skin1"
+        scale = 10
+        roughness = 0.5
+
+        [materials.wax]
+        type = "subsurface"
+        absorption = [1, 2, 3]
+        scattering = 9
+        g = -0.3
+        ior = 1.4
+
+        [materials.jade]
+        type = "subsurface"
+        reflectance = [0.3, 0.7, 0.4]
+        mean_free_path = 0.1
+        "#,
+    );
+    let of = |name: &str| match kind(&scene, name) {
+        MaterialKind::Subsurface(below) => &**below,
+        other => panic!("{other:?}"),
+    };
+    let milk = of("milk");
+    assert_eq!((&milk.medium, milk.scale, milk.g, milk.eta), (&SubsurfaceMedium::MILK, 1.0, 0.0, 1.33));
+    let skin = of("skin");
+    let absorption = Color::Value([0.032, 0.17, 0.48]);
+    assert_eq!(
+        skin.medium,
+        SubsurfaceMedium::Coefficients { absorption, scattering: Color::Value([0.74, 0.88, 1.01]) }
+    );
+    assert_eq!((skin.scale, skin.roughness.u, skin.roughness.remap), (10.0, Scalar::Value(0.25), false));
+    let wax = of("wax");
+    let absorption = Color::Value([1.0, 2.0, 3.0]);
+    assert_eq!(wax.medium, SubsurfaceMedium::Coefficients { absorption, scattering: Color::gray(9.0) });
+    assert_eq!((wax.g, wax.eta), (-0.3, 1.4));
+    let reflectance = Color::Value([0.3, 0.7, 0.4]);
+    assert_eq!(
+        of("jade").medium,
+        SubsurfaceMedium::Reflectance { reflectance, mean_free_path: Color::gray(0.1) }
+    );
 }

@@ -117,6 +117,8 @@ fn links(inspection: &Inspection, ray: &RayReport) -> Vec<String> {
     while let Some(parent) = ray.parent.and_then(|parent| inspection.ray(parent)) {
         let letters = match (ray.kind, &parent.bounce) {
             (RayKind::StraightOn, _) => None,
+            // The point where light leaves is the link.
+            _ if parent.probe.is_some() => None,
             (_, Some(bounce)) => Some(bounce.letters),
             (RayKind::Reflected, None) => Some("R"),
             _ => Some("T"),

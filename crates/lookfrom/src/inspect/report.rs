@@ -3,6 +3,7 @@
 mod camera;
 mod light;
 mod medium;
+mod probe;
 mod ray;
 
 use serde::Serialize;
@@ -13,6 +14,7 @@ use super::segments::RaySegment;
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
 pub use medium::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
+pub use probe::{ExitReport, ProbeReport, ProbeSegmentReport};
 pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.

@@ -8,6 +8,7 @@ mod medium;
 mod microfacets;
 mod path;
 mod pixel;
+mod probe;
 mod sum;
 mod tree;
 

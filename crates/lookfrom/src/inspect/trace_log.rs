@@ -108,6 +108,10 @@ impl<'a> TraceLogBuilder<'a> {
             Event::Flown { address, flight, point, .. } => self.flown(*address, flight, *point),
             Event::Tracked { address, tracking, point } => self.tracked(*address, tracking, *point),
             Event::ScatteredInMedium { address, sample } => self.phase(*address, sample),
+            Event::Probed { address, probe } => {
+                let report = self.probe(probe);
+                self.at(*address, |ray| ray.probe = Some(report));
+            }
             Event::Surface { address, coefficients, .. } => {
                 let report = coefficients.as_deref().map(|k| self.coefficients(k));
                 if let Some(met) = self.rays.get_mut(address).and_then(|ray| ray.met.as_mut()) {
@@ -248,7 +252,9 @@ impl<'a> TraceLogBuilder<'a> {
             let kind_of_next = match &mut ray.bounce {
                 _ if ray.phase.is_some() => RayKind::Scattered,
                 Some(bounce) => {
-                    bounce.next_throughput.clone_from(&next);
+                    let probe = ray.probe.as_ref();
+                    bounce.next_throughput =
+                        probe.map(|probe| probe.throughput_before.clone()).or_else(|| next.clone());
                     match settings.integrator {
                         Integrator::RandomWalk => RayKind::Scattered,
                         _ if bounce.lobe.ends_with("transmission") => RayKind::Transmitted,
@@ -273,6 +279,7 @@ impl<'a> TraceLogBuilder<'a> {
                 (_, Some(_), None) if ray.depth >= settings.depth => "the maximum depth is reached",
                 (_, Some(_), None) => "the surface absorbs its light: no direction could be sampled",
                 (.., Some(bounce)) if !bounce.survives => "Russian roulette ends it",
+                (.., Some(_)) if ray.probe.is_some() => "no point is found where it would leave",
                 (.., Some(_)) => "its throughput is 0",
             });
         }

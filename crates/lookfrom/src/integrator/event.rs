@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Flight, Path, PreviousVertex, Shadow, Tracking};
+use crate::integrator::{Flight, Path, PreviousVertex, Shadow, SubsurfaceProbe, Tracking};
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
@@ -104,6 +104,14 @@ pub enum Event {
         address: u64,
         /// The direction.
         sample: PhaseSample,
+    },
+    /// A path has entered a medium below a surface; the point where it leaves was looked for.
+    Probed {
+        /// Address of the path that has arrived at the surface. The one that leaves follows it, as if it had come along the
+        /// line that was searched.
+        address: u64,
+        /// The search.
+        probe: Box<SubsurfaceProbe>,
     },
     /// The surface that was hit was evaluated.
     Surface {

@@ -10,6 +10,7 @@ mod catcher;
 mod flight;
 mod in_medium;
 mod lanes;
+mod subsurface;
 mod tracking;
 mod travel;
 
@@ -18,6 +19,7 @@ use lookfrom_bvh::Hit;
 
 pub use flight::Flight;
 use lanes::Waiting;
+pub use subsurface::{SubsurfaceExit, SubsurfaceProbe};
 pub use tracking::{Tracked, Tracking};
 use travel::Traveled;
 
@@ -49,6 +51,12 @@ mod dimension {
     pub(super) const WALK: u32 = 5;
     /// The free flight before: the lane and the distance.
     pub(super) const FLIGHT: u32 = 6;
+    /// The axis and the lane of a line that probes for the point where light leaves a surface below which it was scattered.
+    pub(super) const PROBE_AXIS: u32 = 7;
+    /// The radius and the angle of that line.
+    pub(super) const PROBE: u32 = 8;
+    /// The choice among the points where it meets the surface; their alpha tests.
+    pub(super) const EXIT: u32 = 9;
 }
 
 /// Number of bounces before Russian roulette begins: the light that the first bounces find is most of the picture, and

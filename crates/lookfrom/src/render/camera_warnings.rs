@@ -165,7 +165,8 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             MaterialKind::Diffuse { .. }
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }
-            | MaterialKind::CoatedConductor { .. } => true,
+            | MaterialKind::CoatedConductor { .. }
+            | MaterialKind::Subsurface(_) => true,
             // A sky on a dome is unlit.
             MaterialKind::Unlit { .. }
             | MaterialKind::DiffuseTransmission { .. }

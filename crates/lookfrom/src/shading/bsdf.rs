@@ -19,8 +19,10 @@ pub mod lanes;
 pub mod layered;
 pub mod lobes;
 pub mod microfacet;
+pub mod normalized_fresnel;
 mod one;
 pub mod principled;
+pub mod subsurface;
 pub mod whitted;
 
 use glam::Vec3;

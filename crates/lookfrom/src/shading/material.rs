@@ -13,6 +13,7 @@ mod kind;
 mod pictures;
 mod principled;
 mod rows;
+mod subsurface;
 mod whitted;
 
 use glam::Vec3;
@@ -41,7 +42,7 @@ pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
-    Roughness, WhittedMaterial,
+    Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
 pub(crate) use rows::MaterialRow;
 pub use whitted::{Branches, Coefficients};
@@ -110,8 +111,13 @@ impl Frame {
 impl Shading {
     /// A matte surface without bump mapping.
     pub fn matte(surface: &SurfaceInteraction, reflectance: Spectrum) -> Self {
+        Self::plain(surface, Bsdf::diffuse(reflectance))
+    }
+
+    /// A BSDF at a surface without bump mapping.
+    pub(crate) fn plain(surface: &SurfaceInteraction, bsdf: Bsdf) -> Self {
         Self {
-            bsdf: Bsdf::diffuse(reflectance),
+            bsdf,
             frame: bump::plain(&surface.shading_geometry()),
             ng: surface.ng.as_vec3(),
             lift: surface.lift(),
@@ -249,7 +255,7 @@ pub fn shading(
         let (bsdf, frame) = at.principled(look, index, &geometry, frame);
         return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng, lift: surface.lift() });
     }
-    let bsdf = at.bsdf(material)?;
+    let bsdf = at.bsdf(index)?;
     Some(Shading { bsdf, frame: material.frame(relief, &geometry, point), ng, lift: surface.lift() })
 }
 
@@ -295,8 +301,10 @@ impl<'a> Evaluator<'a> {
 }
 
 impl Evaluator<'_> {
-    fn bsdf(&mut self, material: &Material) -> Option<Bsdf> {
-        Some(match &material.kind {
+    /// The BSDF of a material, by its index; of one that has any, and is not evaluated above.
+    fn bsdf(&mut self, index: u32) -> Option<Bsdf> {
+        let materials = self.materials;
+        Some(match &materials[index as usize].kind {
             MaterialKind::Whitted(whitted) => {
                 let k = Coefficients::at(whitted, self.textures, self.point, self.mode);
                 Bsdf::Whitted(WhittedBsdf {
@@ -330,6 +338,7 @@ impl Evaluator<'_> {
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
+            MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
             // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
             // Mixtures are resolved above, glTF's material needs the surface, and shadow catchers are shaded by the

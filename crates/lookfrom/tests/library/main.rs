@@ -37,6 +37,7 @@ mod session;
 mod shapes;
 mod sides;
 mod smooth_meshes;
+mod subsurface;
 mod support;
 mod surfaces;
 mod valid;

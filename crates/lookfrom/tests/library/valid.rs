@@ -5,7 +5,9 @@ use std::path::Path;
 use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
 use lookfrom_scene::light::{LightKind, Sky};
-use lookfrom_scene::material::{BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar};
+use lookfrom_scene::material::{
+    BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar, SubsurfaceMedium,
+};
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
 use lookfrom_scene::settings::Filter;
 use lookfrom_scene::shape::{Geometry, Profile, Shape, Sphere};
@@ -246,6 +248,15 @@ impl<'a> Places<'a> {
                 self.color(&mut look.base_color);
                 self.scalar(&mut look.roughness);
                 self.single.extend([&mut look.ior, &mut look.dispersion, &mut look.absorption[2]]);
+            }
+            MaterialKind::Subsurface(below) => {
+                let (SubsurfaceMedium::Coefficients { absorption: first, scattering: second }
+                | SubsurfaceMedium::Reflectance { reflectance: first, mean_free_path: second }) =
+                    &mut below.medium;
+                self.color(first);
+                self.color(second);
+                self.single.extend([&mut below.scale, &mut below.g, &mut below.eta]);
+                self.roughness(&mut below.roughness);
             }
             MaterialKind::ShadowCatcher { normal } => self.single.push(&mut normal.y),
             MaterialKind::Interface => {}

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::{
-    Amount, BranchReport, Factor, FlightReport, LightReport, PhaseReport, ShadowReport, TrackingReport,
+    Amount, BranchReport, Factor, FlightReport, LightReport, PhaseReport, ProbeReport, ShadowReport,
+    TrackingReport,
 };
 use crate::inspect::candidate::{Candidate, TraversalReport};
 use crate::inspect::scatter::{BounceReport, FoundReport, LightSampleReport, ScatteringReport};
@@ -17,7 +18,7 @@ pub struct RayReport {
     pub address: u64,
     /// Address of the ray that it comes from.
     pub parent: Option<u64>,
-    /// Its kind, which is not of shadow rays.
+    /// Its kind, which is not of shadow rays. Below a surface it is the line that found where the path leaves, and not a ray of light.
     pub kind: RayKind,
     /// Number of reflections, refractions and bounces before.
     pub depth: u32,
@@ -68,6 +69,8 @@ pub struct RayReport {
     pub openness: Option<ShadowReport>,
     /// The continuation of the path, even if Russian roulette ends it.
     pub bounce: Option<BounceReport>,
+    /// The search for the point where the path leaves, where it has entered a medium below the surface.
+    pub probe: Option<ProbeReport>,
     /// The branches of the tree here, followed or not.
     pub branches: Vec<BranchReport>,
     /// The reason why the path ends here, if it does.

@@ -8,6 +8,7 @@ use super::candidates::{write_candidates, write_traced};
 use super::hit::{write_departure, write_derivations, write_met, write_shadow};
 use super::medium::{write_medium, write_phase};
 use super::microfacets::write_microfacets;
+use super::probe::write_probe;
 use super::{Excerpt, RayReport, TextPart};
 use super::{amount, full, lanes, vector, vector32};
 use crate::inspect::scatter::{
@@ -130,6 +131,9 @@ impl Excerpt<'_> {
         }
         if let Some(bounce) = &ray.bounce {
             self.write_bounce(f, bounce)?;
+        }
+        if let Some(probe) = &ray.probe {
+            write_probe(f, probe)?;
         }
         if let Some(phase) = &ray.phase {
             write_phase(f, phase)?;

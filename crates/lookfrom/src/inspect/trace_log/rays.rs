@@ -6,10 +6,13 @@ use lookfrom_bvh::{Hit, NONE, Ray};
 use super::TraceLogBuilder;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
-use crate::inspect::report::{Amount, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
+use crate::inspect::report::{
+    Amount, CoefficientsReport, Departure, ExitReport, LiftReport, MetReport, ProbeReport,
+    ProbeSegmentReport, RayReport,
+};
 use crate::inspect::scatter::{self, BounceReport};
 use crate::inspect::segments::RayKind;
-use crate::integrator::{Bounce, Path, PreviousVertex};
+use crate::integrator::{Bounce, Path, PreviousVertex, SubsurfaceProbe};
 use crate::primitive::Primitives;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Coefficients, Shading};
@@ -62,6 +65,7 @@ impl TraceLogBuilder<'_> {
             light_sample: None,
             openness: None,
             bounce: None,
+            probe: None,
             branches: Vec::new(),
             ends: None,
             added: Amount::default(),
@@ -89,6 +93,30 @@ impl TraceLogBuilder<'_> {
             mirror: self.factor(k.mirror),
             transmission: self.factor(k.transmission),
             ior: k.ior,
+        }
+    }
+
+    /// The search for the point where a path leaves a medium below a surface.
+    pub(super) fn probe(&self, probe: &SubsurfaceProbe) -> ProbeReport {
+        ProbeReport {
+            throughput_before: self.factor(probe.before),
+            choice: self.factor(probe.choice),
+            segment: probe.segment.map(|segment| ProbeSegmentReport {
+                axis: ["first tangent", "second tangent", "normal"][segment.axis as usize],
+                lane: segment.lane,
+                radius: segment.radius,
+                from: in_world(self.world, segment.start.to_array()),
+                direction: segment.direction.to_array(),
+                length: segment.length,
+            }),
+            count: probe.count,
+            exit: probe.exit.map(|exit| ExitReport {
+                point: (self.world.origin + exit.point).to_array(),
+                sp: self.factor(exit.sp),
+                pdf: exit.pdf,
+                probability: exit.probability,
+                throughput: self.factor(exit.after),
+            }),
         }
     }
 

@@ -21,6 +21,7 @@ use kernel::{ScatterKernel, Scattered, Task};
 use mesh_points::MeshPoints;
 use vertices::VertexColumns;
 
+use super::subsurface::exit_below;
 use super::{Departure, HitBatch, Path, StepOutput};
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
@@ -34,7 +35,8 @@ use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::principled::Principled;
-use crate::shading::bsdf::{BsdfClass, BsdfSample, Uniform, bsdf_classes};
+use crate::shading::bsdf::subsurface::Subsurface;
+use crate::shading::bsdf::{Bsdf, BsdfClass, BsdfSample, Uniform, bsdf_classes};
 use crate::world::World;
 
 /// Paths that wait for others of their class: those that hit meshes by their class and those that hit nothing, in bins, and
@@ -128,7 +130,11 @@ impl Waiting {
     ) {
         let scattered = &mut self.memory.scattered;
         let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| self.in_lanes) else {
-            return tracer.scatter_vertex(world, &vertex, scattered, output);
+            tracer.scatter_vertex(world, &vertex, scattered, output);
+            if let Bsdf::Subsurface(boundary) = &vertex.shading.bsdf {
+                tracer.leave_below(world, (&vertex, boundary), scattered, output);
+            }
+            return;
         };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
@@ -198,6 +204,24 @@ impl PathTracer {
         ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
         let departure = |lane: usize| (vertices[lane].departure(), vertices[lane].is_catcher);
         self.go_on(world, departure, active, scattered, output);
+    }
+
+    /// Where one path has just been scattered at the boundary of a medium in which light diffuses, and has entered it: that is not
+    /// traced, but scattered again where it leaves.
+    #[inline(never)]
+    fn leave_below<P: Probe>(
+        &self,
+        world: &World,
+        (vertex, boundary): (&Vertex, &Subsurface),
+        scattered: &mut Scattered,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        if scattered.is_transmission & scattered.goes_on & 1 != 0
+            && let Some(entered) = output.paths.pop()
+            && let Some(exit) = exit_below(world, (vertex, boundary), &entered, output)
+        {
+            self.scatter_vertex(world, &exit, scattered, output);
+        }
     }
 
     /// Scatters one path by any BSDF.

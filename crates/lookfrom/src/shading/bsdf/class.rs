@@ -7,7 +7,9 @@ use super::dielectric::{Dielectric, ThinDielectric};
 use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::layered::Layered;
 use super::lobes::Lobes;
+use super::normalized_fresnel::NormalizedFresnel;
 use super::principled::Principled;
+use super::subsurface::Subsurface;
 use super::whitted::WhittedBsdf;
 use super::{BsdfSample, MicrofacetFactors, Mode};
 use crate::core::spectrum::Spectrum;
@@ -110,6 +112,10 @@ macro_rules! bsdf_classes {
                 ThinDielectric(ThinDielectric),
                 /// Whitted's model.
                 Whitted(WhittedBsdf),
+                /// The boundary of a medium in which light diffuses.
+                Subsurface(Subsurface),
+                /// Light that leaves such a medium.
+                NormalizedFresnel(NormalizedFresnel),
             }
         }
     };

@@ -5,7 +5,7 @@
 
 use lookfrom_simd::{Float, Real};
 
-use super::{Material, MaterialKind, Metal};
+use super::{Material, MaterialKind, Metal, SubsurfaceMedium};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
 use crate::shading::texture::{SpectrumTexture, TexturePoint, Textures};
@@ -56,6 +56,12 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
             Metal::Reflectance(reflectance) => reflectance.varies(),
             Metal::Indices { eta, k } => eta.varies() || k.varies(),
         },
+        MaterialKind::Subsurface(below) => match &below.medium {
+            SubsurfaceMedium::Coefficients { absorption, scattering } => {
+                absorption.varies() || scattering.varies()
+            }
+            SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance.varies(),
+        },
         MaterialKind::Mix { .. } => true,
         MaterialKind::Principled(look) => look.base_color.varies(),
         MaterialKind::Unlit { albedo, .. } => albedo.varies(),
@@ -93,6 +99,7 @@ fn of_kind(
             Metal::Reflectance(reflectance) => color(reflectance),
             Metal::Indices { eta, k } => fresnel::conductor(1.0, color(eta), color(k)),
         },
+        MaterialKind::Subsurface(below) => below.effective_albedo(color),
         MaterialKind::Mix { materials: parts, amount } => {
             let [first, second] =
                 parts.map(|part| of_kind(&materials[part as usize].kind, materials, textures, point));

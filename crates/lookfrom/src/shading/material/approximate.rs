@@ -1,6 +1,8 @@
 //! The nearest equivalent of a physical material in Whitted's model; an approximation.
 
-use lookfrom_scene::material::{Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted};
+use lookfrom_scene::material::{
+    Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, SubsurfaceMedium, Whitted,
+};
 
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
@@ -10,8 +12,13 @@ use crate::shading::texture::{SpectralMode, SpectrumType, TexturePoint, Textures
 const COAT: f32 = 0.04;
 
 /// The nearest equivalent in Whitted's model. `before` holds those of the preceding materials: a mixture takes the
-/// part of larger weight, if that is already known.
-pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], textures: &Textures) -> Whitted {
+/// part of larger weight, if that is already known. `albedo` is that of the material, where it is the same everywhere.
+pub(super) fn in_whitteds_model(
+    kind: &MaterialKind,
+    albedo: Option<[f32; 3]>,
+    before: &[Whitted],
+    textures: &Textures,
+) -> Whitted {
     let plain = Whitted { diffuse: Color::BLACK, ..Whitted::default() };
     match kind {
         MaterialKind::Whitted(whitted) => whitted.clone(),
@@ -24,10 +31,13 @@ pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], texture
         MaterialKind::ThinDielectric { .. } => {
             Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }
         }
-        MaterialKind::CoatedDiffuse { reflectance, coat } => {
-            let shininess = shininess(&coat.roughness);
-            let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
-            Whitted { diffuse: *reflectance, specular: Color::gray(0.2), shininess, mirror, ..plain }
+        MaterialKind::CoatedDiffuse { reflectance, coat } => coated(*reflectance, &coat.roughness),
+        MaterialKind::Subsurface(below) => {
+            let reflectance = match below.medium {
+                SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance,
+                SubsurfaceMedium::Coefficients { .. } => albedo.map_or(Color::gray(0.5), Color::Value),
+            };
+            coated(reflectance, &below.roughness)
         }
         MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
         MaterialKind::Mix { materials: [first, second], amount } => {
@@ -43,6 +53,13 @@ pub(super) fn in_whitteds_model(kind: &MaterialKind, before: &[Whitted], texture
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
     }
+}
+
+/// A diffuse surface under a dielectric one.
+fn coated(reflectance: Color, roughness: &Roughness) -> Whitted {
+    let shininess = shininess(roughness);
+    let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
+    Whitted { diffuse: reflectance, specular: Color::gray(0.2), shininess, mirror, ..Whitted::default() }
 }
 
 /// Metal, glass or plastic, whichever has the largest weight; a texture is evaluated at its corner.

@@ -1,16 +1,20 @@
 //! Compilation of materials.
 
+use std::sync::Arc;
+
 use lookfrom_scene::material as written;
 use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{TextureId, VertexNormals};
 
 use super::kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
-    Roughness, WhittedMaterial,
+    Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
 use super::{Material, albedo, approximate, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
+use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
 /// Compiles materials. A mix may only refer to earlier ones.
@@ -19,22 +23,25 @@ pub(crate) struct Compiler<'a> {
     vertex_normals: VertexNormals,
     /// By material: its nearest equivalent in Whitted's model.
     whitted: Vec<written::Whitted>,
+    /// Tables of profiles, by phase function and index of refraction: materials share them.
+    profiles: Vec<((f32, f32), Arc<ProfileTable>)>,
 }
 
 impl<'a> Compiler<'a> {
     pub(crate) fn new(textures: &'a Textures, vertex_normals: VertexNormals) -> Self {
-        Self { textures, vertex_normals, whitted: Vec::new() }
+        Self { textures, vertex_normals, whitted: Vec::new(), profiles: Vec::new() }
     }
 
     /// The next material, and the absorption coefficient of a body of it per unit of length, by primary,
     /// 0 for none.
     pub(crate) fn compile(&mut self, material: &written::Material) -> (Material, [f32; 3]) {
-        let whitted = approximate::in_whitteds_model(&material.kind, &self.whitted, self.textures);
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
+        let albedo = albedo::constant(&kind, self.textures);
+        let whitted = approximate::in_whitteds_model(&material.kind, albedo, &self.whitted, self.textures);
         let is_principled = matches!(kind, MaterialKind::Principled(_));
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
         let compiled = Material {
-            albedo: albedo::constant(&kind, self.textures),
+            albedo,
             pictures,
             varies,
             kind,
@@ -56,7 +63,7 @@ impl<'a> Compiler<'a> {
         self.textures.spectrum_texture(color, SpectrumType::Unbounded)
     }
 
-    fn kind(&self, kind: &written::MaterialKind) -> MaterialKind {
+    fn kind(&mut self, kind: &written::MaterialKind) -> MaterialKind {
         use written::MaterialKind as Written;
         match kind {
             Written::Whitted(whitted) => MaterialKind::Whitted(Box::new(self.whitted(whitted))),
@@ -89,6 +96,7 @@ impl<'a> Compiler<'a> {
             Written::Mix { materials, amount } => {
                 MaterialKind::Mix { materials: materials.map(|id| id.0), amount: (*amount).into() }
             }
+            Written::Subsurface(below) => MaterialKind::Subsurface(Box::new(self.subsurface(below))),
             Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
             Written::Unlit { color } => MaterialKind::Unlit {
                 color: self.textures.spectrum_texture(*color, SpectrumType::Illuminant),
@@ -143,6 +151,38 @@ impl<'a> Compiler<'a> {
             samples: coat.samples.min(u16::MAX.into()) as u16,
             estimate: coat.estimate,
         }
+    }
+
+    fn subsurface(&mut self, below: &written::Subsurface) -> SubsurfaceMaterial {
+        let medium = match below.medium {
+            written::SubsurfaceMedium::Coefficients { absorption, scattering } => {
+                let [absorption, scattering] = [absorption, scattering].map(|color| self.unbounded(color));
+                SubsurfaceMedium::Coefficients { absorption, scattering }
+            }
+            written::SubsurfaceMedium::Reflectance { reflectance, mean_free_path } => {
+                let (reflectance, mean_free_path) =
+                    (self.albedo(reflectance), self.unbounded(mean_free_path));
+                SubsurfaceMedium::Reflectance { reflectance, mean_free_path }
+            }
+        };
+        SubsurfaceMaterial {
+            medium,
+            scale: below.scale,
+            eta: below.eta,
+            roughness: rough(&below.roughness),
+            exit: NormalizedFresnel::new(below.eta),
+            profiles: self.profiles_of(below.g, below.eta),
+        }
+    }
+
+    fn profiles_of(&mut self, g: f32, eta: f32) -> Arc<ProfileTable> {
+        let known = self.profiles.iter().find(|(key, _)| *key == (g, eta));
+        if let Some((_, profiles)) = known {
+            return profiles.clone();
+        }
+        let profiles = Arc::new(ProfileTable::new(g, eta));
+        self.profiles.push(((g, eta), profiles.clone()));
+        profiles
     }
 
     fn bump_mapping(&self, written: &written::BumpMapping) -> BumpMapping {

@@ -1,12 +1,16 @@
 //! Compiled materials: those of [`lookfrom_scene::material`] with typed inputs and folded constants.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::principled as bsdf;
+use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
 
 /// The types of materials.
@@ -68,6 +72,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: Box<CoatMaterial>,
     },
+    /// Light is scattered below a dielectric surface.
+    Subsurface(Box<SubsurfaceMaterial>),
     /// One of two materials, chosen at random at each hit.
     Mix {
         /// Indices of the mixed materials; never this one, directly or through other mixtures.
@@ -186,6 +192,42 @@ pub struct CoatMaterial {
     pub estimate: CoatEstimate,
     /// Knowledge of its inside, where the coat is the same everywhere and has no particles, and is not pbrt's.
     pub interior: Option<CoatInterior>,
+}
+
+/// A medium below a dielectric surface, see [`lookfrom_scene::material::Subsurface`].
+#[derive(Clone, Debug)]
+pub struct SubsurfaceMaterial {
+    /// The medium.
+    pub medium: SubsurfaceMedium,
+    /// Multiplies its coefficients, or its mean free path.
+    pub scale: f32,
+    /// Index of refraction, inside over outside.
+    pub eta: f32,
+    /// Roughness of the surface.
+    pub roughness: Roughness,
+    /// The directions in which light leaves.
+    pub(super) exit: NormalizedFresnel,
+    /// The profiles of all media with its phase function and index of refraction.
+    pub(crate) profiles: Arc<ProfileTable>,
+}
+
+/// A medium below a surface.
+#[derive(Clone, Debug)]
+pub enum SubsurfaceMedium {
+    /// By its coefficients, per unit of length.
+    Coefficients {
+        /// The absorption coefficient.
+        absorption: SpectrumTexture,
+        /// The scattering coefficient.
+        scattering: SpectrumTexture,
+    },
+    /// By its effect.
+    Reflectance {
+        /// The fraction of the light that has entered which leaves again.
+        reflectance: SpectrumTexture,
+        /// The mean free path.
+        mean_free_path: SpectrumTexture,
+    },
 }
 
 /// Perturbations of the shading normal.

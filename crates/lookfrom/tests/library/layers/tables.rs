@@ -31,7 +31,8 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("warp", "elementary vector"),
     ("color", "math spectrum"),
     ("sampler", "hash lanes"),
-    ("bsdf", "elementary hash lanes math optics sampler spectrum vector warp"),
+    ("bssrdf", "elementary parallel spectrum"),
+    ("bsdf", "bssrdf elementary hash lanes math optics sampler spectrum vector warp"),
     ("noise", "hash"),
     ("filter", "sampler"),
     ("distribution", "sampler lanes"),
@@ -40,7 +41,10 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("texture", "color hash lanes noise spectrum vector"),
     ("interaction", "interior_stack math points texture"),
     ("footprint", "interaction texture"),
-    ("material", "bsdf footprint interior_stack math optics points spectrum interaction texture vector warp"),
+    (
+        "material",
+        "bsdf bssrdf footprint interior_stack math optics points spectrum interaction texture vector warp",
+    ),
     ("primitive", "lanes math points interaction texture vector warp"),
     (
         "light",
@@ -61,7 +65,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("view", "camera"),
     (
         "integrator",
-        "aov bsdf hash interior_stack lanes light material math medium optics points random sampler primitive \
+        "aov bsdf bssrdf hash interior_stack lanes light material math medium optics points random sampler primitive \
          spectrum interaction texture vector warp world",
     ),
     (
