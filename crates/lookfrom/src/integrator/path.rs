@@ -4,11 +4,10 @@
 //! order of steps is pbrt-v4's, so that the same scene converges to the same picture.
 //!
 //! In media that scatter, vertices are points of space as well: `travel` brings a path to one of them or to what it has hit, and
-//! `in_medium` scatters it there.
+//! `lanes::in_medium` scatters it there.
 
 mod catcher;
 mod flight;
-mod in_medium;
 mod lanes;
 mod subsurface;
 mod tracking;
@@ -211,7 +210,10 @@ impl PathTracer {
             Traveled::Arrived(path) => path,
             Traveled::Scattered(vertex) => {
                 output.leave_surface_behind(world, path, hit);
-                return self.scatter_in_medium(world, stream, &vertex, output);
+                if self.is_scattered_in_medium(&vertex) {
+                    waiting.push_in_medium(self, world, vertex, output);
+                }
+                return;
             }
         };
         path.state.is_catcher = false;

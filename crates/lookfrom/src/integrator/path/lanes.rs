@@ -7,7 +7,9 @@
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
 mod bent_frames;
+mod in_medium;
 mod kernel;
+mod medium;
 mod mesh_hits;
 mod mesh_points;
 mod skies;
@@ -17,7 +19,9 @@ use glam::Vec3;
 use lookfrom_bvh::Ray;
 use lookfrom_simd::LaneMask;
 
+pub(super) use in_medium::MediumVertex;
 use kernel::{ScatterKernel, Scattered, Task};
+use medium::MediumKernel;
 use mesh_points::MeshPoints;
 use vertices::VertexColumns;
 
@@ -47,6 +51,7 @@ pub(super) struct Waiting {
     in_lanes: bool,
     bins: Bins,
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
+    in_media: Vec<MediumVertex>,
     memory: Memory,
 }
 
@@ -143,6 +148,20 @@ impl Waiting {
         }
     }
 
+    /// Adds a vertex in a medium, and scatters those there where they fill the lanes.
+    pub(super) fn push_in_medium<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        world: &World,
+        vertex: MediumVertex,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        if fills_lanes(&mut self.in_media, vertex) || !self.in_lanes {
+            tracer.scatter_in_media(world, &self.in_media, &mut self.memory.scattered, output);
+            self.in_media.clear();
+        }
+    }
+
     /// Scatters the paths that are left.
     pub(super) fn flush<P: Probe>(
         mut self,
@@ -151,6 +170,7 @@ impl Waiting {
         output: &mut StepOutput<'_, P>,
     ) {
         self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
+        tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
         for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
             let memory = &mut self.memory;
             self.bins.flush(1 << class as usize, |eight| {
@@ -224,6 +244,33 @@ impl PathTracer {
         }
     }
 
+    /// Scatters up to eight paths in media.
+    fn scatter_in_media<P: Probe>(
+        &self,
+        world: &World,
+        vertices: &[MediumVertex],
+        scattered: &mut Scattered,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Some(last) = vertices.last() else { return };
+        let active = (1 << vertices.len()) - 1;
+        // Unused lanes repeat the last vertex.
+        let vertices: &[&MediumVertex; LANES] = &by_lane!(lane => vertices.get(lane).unwrap_or(last));
+        let task = &self.task(
+            by_lane!(lane => &vertices[lane].path),
+            by_lane!(lane => &vertices[lane].stream),
+            output,
+        );
+        let kernel = MediumKernel { world, vertices, active, task, scattered };
+        match active {
+            1 => kernel.scatter_one(),
+            _ => kernel.scatter(),
+        }
+        for lane in LaneMask(active) {
+            self.leave_medium_vertex(vertices[lane], lane, scattered, output);
+        }
+    }
+
     /// Scatters one path by any BSDF.
     fn scatter_vertex<P: Probe>(
         &self,
@@ -291,28 +338,9 @@ impl PathTracer {
         scattered: &Scattered,
         output: &mut StepOutput<'_, P>,
     ) {
-        let address = departure.path.address;
+        let connection = self.connection(departure.path.address, lane, scattered, output);
+        let Some((light, ray, contribution)) = connection else { return };
         let (connections, lights) = (&scattered.connections, &scattered.lights);
-        let is = |mask: u32| mask & 1 << lane != 0;
-        let Some((light, probability)) = lights.light(lane).filter(|_| is(connections.is_sampled)) else {
-            output.probe.notice_some(|| lights.failed(lane, address));
-            return;
-        };
-        output.probe.notice(|| Event::LightSampled {
-            address,
-            light,
-            probability,
-            sample: lights.light_sample(lane),
-            f: Spectrum(row(&connections.f, lane)),
-            bsdf_pdf: connections.bsdf_pdf[lane],
-            weight: connections.weight[lane],
-        });
-        if !is(connections.is_lit) {
-            return;
-        }
-        let ray = Ray::new(row(&connections.origin, lane), row(&connections.way, lane))
-            .with_t_max(connections.t_max[lane]);
-        let contribution = Spectrum(row(&connections.contribution, lane));
         // Through the surface of a body it travels in what is behind.
         let wi = Vec3::from_array(row(&lights.wi, lane));
         let crosses = departure.crosses(wi);
@@ -324,6 +352,35 @@ impl PathTracer {
         if is_catcher {
             self.expect_light(&world.lights[light as usize], departure.path, contribution, output);
         }
+    }
+
+    /// The light that a lane has sampled, the ray to it, and what it contributes if that is not blocked; `None` if that is nothing.
+    #[inline(always)]
+    fn connection<P: Probe>(
+        &self,
+        address: u64,
+        lane: usize,
+        scattered: &Scattered,
+        output: &mut StepOutput<'_, P>,
+    ) -> Option<(u32, Ray, Spectrum)> {
+        let (connections, lights) = (&scattered.connections, &scattered.lights);
+        let is = |mask: u32| mask & 1 << lane != 0;
+        let Some((light, probability)) = lights.light(lane).filter(|_| is(connections.is_sampled)) else {
+            output.probe.notice_some(|| lights.failed(lane, address));
+            return None;
+        };
+        output.probe.notice(|| Event::LightSampled {
+            address,
+            light,
+            probability,
+            sample: lights.light_sample(lane),
+            f: Spectrum(row(&connections.f, lane)),
+            bsdf_pdf: connections.bsdf_pdf[lane],
+            weight: connections.weight[lane],
+        });
+        let ray = Ray::new(row(&connections.origin, lane), row(&connections.way, lane))
+            .with_t_max(connections.t_max[lane]);
+        is(connections.is_lit).then(|| (light, ray, Spectrum(row(&connections.contribution, lane))))
     }
 
     /// The path of a lane, into the direction that its BSDF has sampled.

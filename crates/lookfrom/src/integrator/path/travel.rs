@@ -4,7 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use super::flight::Flight;
-use super::in_medium::MediumVertex;
+use super::lanes::MediumVertex;
 use super::tracking::Tracking;
 use super::{Path, PathTracer, StepOutput, dimension};
 use crate::core::spectrum::Spectrum;
@@ -66,7 +66,8 @@ impl PathTracer {
         let flight = Flight::sample(&coefficients, path.beta, way.length, stream.two(dimension::FLIGHT));
         let point = way.origin + way.direction * flight.distance;
         output.probe.notice(|| Event::Flown { address: path.address, flight: Box::new(flight), point });
-        end(medium, Path { beta: flight.after, ..*path }, flight.is_scattered().then_some(point))
+        let path = Path { beta: flight.after, ..*path };
+        end(medium, path, stream, flight.is_scattered().then_some(point))
     }
 
     /// Travels in a medium that varies.
@@ -87,7 +88,7 @@ impl PathTracer {
         let point = tracking.scattered_at.map(|distance| way.origin + way.direction * distance);
         let path = Path { beta: tracking.after, ..*path };
         output.probe.notice(|| Event::Tracked { address: path.address, tracking: Box::new(tracking), point });
-        end(medium, path, point)
+        end(medium, path, stream, point)
     }
 
     /// Adds what a medium emits on the way of a path. Where no path goes on, that is left out, as in pbrt.
@@ -99,9 +100,11 @@ impl PathTracer {
 }
 
 /// The end of a way: at the point where the medium scatters the path, if there is one.
-fn end(medium: &Medium, path: Path, point: Option<Vec3>) -> Traveled {
+fn end(medium: &Medium, path: Path, stream: &SampleStream, point: Option<Vec3>) -> Traveled {
     match (point, medium.phase()) {
-        (Some(point), Some(phase)) => Traveled::Scattered(MediumVertex { path, point, phase }),
+        (Some(point), Some(phase)) => {
+            Traveled::Scattered(MediumVertex { path, point, phase, stream: *stream })
+        }
         _ => Traveled::Arrived(path),
     }
 }

@@ -24,7 +24,20 @@ impl HenyeyGreenstein {
     }
 }
 
+impl HenyeyGreenstein {
+    /// The mean cosine.
+    pub fn g(self) -> f32 {
+        self.g
+    }
+}
+
 impl<R: Real> HenyeyGreenstein<R> {
+    /// By mean cosines within ±0.99.
+    #[inline(always)]
+    pub(crate) fn of(g: R) -> Self {
+        Self { g }
+    }
+
     /// The value of the phase function, per solid angle; also the density of [`Self::sample`].
     #[inline(always)]
     pub fn p(self, wo: Vector<R>, wi: Vector<R>) -> R {

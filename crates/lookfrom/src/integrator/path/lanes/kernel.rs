@@ -144,16 +144,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
             |lane| paths[lane].state.eta_scale,
         ) * Float::select(sample.is_transmission, sample.eta * sample.eta, one);
 
-        // End paths of small throughput by Russian roulette.
-        let mut survival = beta.max_lane() * eta_scale * SURVIVAL;
-        let is_great = survival.gt(one) | Float::eq(survival, one);
-        let is_safe = is_great | task.are_safe(width);
-        let mut survives = is_safe;
-        survival = Float::select(is_safe, one, survival);
-        if !(is_safe | !sample.is_valid).all() {
-            let [u, _] = streams.two(dimension::ROULETTE);
-            survives = is_safe | u.lt(survival);
-        }
+        let (survival, survives) = task.survive(width, beta.max_lane() * eta_scale, sample.is_valid, streams);
         let goes_on = sample.is_valid & survives & !beta.is_black();
         scattered.is_valid = width.bits(sample.is_valid);
         scattered.is_specular = width.bits(sample.is_specular);
@@ -198,26 +189,41 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
             f = Spectrum::select(surfaces.agrees(wi), f, Spectrum::splat(zero));
         }
         let f = f * Float::abs(local.z);
-        // BSDF sampling cannot find all lights.
-        let is_alone = width.mask(match task.light_sampling {
+        connections.weigh(width, task.light_sampling, lights, beta, (f, bsdf_pdf), exits.toward(wi));
+    }
+}
+
+impl Connections {
+    /// Weights light samples, for which the BSDF times the cosine, or the phase function, has the value f and a density.
+    #[inline(always)]
+    pub(super) fn weigh<W: Width>(
+        &mut self,
+        width: W,
+        light_sampling: LightSampling,
+        lights: &LightSamples,
+        beta: Spectrum<W::Real>,
+        (f, pdf): (Spectrum<W::Real>, W::Real),
+        origin: Vector<W::Real>,
+    ) {
+        let zero = width.splat(0.0);
+        // Sampling of directions cannot find all lights.
+        let is_alone = width.mask(match light_sampling {
             LightSampling::MultipleImportance => lights.is_delta,
             _ => u32::MAX,
         });
-        let bsdf_pdf = Float::select(is_alone, zero, bsdf_pdf);
+        let pdf = Float::select(is_alone, zero, pdf);
         let light_pdf = width.load_f32(&lights.probability) * width.load_f32(&lights.pdf);
-        let weight = Float::select(is_alone, zero.like(1.0), power_heuristic(light_pdf, bsdf_pdf));
+        let weight = Float::select(is_alone, zero.like(1.0), power_heuristic(light_pdf, pdf));
         let contribution = beta * f * load_spectrum(width, &lights.li) * (weight / light_pdf);
-        let is_sampled = lights.is_valid & !width.bits(f.is_black());
-        let origin = exits.toward(wi);
-        connections.f = store_spectrum(f);
-        connections.bsdf_pdf = bsdf_pdf.column();
-        connections.weight = weight.column();
-        connections.contribution = store_spectrum(contribution);
-        connections.is_sampled = is_sampled;
-        connections.is_lit = is_sampled & !width.bits(contribution.is_black());
-        connections.origin = store(origin);
+        self.f = store_spectrum(f);
+        self.bsdf_pdf = pdf.column();
+        self.weight = weight.column();
+        self.contribution = store_spectrum(contribution);
+        self.is_sampled = lights.is_valid & !width.bits(f.is_black());
+        self.is_lit = self.is_sampled & !width.bits(contribution.is_black());
+        self.origin = store(origin);
         let (way, t_max) = lights.ways(width, origin);
-        (connections.way, connections.t_max) = (store(way), t_max.column());
+        (self.way, self.t_max) = (store(way), t_max.column());
     }
 }
 
@@ -245,9 +251,32 @@ impl Task<'_> {
         W::Real::from_integer(depth).lt(width.splat(SAFE_BOUNCES as f32))
     }
 
+    /// Ends paths of small throughput by Russian roulette: the probabilities of survival, and the lanes that survive. `throughput` is
+    /// the largest lane times the product of η²; only lanes of a mask ask for random numbers.
+    #[inline(always)]
+    pub(super) fn survive<W: Width>(
+        &self,
+        width: W,
+        throughput: W::Real,
+        mask: Mask<W>,
+        streams: &SampleStreams<W::Real>,
+    ) -> (W::Real, Mask<W>) {
+        let one = width.splat(1.0);
+        let survival = throughput * SURVIVAL;
+        let is_great = survival.gt(one) | Float::eq(survival, one);
+        let is_safe = is_great | self.are_safe(width);
+        let mut survives = is_safe;
+        let survival = Float::select(is_safe, one, survival);
+        if !(is_safe | !mask).all() {
+            let [u, _] = streams.two(dimension::ROULETTE);
+            survives = is_safe | u.lt(survival);
+        }
+        (survival, survives)
+    }
+
     /// The throughputs of the paths.
     #[inline(always)]
-    fn beta<W: Width>(&self, width: W) -> Spectrum<W::Real> {
+    pub(super) fn beta<W: Width>(&self, width: W) -> Spectrum<W::Real> {
         width.spectra_of(
             #[inline(always)]
             |lane| self.paths[lane].beta,
