@@ -1,5 +1,7 @@
 //! The `MakeNamedMedium` directive, and the media of shapes and cameras.
 
+mod nanovdb;
+
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -40,7 +42,7 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        if kind == "nanovdb" || p.has("preset") {
+        if p.has("preset") {
             p.ignore_all();
             let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
             let warning = Some(Warning::new(&p.place.location(), message));
@@ -52,6 +54,7 @@ impl Reader<'_, '_> {
             "uniformgrid" => Some(self.uniform_grid(p, &mut medium)?),
             "rgbgrid" => Some(self.rgb_grid(p, &mut medium)?),
             "cloud" => Some(self.cloud(p)?),
+            "nanovdb" => self.nano_vdb(p, &mut medium)?,
             _ => None,
         };
         let id = MediumId(self.scene.media.len() as u32);

@@ -273,7 +273,7 @@ fn what_is_not_rendered_is_warned_of_once() {
     let (scene, warnings) = read_files(&[(
         "a.pbrt",
         "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
-         MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"fog\" \"\" Shape \"disk\" MediumInterface \"fog\"\n\
+         MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\" MediumInterface \"fog\" \"\" Shape \"disk\" MediumInterface \"fog\"\n\
          Material \"hair\" Material \"hair\" Material \"subsurface\" \"float mfp\" 2\n\
          Shape \"sphere\" \"float raduis\" 2",
     )]);
@@ -292,7 +292,7 @@ fn what_is_not_rendered_is_warned_of_once() {
 fn media_are_around_the_camera_and_beside_shapes() {
     let made = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ]\n\
                 MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ] \"rgb Le\" [ 1 0 0 ]\n\
-                MakeNamedMedium \"c\" \"string type\" \"cloud\"\n";
+                MakeNamedMedium \"c\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\"\n";
     let world = "Camera \"perspective\" WorldBegin Shape \"sphere\" MediumInterface \"a\" Shape \"sphere\"\n\
                  MediumInterface \"c\" \"\" Shape \"sphere\"";
     let of = |integrator: &str| {
