@@ -106,7 +106,9 @@ impl<'a> Entry<'a> {
                 let message =
                     format!("the grid {:?} is compressed by {name}, expected ZIP or none", self.name);
                 let error = Error::new(ErrorKind::Unsupported, at, message);
-                Err(error.hint("write it again with ZIP or uncompressed: `nanovdb_convert --zip`"))
+                Err(error.hint(
+                    "write it again with the codec ZIP or NONE; `nanovdb_convert --zip` does, from OpenVDB",
+                ))
             }
         }
     }
