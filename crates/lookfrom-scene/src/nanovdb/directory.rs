@@ -106,9 +106,7 @@ impl<'a> Entry<'a> {
                 let message =
                     format!("the grid {:?} is compressed by {name}, expected ZIP or none", self.name);
                 let error = Error::new(ErrorKind::Unsupported, at, message);
-                Err(error.hint(
-                    "write it again with the codec ZIP or NONE; `nanovdb_convert --zip` does, from OpenVDB",
-                ))
+                Err(error.hint("write it again with the codec ZIP or NONE of NanoVDB"))
             }
         }
     }
