@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 /// Values at the centres of the cells of a grid, in bricks of 8³ cells. Outside of the grid, and in bricks that were never
-/// written, they are zero; such bricks take no memory.
+/// written, they are zero; such bricks take no memory. Bricks that were filled with one value take the memory of one.
 #[derive(Clone, Debug, Default)]
 pub struct Grid<T> {
     size: [u32; 3],
@@ -30,7 +30,7 @@ pub struct Placed<T> {
 pub const BRICK: u32 = 8;
 
 /// Number of values of a brick.
-const BLOCK: usize = (BRICK * BRICK * BRICK) as usize;
+pub const BLOCK: usize = (BRICK * BRICK * BRICK) as usize;
 
 /// A brick without values.
 const EMPTY: u32 = u32::MAX;
@@ -68,17 +68,47 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         Some(grid)
     }
 
-    /// Writes the value of a cell; nothing happens outside of the grid.
-    pub fn set(&mut self, cell: [u32; 3], value: T) {
+    /// Writes the value of a cell, in a brick that was not filled; nothing happens outside of the grid.
+    fn set(&mut self, cell: [u32; 3], value: T) {
         if (0..3).any(|axis| cell[axis] >= self.size[axis]) {
             return;
         }
-        let block = &mut self.bricks[brick(self.count, cell)];
-        if *block == EMPTY {
-            *block = (self.values.len() / BLOCK) as u32;
-            self.values.resize(self.values.len() + BLOCK, T::default());
+        let brick = brick(self.count, cell);
+        if self.bricks[brick] == EMPTY {
+            self.bricks[brick] = self.push(&[T::default(); BLOCK]);
         }
-        self.values[*block as usize * BLOCK + place(cell)] = value;
+        self.values[self.bricks[brick] as usize * BLOCK + place(cell)] = value;
+    }
+
+    /// Writes the values of a brick, x fastest, in a grid of whole bricks; nothing happens outside of the grid.
+    pub fn set_brick(&mut self, brick: [u32; 3], values: &[T; BLOCK]) {
+        if (0..3).any(|axis| brick[axis] >= self.size[axis] / BRICK) {
+            return;
+        }
+        let is_empty = values.iter().all(|value| *value == T::default());
+        self.bricks[index(self.count, brick)] = if is_empty { EMPTY } else { self.push(values) };
+    }
+
+    /// Writes one value to the bricks from `first` on and below `end`, in a grid of whole bricks; nothing happens outside of the grid.
+    pub fn fill(&mut self, first: [u32; 3], end: [u32; 3], value: T) {
+        let end: [u32; 3] = std::array::from_fn(|axis| end[axis].min(self.size[axis] / BRICK));
+        if (0..3).any(|axis| first[axis] >= end[axis]) {
+            return;
+        }
+        let block = if value == T::default() { EMPTY } else { self.push(&[value; BLOCK]) };
+        for z in first[2]..end[2] {
+            for y in first[1]..end[1] {
+                let row = index(self.count, [first[0], y, z]);
+                self.bricks[row..row + (end[0] - first[0]) as usize].fill(block);
+            }
+        }
+    }
+
+    /// The number of a new block.
+    fn push(&mut self, values: &[T; BLOCK]) -> u32 {
+        let block = (self.values.len() / BLOCK) as u32;
+        self.values.extend_from_slice(values);
+        block
     }
 
     /// The value of a cell: zero outside of the grid.
@@ -159,7 +189,13 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
 /// The index of the brick of a cell.
 #[inline(always)]
 fn brick(count: [u32; 3], cell: [u32; 3]) -> usize {
-    let [x, y, z] = cell.map(|coordinate| (coordinate / BRICK) as usize);
+    index(count, cell.map(|coordinate| coordinate / BRICK))
+}
+
+/// The index of a brick by its coordinates.
+#[inline(always)]
+fn index(count: [u32; 3], brick: [u32; 3]) -> usize {
+    let [x, y, z] = brick.map(|coordinate| coordinate as usize);
     x + count[0] as usize * (y + count[1] as usize * z)
 }
 
@@ -196,6 +232,29 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn whole_bricks_are_written_and_filled() {
+        let mut grid = Grid::<f32>::new([24, 16, 16]).unwrap();
+        grid.fill([0, 0, 1], [9, 1, 9], 0.5);
+        grid.fill([2, 0, 1], [3, 1, 2], 0.0);
+        grid.set_brick([1, 0, 1], &std::array::from_fn(|index| index as f32));
+        grid.set_brick([3, 0, 0], &[9.0; BLOCK]);
+        grid.set_brick([1, 1, 1], &[0.0; BLOCK]);
+        let expected = |[x, y, z]: [i32; 3]| match [x / 8, y / 8, z / 8] {
+            [0, 0, 1] => 0.5,
+            [1, 0, 1] => (x % 8 + 8 * (y % 8) + 64 * (z % 8)) as f32,
+            _ => 0.0,
+        };
+        let mut sum = 0.0;
+        for cell in (0..24 * 16 * 16).map(|index| [index % 24, index / 24 % 16, index / 24 / 16]) {
+            assert_eq!(grid.value(cell), expected(cell), "{cell:?}");
+            sum += expected(cell);
+        }
+        grid.for_each(|_, value| sum -= value);
+        assert_eq!(sum, 0.0);
+        assert_eq!(grid.stored().len(), 2 * BLOCK);
     }
 
     #[test]

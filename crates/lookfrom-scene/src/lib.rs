@@ -33,6 +33,7 @@ pub mod load;
 pub mod material;
 pub mod medium;
 pub mod model;
+pub mod nanovdb;
 pub mod npy;
 pub mod obj;
 mod packed;

@@ -35,7 +35,6 @@ use std::path::{Path, PathBuf};
 use glam::DMat4;
 
 use self::file::Model;
-use self::medium::NamedMedium;
 use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
@@ -45,7 +44,7 @@ use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
 use crate::packed;
-use crate::scene::{CurveId, ImageId, MaterialId, ObjectId, Scene, TextureId, VertexNormals};
+use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
 
 /// Reads a scene of pbrt-v4 with all its includes. File names are relative to the folder of `path`, or else to the folder
@@ -140,7 +139,7 @@ struct Reader<'s, 'f> {
     /// Warnings that have been given already.
     warned: BTreeSet<String>,
     /// Media by name.
-    media: BTreeMap<String, NamedMedium>,
+    media: BTreeMap<String, MediumId>,
     /// An integrator that does not support media, until it has been warned of.
     without_media: Option<(String, Place)>,
     /// Missing files so far.

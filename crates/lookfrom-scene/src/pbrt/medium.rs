@@ -1,5 +1,7 @@
 //! The `MakeNamedMedium` directive, and the media of shapes and cameras.
 
+mod nanovdb;
+
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -17,7 +19,6 @@ use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Sides, Temperature, Variation};
 use crate::scene::MediumId;
 use crate::spectrum::observer;
-use crate::warning::Warning;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 
@@ -27,37 +28,23 @@ const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 /// The luminance of what pbrt does not divide by that of white: blackbodies by temperature, and emission by `rgbgrid`.
 const UNSCALED: f32 = observer::Y_INTEGRAL as f32;
 
-/// A named medium.
-pub(super) struct NamedMedium {
-    /// `None` for a medium that is not rendered.
-    id: Option<MediumId>,
-    /// That it is not rendered, for a warning when it is used.
-    warning: Option<Warning>,
-}
-
 impl Reader<'_, '_> {
     pub(super) fn make_medium(&mut self, name: String, p: &Parameters) -> Result<()> {
         let kind = p.string("type")?.unwrap_or_default().to_owned();
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        if kind == "nanovdb" {
-            p.ignore_all();
-            let message = format!("the medium {name:?} is not rendered yet: it is treated as a vacuum");
-            let warning = Some(Warning::new(&p.place.location(), message));
-            self.media.insert(name, NamedMedium { id: None, warning });
-            return Ok(());
-        }
         let mut medium = self.even_medium(name.clone(), &kind, p)?;
         medium.variation = match &*kind {
             "uniformgrid" => Some(self.uniform_grid(p, &mut medium)?),
             "rgbgrid" => Some(self.rgb_grid(p, &mut medium)?),
             "cloud" => Some(self.cloud(p)?),
+            "nanovdb" => self.nano_vdb(p, &mut medium)?,
             _ => None,
         };
         let id = MediumId(self.scene.media.len() as u32);
         self.scene.media.push(medium);
-        self.media.insert(name, NamedMedium { id: Some(id), warning: None });
+        self.media.insert(name, id);
         Ok(())
     }
 
@@ -187,22 +174,20 @@ impl Reader<'_, '_> {
             return Ok(None);
         }
         let known = self.media.keys().map(String::as_str);
-        let named = self.media.get(name).ok_or_else(|| Self::unknown(place, "medium", name, known))?;
-        Ok(named.id)
+        let id = self.media.get(name).ok_or_else(|| Self::unknown(place, "medium", name, known))?;
+        Ok(Some(*id))
     }
 
-    /// Warns of media that are not rendered, when one is first used.
+    /// Warns once, where a medium is first used, of an integrator that does not support them.
     fn use_medium(&mut self, name: &str) {
-        let Some(named) = self.media.get_mut(name) else { return };
-        match self.without_media.take() {
-            Some((integrator, place)) => {
-                let message = format!(
-                    "the integrator {integrator:?} does not support media, as in pbrt: they are treated as a vacuum; \"volpath\" supports them"
-                );
-                self.context.warn(&place.location(), message);
-            }
-            None if self.scene.render.media => self.context.warnings.extend(named.warning.take()),
-            None => {}
+        if name.is_empty() {
+            return;
+        }
+        if let Some((integrator, place)) = self.without_media.take() {
+            let message = format!(
+                "the integrator {integrator:?} does not support media, as in pbrt: they are treated as a vacuum; \"volpath\" supports them"
+            );
+            self.context.warn(&place.location(), message);
         }
     }
 }

@@ -326,11 +326,6 @@ impl Parameters {
         self.own.iter().filter(|parameter| names.contains(&&*parameter.name)).for_each(|p| p.used.set(true));
     }
 
-    /// Marks all parameters as known.
-    pub(super) fn ignore_all(&self) {
-        self.own.iter().for_each(|parameter| parameter.used.set(true));
-    }
-
     pub(super) fn float_or_none(&self, name: &'static str) -> Result<Option<f32>> {
         let Some(parameter) = self.find(name, &[ParameterType::Float])? else { return Ok(None) };
         Ok(parameter.single(parameter.numbers())?.first().copied())

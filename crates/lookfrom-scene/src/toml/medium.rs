@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3, IVec3, Vec3};
 
 use super::evaluate::{Allowance, evaluate};
 use super::expression::{Fault, parse};
@@ -15,6 +15,7 @@ use crate::grid::{Grid, Placed};
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Temperature, Variation};
+use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
 use crate::spectrum::observer;
 
@@ -24,6 +25,9 @@ pub(super) const KEYS: &[&str] =
 
 /// The keys of numbers by the place.
 pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
+
+/// The keys of numbers that are those of a file.
+pub(super) const FILE: &[&str] = &["file", "grid"];
 
 /// Number of cells along the longest side of a box where a file does not set it.
 const CELLS: u64 = 64;
@@ -64,37 +68,40 @@ impl Reader<'_, '_> {
         });
         (medium.emission, medium.emission_scale) =
             table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false));
-        let density =
-            table.find("density").map(|value| value.noting(self.density(value, table), Number::Even(1.0)));
-        let temperature = table.maybe("temperature", volume);
+        let density = table.maybe("density", |value| self.density(value, table));
+        let temperature = table.maybe("temperature", |value| self.volume(value));
         if temperature.is_some() {
             // Blackbodies are relative to their maximum: their light is not that of luminance 1.
-            let factor =
-                table.or("emission", 1.0, |value| value.single_where("a factor of at least 0", |v| v >= 0.0));
+            let factor = table.or("emission", 1.0, |value| {
+                value.single_where("a factor of at least 0", |factor| factor >= 0.0)
+            });
             medium.emission_scale = factor * observer::Y_INTEGRAL as f32;
             medium.emission = Color::BLACK;
         }
+        let even = Density::Texture { of: Scalar::Value(1.0), most: 1.0 };
         let density = match density {
+            Some(Number::Volume(volume)) => {
+                medium.variation = Some(variation(table, volume, temperature));
+                return medium;
+            }
+            Some(Number::Varying(density)) => density,
             Some(Number::Even(density)) => {
                 medium.scale = density;
-                None
+                even
             }
-            Some(Number::Varying(density)) => Some(density),
-            None => None,
+            None => even,
         };
-        if density.is_none() && temperature.is_none() {
+        let is_even = matches!(density, Density::Texture { of: Scalar::Value(_), .. });
+        if is_even && temperature.is_none() {
             return medium;
         }
-        let even = Density::Texture { of: Scalar::Value(1.0), most: 1.0 };
+        let own = temperature.as_ref().map_or(DMat4::IDENTITY, |volume| volume.world_from_medium);
         medium.variation = Some(Variation {
-            world_from_medium: transform::world_from_object(table),
-            bounds: match &density {
-                Some(Density::Grid(placed)) => Some(placed.bounds),
-                _ => temperature.as_ref().map(|placed| placed.bounds),
-            },
-            density: density.unwrap_or(even),
+            world_from_medium: transform::world_from_object(table) * own,
+            bounds: temperature.as_ref().map(|volume| volume.bounds),
+            density,
             emission_scale: None,
-            temperature: temperature.map(|grid| Temperature { grid, offset: 0.0, scale: 1.0 }),
+            temperature: temperature.map(Volume::temperature),
         });
         medium
     }
@@ -112,7 +119,7 @@ impl Reader<'_, '_> {
     /// A density: a number, a texture, or numbers by the place.
     fn density(&mut self, value: Value<'_>, table: &Table<'_>) -> Result<Number> {
         if value.is_table() && !value.table("a density")?.has("type") {
-            return Ok(Number::Varying(Density::Grid(volume(value)?)));
+            return Ok(Number::Volume(self.volume(value)?));
         }
         let most = table.or("max_density", 1.0, |value| {
             value.single_where("a number greater than 0", |most| most > 0.0 && most.is_finite())
@@ -120,6 +127,28 @@ impl Reader<'_, '_> {
         Ok(match self.scalar_where(value, "a number of at least 0", |density| density >= 0.0)? {
             Scalar::Value(density) => Number::Even(density),
             of => Number::Varying(Density::Texture { of, most }),
+        })
+    }
+
+    /// Numbers by the place: by a formula, or a grid of a file.
+    fn volume(&mut self, value: Value<'_>) -> Result<Volume> {
+        let table = value.table("numbers by the place")?;
+        let Some(file) = table.find("file") else {
+            table.allow(&[VOLUME]);
+            let placed = formula(&table)?;
+            return Ok(Volume { bounds: placed.bounds, placed, world_from_medium: DMat4::IDENTITY });
+        };
+        table.allow(&[FILE]);
+        let path = self.resolve(file, "the name of a NanoVDB file")?;
+        let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
+        let volume = nanovdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
+        let (faces, bounds) = (volume.faces(), volume.bounds.map(IVec3::as_vec3));
+        // What is negative is nothing.
+        let grid = Arc::new(volume.grid.map(|number| number.max(0.0)));
+        Ok(Volume {
+            placed: Placed { grid, bounds: faces },
+            world_from_medium: volume.world_from_index,
+            bounds,
         })
     }
 
@@ -152,15 +181,52 @@ impl Reader<'_, '_> {
 enum Number {
     Even(f32),
     Varying(Density),
+    Volume(Volume),
 }
 
-/// Numbers by the place: a formula in a box, at the centres of its cells.
-fn volume(value: Value<'_>) -> Result<Placed<f32>> {
-    let table = value.table("numbers by the place")?;
-    table.allow(&[VOLUME]);
+/// Numbers by the place, in a space of their own.
+struct Volume {
+    placed: Placed<f32>,
+    world_from_medium: DMat4,
+    /// The box outside of which there are none.
+    bounds: [Vec3; 2],
+}
+
+impl Volume {
+    /// As temperatures.
+    fn temperature(self) -> Temperature {
+        Temperature { grid: self.placed, offset: 0.0, scale: 1.0 }
+    }
+}
+
+/// Densities of a grid, and temperatures of another.
+fn variation(table: &Table<'_>, density: Volume, temperature: Option<Volume>) -> Variation {
+    let mut bounds = density.bounds;
+    let temperature = temperature.and_then(|mut hot| {
+        let place = nanovdb::placement(&density.world_from_medium, &hot.world_from_medium, hot.bounds);
+        if place.is_none() {
+            table.note(table.error_at("temperature", "its axes are not those of `density`"));
+        }
+        let place = place?;
+        let [low, high] = hot.bounds.map(&place);
+        bounds = [bounds[0].min(low), bounds[1].max(high)];
+        hot.placed.bounds = hot.placed.bounds.map(&place);
+        Some(hot.temperature())
+    });
+    Variation {
+        world_from_medium: transform::world_from_object(table) * density.world_from_medium,
+        bounds: Some(bounds),
+        density: Density::Grid(density.placed),
+        emission_scale: None,
+        temperature,
+    }
+}
+
+/// A formula in a box, at the centres of its cells.
+fn formula(table: &Table<'_>) -> Result<Placed<f32>> {
     let min = table.or("min", DVec3::NEG_ONE, Value::vector);
     let max = table.or("max", DVec3::ONE, Value::vector);
-    let cells = table.or("cells", CELLS, |value| value.integer(1, 512));
+    let cells = table.or("cells", CELLS, |value| value.integer(1, 256));
     let formula =
         table.need("formula", "\"1 - sqrt(x*x + y*y + z*z)\"", "0", |value| value.text("a formula"));
     table.sound(&["min", "max", "cells", "formula"])?;
@@ -178,7 +244,7 @@ fn volume(value: Value<'_>) -> Result<Placed<f32>> {
         }
     };
     let expression = parse(formula, 0).map_err(fault)?;
-    let mut grid = Grid::new(count).ok_or_else(|| table.error_at("cells", "too many cells".to_owned()))?;
+    let mut values = Vec::with_capacity(count.iter().product::<u32>() as usize);
     for z in 0..count[2] {
         for y in 0..count[1] {
             for x in 0..count[0] {
@@ -191,9 +257,8 @@ fn volume(value: Value<'_>) -> Result<Placed<f32>> {
                     None => Err(Fault::new(at, format!("{name:?} is no coordinate"))),
                 };
                 match evaluate(&expression, &named, &Allowance::default()).map_err(fault)? {
-                    // What is negative, or no number, is nothing.
-                    Quantity::Number(number) if number > 0.0 => grid.set(cell, (number as f32).min(f32::MAX)),
-                    Quantity::Number(_) => {}
+                    // What is negative is nothing.
+                    Quantity::Number(number) => values.push((number as f32).max(0.0).min(f32::MAX)),
                     other => {
                         let message = format!("it is {}; expected a number", other.what());
                         return Err(table.error_at("formula", message));
@@ -202,5 +267,7 @@ fn volume(value: Value<'_>) -> Result<Placed<f32>> {
             }
         }
     }
+    let grid = Grid::from_values(count, &values)
+        .ok_or_else(|| table.error_at("cells", "the box has too many cells".to_owned()))?;
     Ok(Placed { grid: Arc::new(grid), bounds: [min.as_vec3(), max.as_vec3()] })
 }

@@ -36,7 +36,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
         ("a picture".to_owned(), texture::PICTURE.to_vec()),
         ("[media.NAME]".to_owned(), [medium::KEYS, transform::KEYS].concat()),
-        ("numbers by the place".to_owned(), medium::VOLUME.to_vec()),
+        ("numbers by the place".to_owned(), [medium::VOLUME, medium::FILE].concat()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
         ("[[solid.of]]".to_owned(), [shape::OPERAND, transform::KEYS].concat()),

@@ -21,6 +21,7 @@ mod models_formats;
 mod models_hostile;
 mod models_places;
 mod named_files;
+mod nanovdb;
 mod pbrt;
 mod pbrt_errors;
 mod pbrt_hostile;

@@ -336,7 +336,7 @@ fn media_below_surfaces_have_names_coefficients_or_effects() {
 fn media_are_around_the_camera_and_beside_shapes() {
     let made = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ]\n\
                 MakeNamedMedium \"b\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ] \"rgb Le\" [ 1 0 0 ]\n\
-                MakeNamedMedium \"c\" \"string type\" \"cloud\"\n";
+                MakeNamedMedium \"c\" \"string type\" \"homogeneous\" \"string preset\" \"Skin1\"\n";
     let world = "Camera \"perspective\" WorldBegin Shape \"sphere\" MediumInterface \"a\" Shape \"sphere\"\n\
                  MediumInterface \"c\" \"\" Shape \"sphere\"";
     let of = |integrator: &str| {

@@ -128,7 +128,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "atmosphere light settings",
             "shape texture",
             "composite scene text",
-            "builder chain count duplicates model",
+            "builder chain count duplicates model nanovdb",
             "boolean ies npy stl subdivision validate",
             "obj ply",
             "pbrt studio",

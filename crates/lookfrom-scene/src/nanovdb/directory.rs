@@ -1,0 +1,113 @@
+//! Segments of files: which grids there are, where, and how they are compressed.
+
+use std::borrow::Cow;
+
+use super::bytes::Bytes;
+use super::header::check_version;
+use crate::budget::{Budget, Reserved};
+use crate::error::{Error, ErrorKind, Location, Result};
+
+/// The first bytes of a segment.
+const MAGICS: [&[u8]; 2] = [b"NanoVDB0", b"NanoVDB2"];
+/// The first bytes of a grid without a segment, from version 32.6 on.
+const RAW: &[u8] = b"NanoVDB1";
+/// Bytes 0 to 3 of an OpenVDB file.
+const OPEN_VDB: &[u8] = b" BDV";
+
+/// Bytes of the header of a segment.
+const SEGMENT: u64 = 16;
+/// Bytes of what a segment tells of a grid, before its name.
+const METADATA: u64 = 176;
+
+/// A grid of a file.
+pub(super) struct Entry<'a> {
+    pub(super) name: String,
+    codec: u16,
+    /// Bytes when it is unpacked.
+    size: u64,
+    stored: &'a [u8],
+}
+
+/// All grids of a file, in order.
+pub(super) fn entries(bytes: Bytes<'_>) -> Result<Vec<Entry<'_>>> {
+    let (mut entries, mut at) = (Vec::new(), 0);
+    while at < bytes.length() || entries.is_empty() {
+        let magic = bytes.slice(at, 8, "the header of a segment")?;
+        if !MAGICS.contains(&magic) {
+            return Err(no_segment(bytes, at, magic));
+        }
+        check_version(bytes, at + 8)?;
+        let (count, codec) = (bytes.u16(at + 12)?, bytes.u16(at + 14)?);
+        at += SEGMENT;
+        let mut grids = Vec::new();
+        for _ in 0..count {
+            bytes.slice(at, METADATA, "the description of a grid")?;
+            let [size, stored] = [bytes.u64(at)?, bytes.u64(at + 8)?];
+            let length = u64::from(bytes.u32(at + 136)?);
+            let name = bytes.slice(at + METADATA, length, "the name of a grid")?;
+            let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
+            grids.push((String::from_utf8_lossy(name).into_owned(), size, stored));
+            at += METADATA + length;
+        }
+        for (name, size, length) in grids {
+            let stored = bytes.slice(at, length, &format!("the grid {name:?}"))?;
+            entries.push(Entry { name, codec, size, stored });
+            at += length;
+        }
+        if count == 0 {
+            return Err(bytes.error(at, ErrorKind::Syntax, "a segment without grids"));
+        }
+    }
+    Ok(entries)
+}
+
+fn no_segment(bytes: Bytes<'_>, at: u64, magic: &[u8]) -> Error {
+    let unsupported = |message| bytes.error(at, ErrorKind::Unsupported, message);
+    if at == 0 && magic == RAW {
+        return unsupported("a grid without a segment around it")
+            .hint("`nanovdb::io::writeGrid` writes files of segments");
+    }
+    if at == 0 && magic.starts_with(OPEN_VDB) {
+        return unsupported("an OpenVDB file, expected a NanoVDB file").hint("`nanovdb_convert` converts it");
+    }
+    bytes.error(at, ErrorKind::Syntax, "expected a segment, which begins with `NanoVDB0` or `NanoVDB2`")
+}
+
+impl<'a> Entry<'a> {
+    /// The bytes of the grid.
+    pub(super) fn unpacked(&self, at: &Location, budget: &Budget) -> Result<Reserved<Cow<'a, [u8]>>> {
+        let damaged = |message: String| {
+            let message = format!("the grid {:?} {message}", self.name);
+            Error::syntax(at, message).hint("the file may be damaged: write it again")
+        };
+        match self.codec {
+            0 => match self.stored.get(..self.size as usize) {
+                Some(stored) => Ok(Cow::Borrowed(stored).into()),
+                None => Err(damaged(format!("has {} bytes, expected {}", self.stored.len(), self.size))),
+            },
+            1 => {
+                let stored = Bytes::new(self.stored, at, " of the packed grid");
+                let packed = stored.slice(8, stored.u64(0)?, "the packed grid")?;
+                let memory = budget.reserve(self.size, "the unpacked grid", at)?;
+                let unpacked =
+                    miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, self.size as usize);
+                match unpacked {
+                    Ok(unpacked) if unpacked.len() as u64 == self.size => {
+                        Ok(Reserved::new(unpacked.into(), memory))
+                    }
+                    Ok(unpacked) => {
+                        Err(damaged(format!("unpacks to {} bytes, expected {}", unpacked.len(), self.size)))
+                    }
+                    Err(error) => Err(damaged(format!("cannot be unpacked: {error}"))),
+                }
+            }
+            codec => {
+                let name = if codec == 2 { "BLOSC".to_owned() } else { format!("the unknown codec {codec}") };
+                let message =
+                    format!("the grid {:?} is compressed by {name}, expected ZIP or none", self.name);
+                let error = Error::new(ErrorKind::Unsupported, at, message);
+                Err(error.hint("write it again with the codec ZIP or NONE of NanoVDB"))
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Headers of grids: version, type, class, and where the grid is.
+
+use glam::{DMat3, DMat4, DVec3};
+
+use super::bytes::Bytes;
+use super::leaf::Kind;
+use crate::error::{ErrorKind, Result};
+
+/// Bytes of the header; the tree follows.
+pub(super) const HEADER: u64 = 672;
+
+const CLASS: u64 = 632;
+const TYPE: u64 = 636;
+/// The matrix of the map in rows, and its translation.
+const MATRIX: u64 = 384;
+const TRANSLATION: u64 = 528;
+
+const MAGICS: [&[u8]; 2] = [b"NanoVDB0", b"NanoVDB1"];
+
+/// The version that is read: it changes with the layout of bytes.
+const MAJOR: u32 = 32;
+
+/// Names of types of values, by their numbers.
+const TYPES: &[&str] = &[
+    "unknown", "float", "double", "int16", "int32", "int64", "Vec3f", "Vec3d", "mask", "half", "uint32",
+    "bool", "RGBA8", "Fp4", "Fp8", "Fp16", "FpN", "Vec4f", "Vec4d", "index",
+];
+
+/// Names of classes, by their numbers.
+const CLASSES: &[&str] = &[
+    "unknown",
+    "level set",
+    "fog volume",
+    "staggered",
+    "point index",
+    "point data",
+    "topology",
+    "voxel volume",
+    "index",
+    "tensor",
+];
+
+/// What a header tells.
+pub(super) struct Header {
+    /// The type of its leaves.
+    pub(super) kind: Kind,
+    /// It has an inverse.
+    pub(super) world_from_index: DMat4,
+}
+
+impl Header {
+    /// # Errors
+    /// `Syntax` for what is no header, `Unsupported` for other versions, types and classes, `Invalid` for a map without an inverse.
+    pub(super) fn new(bytes: Bytes<'_>) -> Result<Self> {
+        bytes.slice(0, HEADER, "the header of a grid")?;
+        if !MAGICS.contains(&bytes.slice(0, 8, "a number")?) {
+            let message = "expected a grid, which begins with `NanoVDB0` or `NanoVDB1`";
+            return Err(bytes.error(0, ErrorKind::Syntax, message));
+        }
+        check_version(bytes, 16)?;
+        let unsupported = |at, message: String| bytes.error(at, ErrorKind::Unsupported, message);
+        let named = |names: &[&str], number: u32| match names.get(number as usize) {
+            Some(name) => format!("{name:?}"),
+            None => number.to_string(),
+        };
+        let [class, kind] = [bytes.u32(CLASS)?, bytes.u32(TYPE)?];
+        if !matches!(class, 0 | 2) {
+            let message = format!("a grid of the class {}, expected a fog volume", named(CLASSES, class));
+            return Err(unsupported(CLASS, message).hint("densities are grids of the class \"fog volume\""));
+        }
+        let kind = Kind::of(kind).ok_or_else(|| {
+            let message =
+                format!("a grid of the type {}, expected float, Fp4, Fp8, Fp16 or FpN", named(TYPES, kind));
+            unsupported(TYPE, message).hint("convert it to a grid of the type float")
+        })?;
+        Ok(Self { kind, world_from_index: map(bytes)? })
+    }
+}
+
+/// The affine map from index space to the world.
+fn map(bytes: Bytes<'_>) -> Result<DMat4> {
+    let vector = |at| Ok(DVec3::new(bytes.f64(at)?, bytes.f64(at + 8)?, bytes.f64(at + 16)?));
+    let rows = [vector(MATRIX)?, vector(MATRIX + 24)?, vector(MATRIX + 48)?];
+    let linear = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
+    let map = DMat4::from_mat3_translation(linear, vector(TRANSLATION)?);
+    let determinant = linear.determinant();
+    if !map.is_finite() || !map.inverse().is_finite() || determinant == 0.0 {
+        let message = "the map from index space to the world has no inverse";
+        return Err(bytes.error(MATRIX, ErrorKind::Invalid, message));
+    }
+    Ok(map)
+}
+
+/// # Errors
+/// `Unsupported` if the version at a position is another one.
+pub(super) fn check_version(bytes: Bytes<'_>, at: u64) -> Result<()> {
+    let version = bytes.u32(at)?;
+    let (major, minor, patch) = (version >> 21, version >> 10 & 0x7ff, version & 0x3ff);
+    if major == MAJOR {
+        return Ok(());
+    }
+    let message = format!("version {major}.{minor}.{patch} of NanoVDB, expected {MAJOR}");
+    let error = bytes.error(at, ErrorKind::Unsupported, message);
+    Err(error.hint("write the file again by another version of NanoVDB"))
+}
