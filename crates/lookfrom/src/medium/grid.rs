@@ -6,6 +6,9 @@ use std::sync::Arc;
 use glam::Vec3;
 use lookfrom_scene::grid::{Grid, Placed};
 
+use crate::core::color::{Sigmoid, Unbounded};
+use crate::core::spectrum::Spectrum;
+
 /// A grid, and where its cells are in medium space.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedGrid<T> {
@@ -68,7 +71,34 @@ impl<T: Copy + Default + PartialEq> PlacedGrid<T> {
     }
 }
 
+impl PlacedGrid<Unbounded> {
+    /// The spectrum at a point of medium space, at wavelengths in nm: between those at the eight centres, which are evaluated side by side.
+    pub(super) fn spectrum_at(&self, point: Vec3, lambda: &[f32; 4]) -> Spectrum {
+        let between = self.between(point);
+        let corners = self.grid.corners(between.first);
+        let weights = between.weights();
+        let scale: [f32; 8] = std::array::from_fn(|corner| weights[corner] * corners[corner].scale);
+        let coefficients: [[f32; 8]; 3] =
+            std::array::from_fn(|k| std::array::from_fn(|corner| corners[corner].sigmoid.0[k]));
+        Spectrum(lambda.map(|nm| {
+            let values = Sigmoid::values(&coefficients, nm);
+            let terms: [f32; 8] = std::array::from_fn(|corner| values[corner] * scale[corner]);
+            let four: [f32; 4] = std::array::from_fn(|k| terms[k] + terms[k + 4]);
+            (four[0] + four[2]) + (four[1] + four[3])
+        }))
+    }
+}
+
 impl Between {
+    /// The weights of the eight centres, x fastest.
+    fn weights(&self) -> [f32; 8] {
+        let Vec3 { x, y, z } = self.fraction;
+        std::array::from_fn(|corner| {
+            let part = |t: f32, bit: usize| if corner >> bit & 1 == 1 { t } else { 1.0 - t };
+            part(x, 0) * part(y, 1) * part(z, 2)
+        })
+    }
+
     /// Interpolates between the values at the eight centres, x fastest.
     #[inline]
     fn interpolate<V: Copy + Add<Output = V> + Mul<f32, Output = V>>(&self, values: [V; 8]) -> V {

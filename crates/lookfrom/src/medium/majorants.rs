@@ -41,7 +41,8 @@ impl Majorants {
         placed: &PlacedGrid<T>,
         measure: impl Fn(T) -> f32,
     ) -> Self {
-        let size = placed.grid.size().map(|cells| cells.min(MOST_CELLS));
+        // Finer cells have fewer values beside their own.
+        let size = placed.grid.size().map(|cells| (2 * cells).min(MOST_CELLS));
         let mut majorants = Self { bounds, size, values: vec![0.0; size.iter().product::<u32>() as usize] };
         // Each value reaches to the centres beside its own, and a little farther by rounding.
         const REACH: f32 = 1.0 + 1.0 / 256.0;

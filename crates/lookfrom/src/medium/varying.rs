@@ -211,7 +211,7 @@ impl Colors {
     fn at(&self, point: Vec3, mode: &SpectralMode) -> Spectrum {
         match (&self.uplifted, mode) {
             (Some(uplifted), SpectralMode::Spectral(wavelengths)) => {
-                let values = uplifted.at(point, |of| of.at(&wavelengths.lambda));
+                let values = uplifted.spectrum_at(point, &wavelengths.lambda);
                 if self.spectrum_type == SpectrumType::Illuminant {
                     values * wavelengths.daylight
                 } else {

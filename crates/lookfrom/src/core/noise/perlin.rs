@@ -40,7 +40,7 @@ pub fn noise(p: Vec3) -> f32 {
         return 0.0;
     }
     // Find the cell of the lattice, modulo 256, and the position in it.
-    let floor = p.floor();
+    let floor = Vec3::from_array(p.to_array().map(super::floor));
     let place = p - floor;
     let [x, y, z] = floor.to_array().map(|x| x as i64 as u8);
     // Each corner contributes a linear ramp along its gradient, 0 at the corner.
