@@ -132,3 +132,6 @@ impl Coefficients {
         per_length * self.extinction().map(effective_length)
     }
 }
+
+#[cfg(test)]
+mod tests;

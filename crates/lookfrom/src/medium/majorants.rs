@@ -73,6 +73,12 @@ impl Majorants {
         self
     }
 
+    /// Multiplies all bounds.
+    #[cfg(test)]
+    pub(super) fn multiply(&mut self, factor: f32) {
+        self.values.iter_mut().for_each(|bound| *bound *= factor);
+    }
+
     /// These bounds plus 1.
     pub(super) fn plus_one(mut self) -> Self {
         self.values.iter_mut().for_each(|bound| *bound += 1.0);
