@@ -36,6 +36,7 @@ use crate::budget::Reserved;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::load;
+use crate::medium::Medium;
 use crate::scene::Scene;
 use crate::{studio, subdivision};
 
@@ -59,6 +60,9 @@ pub(crate) fn from_bytes(
     let mut scene = Scene { image, render, ..Scene::default() };
     let model = document_model(content, path, context, &mut scene)?;
     model.into_scene(&mut scene);
+    if scene.media.iter().any(Medium::scatters) {
+        scene.render.depth = studio::DEPTH_IN_MEDIA;
+    }
     Ok(scene)
 }
 

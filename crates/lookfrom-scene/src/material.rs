@@ -49,7 +49,7 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
-    /// What closed bodies of it are filled with, besides what absorbs by the material itself.
+    /// What closed bodies of it are filled with; `None` for no more than what the material itself absorbs.
     pub medium: Option<MediumId>,
 }
 
@@ -304,7 +304,7 @@ pub struct Principled {
     /// Whether the surface bounds a refracting volume (`KHR_materials_volume` with a thickness); otherwise it is a thin
     /// sheet.
     pub is_solid: bool,
-    /// Absorption coefficient of the volume in world units, for each primary: ≥ 0.
+    /// Absorption coefficient of the volume in world units, for each primary: ≥ 0. [`Material::medium`] replaces it.
     pub absorption: [f32; 3],
     /// The fraction of diffuse light that is transmitted instead of reflected (`KHR_materials_diffuse_transmission`).
     pub diffuse_transmission: Scalar,

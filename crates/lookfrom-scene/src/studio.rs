@@ -50,6 +50,8 @@ const ROOM: f32 = 0.3;
 const LAMP: f32 = 0.55;
 /// Default samples per pixel for images of models without denoising.
 pub const MODEL_SAMPLES: u32 = 64;
+/// Default path depth for images of models with media that scatter: light leaves wax and milk after hundreds of bounces.
+pub(crate) const DEPTH_IN_MEDIA: u32 = 200;
 /// Default samples per pixel for thumbnails.
 const THUMBNAIL_SAMPLES: u32 = 8;
 /// Maximum number of pixels of a thumbnail.

@@ -5,6 +5,7 @@
 //! approximate what path tracing computes.
 
 mod glossiness;
+mod volume;
 
 use std::collections::BTreeMap;
 
@@ -135,7 +136,12 @@ impl Reader<'_, '_, '_> {
             Some(name) => name.clone(),
             None => self.pointer.trim_start_matches('/').replace('/', " "),
         };
+        let medium = match &kind {
+            MaterialKind::Principled(look) => self.medium(entry, &name, look),
+            _ => None,
+        };
         let mut material = Material::new(name, self.document.at(&self.pointer), kind);
+        material.medium = medium;
         material.bump_mapping = bump_mapping.map_or(BumpMapping::None, BumpMapping::NormalTexture);
         self.scene.materials.push(material);
         let is_double_sided = entry.double_sided.unwrap_or(false);
@@ -201,7 +207,7 @@ impl Reader<'_, '_, '_> {
         }
         if let Some(own) = &extensions.volume {
             look.is_solid = own.thickness_factor.is_some_and(|thickness| thickness > 0.0);
-            look.absorption = absorption(own);
+            look.absorption = volume::attenuation(own);
         }
         if let Some(own) = &extensions.diffuse_transmission {
             let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture";
@@ -413,15 +419,4 @@ fn unit(number: Option<f64>, otherwise: f32) -> f32 {
 /// A number clamped to [0, 1e30].
 fn positive(number: f64) -> f32 {
     number.clamp(0.0, 1e30) as f32
-}
-
-/// Beer–Lambert law: white light has the attenuation colour after the distance, so absorption = −ln(colour) / distance.
-fn absorption(volume: &json::Volume) -> [f32; 3] {
-    let distance = volume.attenuation_distance.unwrap_or(f64::INFINITY);
-    if !(distance > 0.0 && distance.is_finite()) {
-        return [0.0; 3];
-    }
-    // A colour of 0 would need infinite absorption, so it is clamped.
-    let color = volume.attenuation_color.unwrap_or([1.0; 3]);
-    color.map(|c| positive(-libm::log(c.clamp(1e-6, 1.0)) / distance))
 }

@@ -11,7 +11,7 @@ use lookfrom_scene::files::{CameraChoice, ImportOptions};
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{BumpMapping, Color, MaterialKind, Principled, Scalar};
-use lookfrom_scene::scene::TextureId;
+use lookfrom_scene::scene::{MediumId, TextureId};
 use lookfrom_scene::settings::{Integrator, Tonemap};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
 use lookfrom_scene::texture::{Channel, Mapping, TexelFilter, TextureKind, Wrap};
@@ -583,6 +583,105 @@ fn extensions_of_materials_are_read() {
     let emission = scene.shapes[0].emission.expect("it shines");
     assert_eq!((emission.radiance, emission.two_sided), (Color::Value([4.0, 0.0, 2.0]), true));
     assert!(!scene.shapes[0].single_sided);
+}
+
+/// A white body in which half of the light is left after a length of 2, with this scattering and more extensions.
+fn scattering(scatter: Value, more: Value) -> (Scene, Vec<String>) {
+    let mut extensions = json!({
+        "KHR_materials_transmission": {"transmissionFactor": 1},
+        "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [0.5, 0.5, 1]},
+        "KHR_materials_volume_scatter": scatter,
+    });
+    if let (Value::Object(extensions), Value::Object(more)) = (&mut extensions, more) {
+        extensions.extend(more);
+    }
+    let mut model = Model::default();
+    let positions = model.square();
+    let primitive = json!({"attributes": {"POSITION": positions}, "mode": 5, "material": 0});
+    let used = ["KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_volume_scatter"];
+    let materials = json!([{"name": "wax", "extensions": extensions}]);
+    let root = one(primitive, json!({"materials": materials, "extensionsUsed": used}));
+    model.read(root).expect("it is valid")
+}
+
+#[test]
+fn volumes_that_scatter_are_filled_with_a_medium() {
+    // By the texts of 2025 and of 2026.
+    for name in ["multiscatterColor", "multiscatterColorFactor"] {
+        let (scene, warnings) = scattering(json!({name: [1, 0.5, 1], "scatterAnisotropy": 0.25}), json!({}));
+        assert_eq!(warnings, Vec::<String>::new());
+        assert_eq!(scene.materials[0].medium.map(MediumId::index), Some(0));
+        let medium = &scene.media[0];
+        assert_eq!((medium.name.as_str(), medium.g, medium.scale), ("wax", 0.25, 1.0));
+        assert_eq!(medium.at.to_string(), "m/a.gltf#/materials/0/extensions/KHR_materials_volume_scatter");
+        let (Color::Value(absorption), Color::Value(scattering)) = (medium.absorption, medium.scattering)
+        else {
+            panic!("values")
+        };
+        let attenuation = 0.5_f32.ln() / -2.0;
+        let total = Vec3::from(absorption) + Vec3::from(scattering);
+        assert!((total - Vec3::new(attenuation, attenuation, 0.0)).length() < 1e-6, "{total}");
+        assert!(absorption[0] < 1e-7 * attenuation, "white absorbs nothing");
+        // s of a half is 4.09712 + 2.104315 − √(9.59217 + 20.8404 + 4.42815) = 0.297138.
+        let s2 = 0.297_138_f32 * 0.297_138;
+        let albedo = (1.0 - s2) / (1.0 - 0.25 * s2);
+        assert!((scattering[1] / attenuation - albedo).abs() < 1e-5, "{}", scattering[1] / attenuation);
+        // Light bounces often in there.
+        assert_eq!((scene.render.integrator, scene.render.depth), (Integrator::Path, 200));
+    }
+}
+
+#[test]
+fn volumes_that_only_absorb_have_no_medium() {
+    let nothing = |scatter: Value, more: Value, expected: &[&str]| {
+        let (scene, warnings) = scattering(scatter, more);
+        assert_eq!((scene.media.len(), scene.materials[0].medium, scene.render.depth), (0, None, 8));
+        assert_eq!(warnings.len(), expected.len(), "{warnings:?}");
+        for (warning, expected) in warnings.iter().zip(expected) {
+            assert!(warning.contains(expected), "{warning}");
+        }
+    };
+    let white = json!({"multiscatterColorFactor": [1, 1, 1]});
+    nothing(json!({}), json!({}), &[]);
+    nothing(json!({"multiscatterColor": [0, 0, 0]}), json!({}), &[]);
+    nothing(json!({"multiscatterColor": [-1, -0.5, 0]}), json!({}), &[]);
+    let volume = |volume: Value| json!({"KHR_materials_volume": volume});
+    nothing(white.clone(), volume(json!({"thicknessFactor": 1})), &[]);
+    let clear = json!({"thicknessFactor": 1, "attenuationDistance": 1});
+    nothing(white.clone(), volume(clear), &[]);
+    let thin = "KHR_materials_volume_scatter: nothing is scattered in a thin sheet";
+    let sheet = json!({"attenuationDistance": 1, "attenuationColor": [0, 0, 0]});
+    nothing(white.clone(), volume(sheet), &[thin]);
+    nothing(white.clone(), volume(Value::Null), &[thin]);
+    nothing(white, json!({"KHR_materials_unlit": {}}), &[]);
+}
+
+#[test]
+fn scattering_out_of_range_is_clamped() {
+    let (scene, warnings) = scattering(
+        json!({"multiscatterColorFactor": [2, -1, 1e300], "multiscatterColorTexture": {"index": 7}, "scatterAnisotropy": -1}),
+        json!({}),
+    );
+    let expected = [
+        "KHR_materials_volume_scatter/multiscatterColorTexture: the texture is ignored",
+        "KHR_materials_volume_scatter/multiscatterColorFactor: the factor is [2, -1, 1000",
+        "KHR_materials_volume_scatter/scatterAnisotropy: the anisotropy is -1; expected a number between -1 and 1: -0.999 is used",
+    ];
+    assert_eq!(warnings.len(), expected.len(), "{warnings:?}");
+    for (warning, expected) in warnings.iter().zip(expected) {
+        assert!(warning.contains(expected), "{warning}");
+    }
+    assert_eq!(scene.media[0].g, -0.999);
+    scene.validate().expect("it is valid");
+    let (scene, warnings) =
+        scattering(json!({"multiscatterColor": [1, 1, 1], "scatterAnisotropy": 1e30}), json!({}));
+    assert_eq!((scene.media[0].g, warnings.len()), (0.999, 1));
+    // The densest that can be written.
+    let dense =
+        json!({"thicknessFactor": 1, "attenuationDistance": 1e-300, "attenuationColor": [0, -1, 0.5]});
+    let (scene, _) =
+        scattering(json!({"multiscatterColor": [1, 0.5, 1]}), json!({"KHR_materials_volume": dense}));
+    scene.validate().expect("it is valid");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use lookfrom_scene::material::Color;
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
 use proptest::prelude::*;
@@ -27,6 +28,7 @@ const JSON: &str = r#"{
         {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"rotation": 1}}}},
             "alphaMode": "MASK", "emissiveFactor": [1, 0, 0], "normalTexture": {"index": 0}},
         {"extensions": {"KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [0, 1, 1]},
+            "KHR_materials_volume_scatter": {"multiscatterColor": [0.5, 1, 0], "scatterAnisotropy": 0.5},
             "KHR_materials_anisotropy": {"anisotropyStrength": 0.5}}}
     ],
     "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071}],
@@ -111,6 +113,13 @@ fn check(scene: &Scene) {
                 assert!(strands.iter().all(|s| s.points.iter().all(|p| p.is_finite()) && s.width[0] > 0.0));
             }
             other => panic!("{other:?}"),
+        }
+    }
+    for medium in &scene.media {
+        assert!(medium.g.abs() < 1.0);
+        for color in [medium.absorption, medium.scattering] {
+            let Color::Value(rgb) = color else { panic!("{color:?}") };
+            assert!(rgb.into_iter().all(|sigma| sigma.is_finite() && sigma >= 0.0), "{rgb:?}");
         }
     }
     assert!(scene.instances.iter().all(|instance| instance.world_from_object.inverse().is_finite()));

@@ -9,6 +9,7 @@ use lookfrom_scene::material::{
     BumpMapping, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar, SubsurfaceMedium,
 };
 use lookfrom_scene::medium::Density;
+use lookfrom_scene::scene::MediumId;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
@@ -525,7 +526,7 @@ material = "liquid"
     let medium = |name: &str| scene.media.iter().find(|medium| medium.name == name).expect("a medium");
     let id = |name: &str| scene.media.iter().position(|medium| medium.name == name);
     let (haze, smoke, spots, flame) = (medium("haze"), medium("smoke"), medium("spots"), medium("flame"));
-    assert_eq!(scene.camera.as_ref().and_then(|camera| camera.medium).map(|id| id.index()), id("haze"));
+    assert_eq!(scene.camera.as_ref().and_then(|camera| camera.medium).map(MediumId::index), id("haze"));
     assert_eq!((haze.scattering, haze.g, haze.scale), (Color::gray(0.1), -0.4, 3.0));
     assert!(haze.scatters() && !haze.emits() && haze.variation.is_none());
     assert!(!smoke.scatters() && smoke.emits());
@@ -555,7 +556,7 @@ material = "liquid"
 
     // What is filled has materials of its own, each once.
     let inside =
-        |shape: usize| scene.materials[scene.shapes[shape].material.index()].medium.map(|id| id.index());
+        |shape: usize| scene.materials[scene.shapes[shape].material.index()].medium.map(MediumId::index);
     assert_eq!([0, 1, 2, 3].map(inside), [id("smoke"), id("smoke"), id("flame"), id("spots")]);
     assert_eq!(scene.shapes[0].material, scene.shapes[1].material);
     let of = |shape: usize| &scene.materials[scene.shapes[shape].material.index()].kind;

@@ -62,7 +62,7 @@ fn corners((corner, u, v, _): Panel) -> Form {
 }
 
 /// A glTF file whose ball has a material and which uses these extensions of materials.
-fn gltf(material: &str, extensions: &str) -> Scene {
+pub(super) fn gltf(material: &str, extensions: &str) -> Scene {
     let (mut bytes, mut views, mut accessors) = (Vec::new(), String::new(), String::new());
     let (mut meshes, mut nodes, mut materials) = (String::new(), String::new(), material.to_owned());
     let forms = std::iter::once(ball()).chain(PANELS.map(corners));
@@ -118,7 +118,7 @@ fn gltf(material: &str, extensions: &str) -> Scene {
 }
 
 /// A scene of pbrt whose ball has what these lines say.
-fn pbrt(ball_is: &str) -> Scene {
+pub(super) fn pbrt(ball_is: &str) -> Scene {
     let mesh = |(points, triangles): Form, normals: bool| {
         let numbers = points.iter().flatten().fold(String::new(), |text, number| format!("{text} {number}"));
         let corners =
@@ -172,7 +172,7 @@ fn difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f64 {
 }
 
 /// The scenes' pictures differ as two of the same scene do, and no more.
-fn assert_same(gltf: &Scene, pbrt: &Scene, samples: u32) {
+pub(super) fn assert_same(gltf: &Scene, pbrt: &Scene, samples: u32) {
     let one = render(gltf, samples, 1);
     let [two, three] = [2, 3].map(|seed| render(pbrt, samples, seed));
     let noise = difference(&two, &three);

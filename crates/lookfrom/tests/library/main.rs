@@ -14,6 +14,7 @@ mod dispersion;
 mod enough;
 mod films;
 mod gltf_and_pbrt;
+mod gltf_media;
 mod inspect;
 mod inspect_lifts;
 mod inspect_lights;

@@ -286,6 +286,17 @@ def rows():
         surface((1, 1, 1), 0, 0, transmission={"transmissionFactor": 1},
                 volume={"thicknessFactor": 2, "attenuationColor": [0.9, 0.5, 0.1], **distance})
         for distance in ({}, *({"attenuationDistance": d} for d in (4, 2, 1, 0.4)))])
+    # Cloudy glass, milk, jade, wax and skin.
+    of_materials("volume-scatter", ["diffuse_transmission", "transmission", "volume", "volume_scatter"], [
+        surface((1, 1, 1), 0, roughness, **boundary,
+                volume={"thicknessFactor": 2, "attenuationColor": [0.37, 0.37, 0.37], "attenuationDistance": distance},
+                volume_scatter={"multiscatterColorFactor": color, "scatterAnisotropy": anisotropy})
+        for boundary, roughness, distance, color, anisotropy in (
+            ({"transmission": {"transmissionFactor": 1}}, 0, 2, [0.9, 0.9, 0.9], 0),
+            ({"transmission": {"transmissionFactor": 1}}, 0, 0.5, [0.9, 0.9, 0.9], 0),
+            ({"transmission": {"transmissionFactor": 1}}, 0.3, 0.2, [0.45, 0.8, 0.6], 0.3),
+            ({"diffuse_transmission": {"diffuseTransmissionFactor": 1}}, 0.4, 0.2, [0.95, 0.7, 0.35], 0),
+            ({"diffuse_transmission": {"diffuseTransmissionFactor": 1}}, 0.4, 0.05, [0.85, 0.45, 0.35], 0))])
     of_materials("clearcoat", ["clearcoat"], [
         surface(RED, 0, 0.8, clearcoat={"clearcoatFactor": factor, "clearcoatRoughnessFactor": roughness})
         for factor, roughness in ((0, 0), (0.3, 0), (1, 0), (1, 0.2), (1, 0.5))])

@@ -1,6 +1,7 @@
 //! Materials and their extensions, and their references to textures.
 
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::{Whole, or_default};
 
@@ -58,6 +59,8 @@ pub(crate) struct MaterialExtensions {
     pub(crate) unlit: Option<Unlit>,
     #[serde(rename = "KHR_materials_volume")]
     pub(crate) volume: Option<Volume>,
+    #[serde(rename = "KHR_materials_volume_scatter")]
+    pub(crate) volume_scatter: Option<VolumeScatter>,
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -158,6 +161,16 @@ pub(crate) struct Volume {
     pub(crate) thickness_factor: Option<f64>,
     pub(crate) attenuation_distance: Option<f64>,
     pub(crate) attenuation_color: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct VolumeScatter {
+    pub(crate) multiscatter_color_factor: Option<[f64; 3]>,
+    /// The name of the factor in the drafts of 2025.
+    pub(crate) multiscatter_color: Option<[f64; 3]>,
+    pub(crate) multiscatter_color_texture: Option<IgnoredAny>,
+    pub(crate) scatter_anisotropy: Option<f64>,
 }
 
 /// A texture reference of a material.
