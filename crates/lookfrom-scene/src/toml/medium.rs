@@ -257,8 +257,9 @@ fn formula(table: &Table<'_>) -> Result<Placed<f32>> {
                     None => Err(Fault::new(at, format!("{name:?} is no coordinate"))),
                 };
                 match evaluate(&expression, &named, &Allowance::default()).map_err(fault)? {
-                    // What is negative is nothing.
-                    Quantity::Number(number) => values.push((number as f32).max(0.0).min(f32::MAX)),
+                    // What is negative, or no number, is nothing.
+                    Quantity::Number(number) if number > 0.0 => values.push((number as f32).min(f32::MAX)),
+                    Quantity::Number(_) => values.push(0.0),
                     other => {
                         let message = format!("it is {}; expected a number", other.what());
                         return Err(table.error_at("formula", message));

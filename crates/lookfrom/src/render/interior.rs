@@ -6,7 +6,7 @@ use lookfrom_bvh::{Hit, Ray};
 use crate::core::warp;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::material::MaterialKind;
+use crate::shading::material::{Material, MaterialKind};
 use crate::world::World;
 
 /// Number of rays, of which more than half have to agree: models may have holes, and rays may graze edges.
@@ -16,7 +16,7 @@ const RAYS: u32 = 7;
 ///
 /// On the way of a ray from far away to the point each body is entered where its outside is met, and left at its inside.
 pub(super) fn interior_at(world: &World, point: DVec3, space: InteriorStack) -> InteriorStack {
-    if !world.materials.iter().any(|material| is_transparent_body(&material.kind)) {
+    if !world.materials.iter().any(is_transparent_body) {
         return space;
     }
     let mut hits: Vec<Hit> = Vec::new();
@@ -42,12 +42,12 @@ pub(super) fn interior_at(world: &World, point: DVec3, space: InteriorStack) -> 
 
 /// Whether a surface is that of a body that light enters, and says nothing else about the media on its sides.
 fn is_boundary(world: &World, surface: &SurfaceInteraction) -> bool {
-    surface.medium_interface.is_none()
-        && is_transparent_body(&world.materials[surface.material as usize].kind)
+    surface.medium_interface.is_none() && is_transparent_body(&world.materials[surface.material as usize])
 }
 
-fn is_transparent_body(kind: &MaterialKind) -> bool {
-    match kind {
+fn is_transparent_body(material: &Material) -> bool {
+    match &material.kind {
+        _ if material.medium.is_some() => true,
         MaterialKind::Whitted(whitted) => !whitted.transmission.is_gray(0.0),
         MaterialKind::Principled(look) => look.is_solid,
         _ => false,

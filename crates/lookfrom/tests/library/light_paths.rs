@@ -186,3 +186,33 @@ fn lights_are_told_apart_by_their_names() {
         assert!((mean - expected).abs() < 3.0 * error && error < 0.01 * expected, "{mean} ± {error}");
     }
 }
+
+/// What a medium scatters last before the camera is apart from all that surfaces do.
+#[test]
+fn media_have_a_letter() {
+    let fog = || {
+        scene(
+            r#"
+            camera = { lookfrom = [0, 0.5, 4], lookat = [0, 0.5, 0], medium = "fog" }
+            image = { width = 16, height = 12 }
+            render = { samples = 16, depth = 5 }
+            sphere = [{ center = [0, 0.5, 0], radius = 0.5, material = "clay" }]
+            light = [{ type = "sphere", center = [1, 2, 1], radius = 0.2, radiance = 20 }]
+            [media.fog]
+            scattering = 0.2
+            [materials.clay]
+            type = "diffuse"
+            "#,
+        )
+    };
+    let film = film_of(
+        fog(),
+        &[("all", "C.*"), ("fog", "CV.*"), ("clay", "CD.*"), ("seen", "CL"), ("later", "CD+V.*")],
+    );
+    let [all, fog_light, clay, seen, later] = [0, 1, 2, 3, 4].map(|layer| total(&film, layer));
+    assert!(fog_light > 0.0 && clay > 0.0 && later > 0.0 && later < clay, "{fog_light} {clay} {later}");
+    assert!((fog_light + clay + seen - all).abs() < 1e-4 * all, "{fog_light} {clay} {seen} {all}");
+    let mut clear = fog();
+    clear.camera.as_mut().expect("a camera").medium = None;
+    assert_eq!(total(&film_of(clear, &[("fog", "C.*V.*")]), 0), 0.0);
+}

@@ -6,7 +6,7 @@ use lookfrom_scene::Scene;
 use lookfrom_scene::settings::Integrator;
 
 use crate::scattering::{AROUND, SPECK, assert_near, mean, scene_of};
-use crate::support::Compiled;
+use crate::support::{Compiled, scene};
 
 /// Number of cells along each axis of the grids here.
 const SIZE: [usize; 3] = [5, 4, 11];
@@ -273,4 +273,54 @@ fn no_density_is_too_large() {
         let seen = mean(scene_of(8, 16, &medium, AROUND, &format!("{sky}{SPECK}")));
         assert!(seen.iter().all(|value| value.is_finite()), "{large}, {scale}: {seen:?}");
     }
+}
+
+/// A ball of our own format, filled with a medium, before or around the camera, under a sky of 1.
+fn ball(medium: &str, center: f64, more: &str) -> Scene {
+    scene(&format!(
+        r#"
+        camera = {{ lookfrom = [0, 0, 0], lookat = [0, 0, 1], fov = 1 }}
+        image = {{ width = 2, height = 2 }}
+        render = {{ samples = 4096, depth = 64 }}
+        light = [{{ type = "environment", color = 1 }}]
+        [[sphere]]
+        center = [0, 0, {center}]
+        medium = "m"
+        [media.m]
+        {medium}
+        {more}
+        "#
+    ))
+}
+
+#[test]
+fn bodies_are_filled_and_the_camera_may_be_in_one() {
+    let through = |length: f64| [(-0.7 * length).exp(), (-0.2 * length).exp(), 1.0];
+    let medium = "absorption = [0.7, 0.2, 0]";
+    assert_near(mean(ball(medium, 3.0, "")), through(2.0), 1e-3, "before");
+    assert_near(mean(ball(medium, 0.0, "")), through(1.0), 1e-3, "around");
+    // A body in another one, and a glass of the same index as what is around it.
+    let inside = r#"
+        [[sphere]]
+        center = [0, 0, 3]
+        radius = 0.5
+        material = "glass"
+        medium = "m"
+        [materials.glass]
+        type = "dielectric"
+        ior = 1"#;
+    assert_near(mean(ball(medium, 3.0, inside)), through(2.0), 1e-3, "one in the other");
+    // By a formula and by a texture that are the same everywhere.
+    for density in [
+        r#"{ formula = "2", min = [-2, -2, 1], max = [2, 2, 5], cells = 3 }"#,
+        r#"{ type = "noise", low = 2, high = 2 }"#,
+    ] {
+        let medium = format!("absorption = [0.35, 0.1, 0]\ndensity = {density}\nmax_density = 3");
+        assert_near(mean(ball(&medium, 3.0, "")), through(2.0), 0.02, density);
+    }
+    let white = r#"scattering = [2, 1, 3]
+        density = { type = "noise", low = 0, high = 2 }
+        max_density = 2"#;
+    let seen = mean(ball(white, 3.0, ""));
+    assert_near(seen, [1.0; 3], 0.03, "a furnace");
 }
