@@ -176,6 +176,7 @@ fn contents(counts: &Counts, line: &mut impl FnMut(&str, String)) {
         ("objects", counts.objects),
         ("instances", counts.instances),
         ("materials", counts.materials),
+        ("media", counts.media),
         ("textures", counts.textures),
     ];
     for (name, amount) in amounts.into_iter().filter(|(_, amount)| *amount > 0) {

@@ -25,6 +25,8 @@ pub struct Counts {
     pub instances: u64,
     /// Number of materials.
     pub materials: u64,
+    /// Number of media.
+    pub media: u64,
     /// Number of textures.
     pub textures: u64,
     /// Images used by textures and environments.
@@ -52,6 +54,7 @@ impl Counts {
             objects: scene.objects.len() as u64,
             instances: scene.instances.len() as u64,
             materials: scene.materials.len() as u64,
+            media: scene.media.len() as u64,
             textures: scene.textures.len() as u64,
             images: scene
                 .images

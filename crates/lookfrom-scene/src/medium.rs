@@ -119,6 +119,23 @@ impl Medium {
         self.scale > 0.0 && !is_black(self.scattering) && has_color
     }
 
+    /// Memory of its grids in bytes.
+    pub fn bytes(&self) -> u64 {
+        let Some(variation) = &self.variation else { return 0 };
+        let of = |placed: &Option<Placed<f32>>| placed.as_ref().map_or(0, |placed| placed.grid.bytes());
+        let of_colors =
+            |placed: &Option<Placed<[f32; 3]>>| placed.as_ref().map_or(0, |placed| placed.grid.bytes());
+        let density = match &variation.density {
+            Density::Grid(placed) => placed.grid.bytes(),
+            Density::Colors { absorption, scattering, emission } => {
+                [absorption, scattering, emission].into_iter().map(of_colors).sum()
+            }
+            Density::Cloud { .. } | Density::Texture { .. } => 0,
+        };
+        let temperature = variation.temperature.as_ref().map_or(0, |of| of.grid.grid.bytes());
+        (density + of(&variation.emission_scale) + temperature) as u64
+    }
+
     /// Whether it may emit light.
     pub fn emits(&self) -> bool {
         let has_own = self.variation.as_ref().is_some_and(|variation| {

@@ -199,6 +199,7 @@ impl Scene {
             + shapes(&self.shapes)
             + self.objects.iter().map(|object| shapes(&object.shapes)).sum::<u64>()
             + size_of_val(&*self.instances) as u64
+            + self.media.iter().map(Medium::bytes).sum::<u64>()
     }
 
     /// The bounding box of everything that is placed in the world.

@@ -66,6 +66,19 @@ pub fn schlick<R: Real>(cos: R) -> R {
     x2 * x2 * x
 }
 
+/// The index that a number in [0, 1) chooses, by probabilities.
+pub(crate) fn chosen(probabilities: &[f32], u: f32) -> usize {
+    let mut left = u;
+    for (index, &probability) in probabilities.iter().enumerate() {
+        if left < probability {
+            return index;
+        }
+        left -= probability;
+    }
+    // Rounding has left a rest.
+    probabilities.iter().rposition(|probability| *probability > 0.0).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,7 @@
 //! Tracking, "history-aware"): a path that one lane alone carries is sampled as that lane asks, and in a medium that absorbs
 //! nothing the sum of the lanes stays what it was.
 
+use crate::core::math::chosen;
 use crate::core::spectrum::Spectrum;
 use crate::medium::Coefficients;
 
@@ -39,7 +40,7 @@ impl Flight {
     pub(super) fn sample(medium: &Coefficients, beta: Spectrum, limit: f32, [which, u]: [f32; 2]) -> Self {
         let (extinction, scattering) = (medium.extinction(), medium.scattering);
         let choice = beta / beta.0.iter().sum::<f32>();
-        let lane = chosen(choice, which);
+        let lane = chosen(&choice.0, which);
         let distance = match extinction.0[lane] {
             0.0 => f32::INFINITY,
             sigma => -libm::log1pf(-u) / sigma,
@@ -70,19 +71,6 @@ impl Flight {
     pub fn is_scattered(&self) -> bool {
         self.distance < self.limit
     }
-}
-
-/// The lane that a number in [0, 1) chooses.
-fn chosen(choice: Spectrum, u: f32) -> usize {
-    let mut left = u;
-    for (lane, &probability) in choice.0.iter().enumerate() {
-        if left < probability {
-            return lane;
-        }
-        left -= probability;
-    }
-    // Rounding has left a rest.
-    choice.0.iter().rposition(|probability| *probability > 0.0).unwrap_or_default()
 }
 
 #[cfg(test)]

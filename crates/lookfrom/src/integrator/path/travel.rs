@@ -29,7 +29,6 @@ impl PathTracer {
         (path, hit): (&Path, &Hit),
         output: &mut StepOutput<'_, P>,
     ) -> Traveled {
-        let way = path.way_to(hit);
         // A body must end somewhere: where a ray in it hits nothing, it is in none.
         let is_in_medium = !path.interior.is_empty() && (hit.is_hit() || path.interior.space().is_some());
         let medium = match is_in_medium && !path.beta.is_black() {
@@ -38,10 +37,10 @@ impl PathTracer {
         };
         match medium {
             Some(medium) if medium.varying.is_some() => {
-                self.track(world, stream, (path, medium), &way, output)
+                self.track(world, stream, (path, medium), &path.way_to(hit), output)
             }
             Some(medium) if medium.scattering.is_some() || medium.emission.is_some() => {
-                self.fly(world, stream, (path, hit), (medium, &way), output)
+                self.fly(world, stream, (path, hit), (medium, &path.way_to(hit)), output)
             }
             _ => Traveled::Arrived(output.absorbed(world, path, hit)),
         }

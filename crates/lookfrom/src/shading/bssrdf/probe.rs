@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 use super::MediumBelow;
 use super::table::{Profile, ProfileTable};
 use crate::core::elementary::sin_cos_of_turns;
+use crate::core::math::chosen;
 use crate::core::spectrum::Spectrum;
 
 /// Probabilities of the axes: the tangents and the normal.
@@ -103,17 +104,4 @@ impl<'a> Prober<'a> {
         };
         (0..3).map(of_axis).sum()
     }
-}
-
-/// The index that a number in [0, 1) chooses, by probabilities.
-fn chosen(probabilities: &[f32], u: f32) -> usize {
-    let mut left = u;
-    for (index, &probability) in probabilities.iter().enumerate() {
-        if left < probability {
-            return index;
-        }
-        left -= probability;
-    }
-    // Rounding has left a rest.
-    probabilities.iter().rposition(|probability| *probability > 0.0).unwrap_or_default()
 }

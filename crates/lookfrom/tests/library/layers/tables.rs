@@ -31,7 +31,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("warp", "elementary vector"),
     ("color", "math spectrum"),
     ("sampler", "hash lanes"),
-    ("bssrdf", "elementary parallel spectrum"),
+    ("bssrdf", "elementary math parallel spectrum"),
     ("bsdf", "bssrdf elementary hash lanes math optics sampler spectrum vector warp"),
     ("noise", "hash"),
     ("filter", "sampler"),
