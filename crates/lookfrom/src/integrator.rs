@@ -169,11 +169,12 @@ impl<S: PathState> Path<S> {
 
     /// This path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
     /// to infinity.
+    #[inline]
     fn absorbed(&self, world: &World, hit: &Hit, mode: &SpectralMode) -> Self {
         if self.interior.is_empty() {
             return *self;
         }
-        let transmittance = world.transmittance(self.interior, &self.way_to(hit), mode);
+        let transmittance = world.transmittance(self.interior, (&self.ray, self.length_to(hit)), mode);
         Self { beta: self.beta * transmittance, ..*self }
     }
 
@@ -330,7 +331,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
                 address: path.address,
                 interior: path.interior,
                 length: length(),
-                transmittance: world.transmittance(path.interior, &path.way_to(hit), &mode),
+                transmittance: world.transmittance(path.interior, (&path.ray, length()), &mode),
                 beta: absorbed.beta,
             })
         });

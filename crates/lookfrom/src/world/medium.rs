@@ -1,5 +1,7 @@
 //! The media of a world, as rays travel in them.
 
+use lookfrom_bvh::Ray;
+
 use super::World;
 use crate::core::spectrum::Spectrum;
 use crate::medium::{Medium, Way};
@@ -7,27 +9,39 @@ use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
 
 impl World {
-    /// Transmittance of the medium that a ray is in over a way; in a medium that varies, an estimate of it. Over an infinite
+    /// Transmittance of the medium that a ray is in over a length; in a medium that varies, an estimate of it. Over an infinite
     /// distance it is 0 in a homogeneous medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its surface.
     #[inline]
-    pub(crate) fn transmittance(&self, media: InteriorStack, way: &Way, mode: &SpectralMode) -> Spectrum {
-        if media.is_empty() { mode.one() } else { self.transmittance_inside(media, way, mode) }
+    pub(crate) fn transmittance(
+        &self,
+        media: InteriorStack,
+        (ray, length): (&Ray, f32),
+        mode: &SpectralMode,
+    ) -> Spectrum {
+        if media.is_empty() { mode.one() } else { self.transmittance_inside(media, (ray, length), mode) }
     }
 
     #[inline(never)]
-    fn transmittance_inside(&self, media: InteriorStack, way: &Way, mode: &SpectralMode) -> Spectrum {
+    fn transmittance_inside(
+        &self,
+        media: InteriorStack,
+        (ray, length): (&Ray, f32),
+        mode: &SpectralMode,
+    ) -> Spectrum {
         let Some(medium) = self.medium(media) else { return mode.one() };
-        if way.length.is_infinite() && media.space().is_none() {
+        if length.is_infinite() && media.space().is_none() {
             return mode.one();
         }
-        if let Some(estimate) = medium.estimated_transmittance(way, (&self.textures, mode), |_, _| {}) {
-            return estimate;
+        if medium.varying.is_some() {
+            let way = Way::new(ray, length);
+            let estimate = medium.estimated_transmittance(&way, (&self.textures, mode), |_, _| {});
+            return estimate.unwrap_or(mode.one());
         }
         let (sigma, scale) = self.extinction(medium, mode);
         if scale == 0.0 {
             return mode.one();
         }
-        let length = scale * way.length;
+        let length = scale * length;
         mode.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
     }
 

@@ -62,21 +62,21 @@ impl ShadowLight {
         if self.interior.is_empty() {
             return mode.one();
         }
-        world.transmittance(self.interior, &way(world, ray, t, self.interior), mode)
+        world.transmittance(self.interior, (ray, length(world, ray, t, self.interior)), mode)
     }
 }
 
 impl Shadow {
     /// The way of the ray as far as `t`, as media attenuate light on it.
     pub(crate) fn way(&self, world: &World, t: f32) -> Way {
-        way(world, &self.ray, t, self.interior)
+        Way::new(&self.ray, length(world, &self.ray, t, self.interior))
     }
 }
 
-/// The way of a shadow ray as far as `t`. Lights infinitely far emit light from twice the scene's radius away, as far as media are
+/// The length of a shadow ray as far as `t`. Lights infinitely far emit light from twice the scene's radius away, as far as media are
 /// concerned, as in pbrt.
-fn way(world: &World, ray: &Ray, t: f32, interior: InteriorStack) -> Way {
+fn length(world: &World, ray: &Ray, t: f32, interior: InteriorStack) -> f32 {
     let length = Vec3::from_array(ray.direction).length() * t;
     let is_far = length.is_infinite() && interior.space().is_some();
-    Way::new(ray, if is_far { 2.0 * world.radius } else { length })
+    if is_far { 2.0 * world.radius } else { length }
 }
