@@ -49,7 +49,7 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
-    /// What closed bodies of it are filled with; `None` for no more than what the material itself absorbs.
+    /// Medium inside closed bodies of it; `None` where they only absorb, by the material itself.
     pub medium: Option<MediumId>,
 }
 

@@ -8,6 +8,7 @@ use crate::error::Location;
 use crate::grid::Placed;
 use crate::material::{Color, Scalar};
 use crate::scene::MediumId;
+use crate::spectrum::observer;
 
 /// A participating medium: the same everywhere, or varying in space.
 #[derive(Clone, Debug)]
@@ -29,22 +30,22 @@ pub struct Medium {
     pub emission: Color,
     /// … and a factor of it: ≥ 0.
     pub emission_scale: f32,
-    /// How it varies in space; `None` where it is the same everywhere.
+    /// Variation in space; `None` for a homogeneous medium.
     pub variation: Option<Variation>,
 }
 
-/// How a medium varies in space.
+/// Variation of a medium in space.
 #[derive(Clone, Debug)]
 pub struct Variation {
     /// From medium space, in which everything here is told, to world space. Coefficients are per unit of length in the world.
     pub world_from_medium: DMat4,
     /// The corners of a box outside of which there is nothing of the medium; `None` where it has no end.
     pub bounds: Option<[Vec3; 2]>,
-    /// What multiplies the coefficients.
+    /// Factor of the coefficients.
     pub density: Density,
     /// A factor of the emission.
     pub emission_scale: Option<Placed<f32>>,
-    /// What emits in the place of [`Medium::emission`].
+    /// Blackbody emission, in the place of [`Medium::emission`].
     pub temperature: Option<Temperature>,
 }
 
@@ -56,20 +57,20 @@ pub enum Density {
     Grid(Placed<f32>),
     /// Colours of grids, in linear Rec. 709; what is missing is 1, or without emission.
     Colors {
-        /// What multiplies the absorption coefficient.
+        /// Factor of the absorption coefficient.
         absorption: Option<Placed<[f32; 3]>>,
-        /// What multiplies the scattering coefficient.
+        /// Factor of the scattering coefficient.
         scattering: Option<Placed<[f32; 3]>>,
-        /// What takes the place of [`Medium::emission`].
+        /// Emitted radiance, in the place of [`Medium::emission`].
         emission: Option<Placed<[f32; 3]>>,
     },
     /// pbrt-v4's cloud: noise that decreases with y.
     Cloud {
         /// Factor of the noise.
         density: f32,
-        /// How far noise displaces noise.
+        /// Strength of the displacement of the noise by other noise.
         wispiness: f32,
-        /// Of the noise, over medium space.
+        /// Frequency of the noise over medium space.
         frequency: f32,
     },
     /// A number or texture by the position in space, clamped to 0 … `most`.
@@ -93,6 +94,10 @@ pub struct Temperature {
 }
 
 impl Medium {
+    /// [`Medium::emission_scale`] of what emits 1 at a wavelength, as blackbodies relative to their maximum: other emission is relative to
+    /// light of luminance 1.
+    pub const ABSOLUTE: f32 = observer::Y_INTEGRAL as f32;
+
     /// A medium that does nothing.
     pub fn clear(name: impl Into<String>, at: Location) -> Self {
         Self {
@@ -122,18 +127,18 @@ impl Medium {
     /// Memory of its grids in bytes.
     pub fn bytes(&self) -> u64 {
         let Some(variation) = &self.variation else { return 0 };
-        let of = |placed: &Option<Placed<f32>>| placed.as_ref().map_or(0, |placed| placed.grid.bytes());
-        let of_colors =
-            |placed: &Option<Placed<[f32; 3]>>| placed.as_ref().map_or(0, |placed| placed.grid.bytes());
         let density = match &variation.density {
             Density::Grid(placed) => placed.grid.bytes(),
-            Density::Colors { absorption, scattering, emission } => {
-                [absorption, scattering, emission].into_iter().map(of_colors).sum()
-            }
+            Density::Colors { absorption, scattering, emission } => [absorption, scattering, emission]
+                .into_iter()
+                .flatten()
+                .map(|placed| placed.grid.bytes())
+                .sum(),
             Density::Cloud { .. } | Density::Texture { .. } => 0,
         };
         let temperature = variation.temperature.as_ref().map_or(0, |of| of.grid.grid.bytes());
-        (density + of(&variation.emission_scale) + temperature) as u64
+        let emission_scale = variation.emission_scale.as_ref().map_or(0, |placed| placed.grid.bytes());
+        (density + emission_scale + temperature) as u64
     }
 
     /// Whether it may emit light.

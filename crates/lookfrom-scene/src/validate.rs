@@ -100,6 +100,11 @@ fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
                 let is_color = |rgb: &[f32; 3]| rgb.iter().all(|value| *value >= 0.0 && value.is_finite());
                 part.all(name, placed.grid.stored(), "a colour of finite numbers ≥ 0", is_color)?;
             }
+            if let (Some(absorption), Some(scattering)) = (absorption, scattering)
+                && absorption.grid.size() != scattering.grid.size()
+            {
+                return Err(part.fault("absorption and scattering have grids of different sizes"));
+            }
         }
         Density::Cloud { density, wispiness, frequency } => {
             part.finite("cloud", &[*density, *wispiness, *frequency].map(f64::from))?;
@@ -124,15 +129,13 @@ fn check_numbers(part: &Part<'_>, name: &str, placed: &Placed<f32>) -> Result<()
     part.all(name, placed.grid.stored(), "a finite number ≥ 0", is_valid)
 }
 
-fn check_box(part: &Part<'_>, [low, high]: [Vec3; 2]) -> Result<()> {
-    part.finite(
-        "bounds",
-        &[low.to_array(), high.to_array()].concat().into_iter().map(f64::from).collect::<Vec<_>>(),
-    )?;
-    if low.cmple(high).all() {
-        Ok(())
-    } else {
-        Err(part.fault("bounds has a first corner beyond the second"))
+fn check_box(part: &Part<'_>, bounds @ [low, high]: [Vec3; 2]) -> Result<()> {
+    for corner in bounds {
+        part.finite("bounds", &corner.to_array().map(f64::from))?;
+    }
+    match low.cmple(high).all() {
+        true => Ok(()),
+        false => Err(part.fault("bounds has a first corner beyond the second")),
     }
 }
 

@@ -551,7 +551,7 @@ export interface Pixel {
 export interface Probe {
     /** P: the probability of each lane, by its part of the light that leaves. */
     choice: Factor;
-    /** How often it meets the material. */
+    /** Number of its intersections with the material. */
     count: number;
     /** One of these points, chosen by the light that leaves there; null where the path ends. */
     exit: Exit | null;

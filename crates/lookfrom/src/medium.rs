@@ -33,7 +33,7 @@ pub struct Medium {
     pub emission: Option<EmissionSpectrum>,
     /// Factor of both coefficients: ≥ 0.
     pub scale: f32,
-    /// What multiplies them by the place; `None` in a homogeneous medium.
+    /// Factors of them by the place; `None` in a homogeneous medium.
     pub varying: Option<Arc<Varying>>,
 }
 

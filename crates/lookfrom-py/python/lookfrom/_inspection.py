@@ -754,7 +754,7 @@ class Probe:
     throughput_before: β of the path that has entered.
     choice: P: the probability of each lane, by its part of the light that leaves.
     segment: The line; null where it would be outside of the sphere in which points are looked for.
-    count: How often it meets the material.
+    count: Number of its intersections with the material.
     exit: One of these points, chosen by the light that leaves there; null where the path ends.
     """
 

@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 pub(super) struct Bytes<'a> {
     bytes: &'a [u8],
     file: &'a Location,
-    /// What follows a position in messages.
+    /// Suffix of positions in messages.
     of: &'static str,
 }
 

@@ -40,7 +40,7 @@ const CLASSES: &[&str] = &[
     "tensor",
 ];
 
-/// What a header tells.
+/// Content of a grid's header.
 pub(super) struct Header {
     /// The type of its leaves.
     pub(super) kind: Kind,

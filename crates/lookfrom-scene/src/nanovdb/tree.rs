@@ -24,7 +24,7 @@ struct Level {
     /// Along a side: the logarithms of the number of children, and of the number of cells of a child.
     children: u32,
     cells: u32,
-    /// Where the bits of children are, and the table of children or values.
+    /// Offsets of the bits of children, and of the table of children or values.
     mask: usize,
     table: usize,
     bytes: u64,
@@ -52,13 +52,13 @@ pub(super) struct Leaf<'a> {
     pub(super) bytes: &'a [u8],
 }
 
-/// What a tree tells of values.
+/// Values of a tree, by tiles and leaves.
 pub(super) struct Tree<'a> {
     pub(super) bytes: Bytes<'a>,
     pub(super) kind: Kind,
-    /// Of what is neither in a leaf nor in a tile.
+    /// Value outside of leaves and tiles.
     pub(super) background: f32,
-    /// Of other values than the background.
+    /// Tiles of other values than the background.
     pub(super) tiles: Vec<Tile>,
     pub(super) leaves: Vec<Leaf<'a>>,
     /// The least coordinates of active values, and the largest plus 1; both zero if there are none.

@@ -18,15 +18,11 @@ use crate::material::Color;
 use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Sides, Temperature, Variation};
 use crate::scene::MediumId;
-use crate::spectrum::observer;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
 
 /// The integrators that support media; the others treat all media as a vacuum.
 const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
-
-/// The luminance of what pbrt does not divide by that of white: blackbodies by temperature, and emission by `rgbgrid`.
-const UNSCALED: f32 = observer::Y_INTEGRAL as f32;
 
 impl Reader<'_, '_> {
     pub(super) fn make_medium(&mut self, name: String, p: &Parameters) -> Result<()> {
@@ -48,7 +44,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// What is the same everywhere in a medium of a kind.
+    /// A medium of a kind, without its variation.
     fn even_medium(&mut self, name: String, kind: &str, p: &Parameters) -> Result<Medium> {
         let one = Color::Value([1.0; 3]);
         let [absorption, scattering] = match kind {
@@ -63,25 +59,27 @@ impl Reader<'_, '_> {
         let emission_scale = if kind == "homogeneous" { at_least_zero("Lescale", 1.0)? } else { 1.0 };
         let scale = if kind == "cloud" { 1.0 } else { at_least_zero("scale", 1.0)? };
         Ok(Medium {
-            name,
-            at: p.place.location(),
             absorption,
             scattering,
             g: p.float_where("g", 0.0, "a number between -1 and 1", |g| g.abs() < 1.0)?,
             scale,
-            emission: emission.unwrap_or(Color::Value([0.0; 3])),
+            emission: emission.unwrap_or(Color::BLACK),
             emission_scale,
-            variation: None,
+            ..Medium::clear(name, p.place.location())
         })
     }
 
     /// The coefficients of a medium that was measured, per mm.
     fn preset(&self, p: &Parameters) -> Result<[Color; 2]> {
-        let name = p.string("preset")?.unwrap_or_default();
-        let known = Preset::all().iter().map(|preset| preset.name);
-        let preset = Preset::named(name).ok_or_else(|| Self::unknown(&p.place, "preset", name, known))?;
+        let preset = Self::preset_named(p.string("preset")?.unwrap_or_default(), "preset", &p.place)?;
         p.ignore(&["sigma_a", "sigma_s"]);
         Ok([preset.absorption, preset.scattering].map(Color::Value))
+    }
+
+    /// The measured medium with a name.
+    pub(super) fn preset_named(name: &str, kind: &str, place: &Place) -> Result<&'static Preset> {
+        let known = Preset::all().iter().map(|preset| preset.name);
+        Preset::named(name).ok_or_else(|| Self::unknown(place, kind, name, known))
     }
 
     /// A medium that varies in its own space, by default in the unit cube there.
@@ -107,7 +105,8 @@ impl Reader<'_, '_> {
         if p.has("Le") {
             return Err(p.refuse("Le", "no \"Le\" beside \"temperature\""));
         }
-        medium.emission_scale = UNSCALED;
+        // pbrt does not divide blackbodies by their luminance …
+        medium.emission_scale = Medium::ABSOLUTE;
         variation.temperature = Some(temperature(p, grid)?);
         Ok(variation)
     }
@@ -122,7 +121,8 @@ impl Reader<'_, '_> {
             return Err(p.refuse("Le", "\"sigma_a\" beside \"Le\""));
         }
         let scale = p.float_where("Lescale", 1.0, "a number of at least 0", |v| v >= 0.0)?;
-        medium.emission_scale = scale * UNSCALED;
+        // … nor this emission.
+        medium.emission_scale = scale * Medium::ABSOLUTE;
         self.variation(p, Density::Colors { absorption, scattering, emission })
     }
 
@@ -211,9 +211,8 @@ fn size(p: &Parameters) -> Result<[u32; 3]> {
 /// A grid of numbers.
 fn numbers(p: &Parameters, name: &'static str) -> Result<Option<Placed<f32>>> {
     let Some(values) = p.floats(name, ParameterType::Float)? else { return Ok(None) };
-    let expected = "numbers of at least 0";
     if name != "temperature" && values.iter().any(|value| *value < 0.0) {
-        return Err(p.refuse(name, expected));
+        return Err(p.refuse(name, "numbers of at least 0"));
     }
     placed(p, name, values).map(Some)
 }
@@ -242,7 +241,7 @@ fn placed<T: Copy + Default + PartialEq>(p: &Parameters, name: &str, values: &[T
     Ok(Placed { grid: Arc::new(grid), bounds: bounds(p)? })
 }
 
-/// What emits by temperature.
+/// Temperatures, by their grid.
 fn temperature(p: &Parameters, grid: Placed<f32>) -> Result<Temperature> {
     let finite = |name, default| p.float_where(name, default, "a finite number", f32::is_finite);
     let cutoff = finite("temperaturecutoff", 0.0)?;

@@ -5,7 +5,6 @@ use super::params::{ParameterType, Parameters};
 use super::spectra::Meaning::{Reflectance, Unbounded};
 use crate::error::Result;
 use crate::material::{Color, MaterialKind, Subsurface, SubsurfaceMedium};
-use crate::medium::presets::Preset;
 
 impl Reader<'_, '_> {
     pub(super) fn subsurface(&mut self, p: &Parameters) -> Result<MaterialKind> {
@@ -28,9 +27,7 @@ impl Reader<'_, '_> {
         if let Some(parameter) = p.find("name", &[ParameterType::String])?
             && let Some(name) = p.string("name")?
         {
-            let names = Preset::all().iter().map(|preset| preset.name);
-            let unknown = || Self::unknown(&parameter.place, "medium", name, names);
-            return Ok(Preset::named(name).ok_or_else(unknown)?.into());
+            return Ok(Self::preset_named(name, "medium", &parameter.place)?.into());
         }
         let absorption = self.color_or_none(p, "sigma_a", Unbounded)?;
         let scattering = self.color_or_none(p, "sigma_s", Unbounded)?;

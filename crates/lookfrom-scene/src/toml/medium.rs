@@ -17,7 +17,6 @@ use crate::medium::presets::Preset;
 use crate::medium::{Density, Medium, Temperature, Variation};
 use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
-use crate::spectrum::observer;
 
 /// The keys of media, besides those of transforms.
 pub(super) const KEYS: &[&str] =
@@ -57,8 +56,7 @@ impl Reader<'_, '_> {
     fn medium(&mut self, name: &str, table: &Table<'_>) -> Medium {
         table.allow(&[KEYS, transform::KEYS]);
         let mut medium = Medium::clear(name, table.at());
-        let names: Vec<_> = Preset::all().iter().map(|preset| (preset.name, preset)).collect();
-        let preset = table.maybe("preset", |value| value.choice(&names));
+        let preset = table.maybe("preset", preset);
         let [absorption, scattering] =
             preset.map_or([[0.0; 3]; 2], |preset| [preset.absorption, preset.scattering]).map(Color::Value);
         medium.absorption = table.or("absorption", absorption, |value| self.coefficient(value));
@@ -66,40 +64,37 @@ impl Reader<'_, '_> {
         medium.g = table.or("g", 0.0, |value| {
             value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
         });
-        (medium.emission, medium.emission_scale) =
-            table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false));
         let density = table.maybe("density", |value| self.density(value, table));
         let temperature = table.maybe("temperature", |value| self.volume(value));
-        if temperature.is_some() {
-            // Blackbodies are relative to their maximum: their light is not that of luminance 1.
-            let factor = table.or("emission", 1.0, |value| {
-                value.single_where("a factor of at least 0", |factor| factor >= 0.0)
-            });
-            medium.emission_scale = factor * observer::Y_INTEGRAL as f32;
-            medium.emission = Color::BLACK;
-        }
-        let even = Density::Texture { of: Scalar::Value(1.0), most: 1.0 };
+        (medium.emission, medium.emission_scale) = match temperature {
+            None => table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
+            Some(_) => {
+                let factor = table.or("emission", 1.0, |value| {
+                    value.single_where("a factor of at least 0", |factor| factor >= 0.0)
+                });
+                (Color::BLACK, factor * Medium::ABSOLUTE)
+            }
+        };
         let density = match density {
             Some(Number::Volume(volume)) => {
                 medium.variation = Some(variation(table, volume, temperature));
                 return medium;
             }
-            Some(Number::Varying(density)) => density,
+            Some(Number::Varying(density)) => Some(density),
             Some(Number::Even(density)) => {
                 medium.scale = density;
-                even
+                None
             }
-            None => even,
+            None => None,
         };
-        let is_even = matches!(density, Density::Texture { of: Scalar::Value(_), .. });
-        if is_even && temperature.is_none() {
+        if density.is_none() && temperature.is_none() {
             return medium;
         }
         let own = temperature.as_ref().map_or(DMat4::IDENTITY, |volume| volume.world_from_medium);
         medium.variation = Some(Variation {
             world_from_medium: transform::world_from_object(table) * own,
             bounds: temperature.as_ref().map(|volume| volume.bounds),
-            density,
+            density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
             emission_scale: None,
             temperature: temperature.map(Volume::temperature),
         });
@@ -108,7 +103,7 @@ impl Reader<'_, '_> {
 
     /// A coefficient per unit of length: the same everywhere.
     fn coefficient(&mut self, value: Value<'_>) -> Result<Color> {
-        match self.color(value)? {
+        match self.optical_color(value)? {
             Color::Texture(_) => Err(value
                 .error(format!("`{}` is a texture; expected a number or a colour", value.key()))
                 .hint("what varies is the `density`")),
@@ -175,6 +170,12 @@ impl Reader<'_, '_> {
         self.filled.insert((material, medium), id);
         id
     }
+}
+
+/// The measured medium with the name in `value`.
+pub(super) fn preset(value: Value<'_>) -> Result<&'static Preset> {
+    let known: Vec<_> = Preset::all().iter().map(|preset| (preset.name, preset)).collect();
+    value.choice(&known)
 }
 
 /// A number that may vary.

@@ -1,11 +1,9 @@
 //! Materials of the type "subsurface".
 
 use super::Reader;
+use super::medium::preset;
 use super::table::Table;
-use super::value::Value;
-use crate::error::Result;
 use crate::material::{Color, Subsurface, SubsurfaceMedium};
-use crate::medium::presets::Preset;
 
 /// The keys of such a material.
 pub(super) const KEYS: &[&str] = &[
@@ -49,7 +47,8 @@ impl Reader<'_, '_> {
     /// The medium by its name, by its coefficients, or by its effect.
     fn medium_below(&mut self, table: &Table<'_>) -> SubsurfaceMedium {
         if table.has("preset") {
-            return table.or("preset", SubsurfaceMedium::MILK, preset);
+            return table
+                .or("preset", SubsurfaceMedium::MILK, |value| preset(value).map(SubsurfaceMedium::from));
         }
         if table.has("reflectance") {
             return SubsurfaceMedium::Reflectance {
@@ -67,9 +66,4 @@ impl Reader<'_, '_> {
             scattering: table.need("scattering", example, Color::BLACK, |value| self.optical_color(value)),
         }
     }
-}
-
-fn preset(value: Value<'_>) -> Result<SubsurfaceMedium> {
-    let media: Vec<_> = Preset::all().iter().map(|preset| (preset.name, preset)).collect();
-    value.choice(&media).map(SubsurfaceMedium::from)
 }

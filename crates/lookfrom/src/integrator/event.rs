@@ -87,7 +87,7 @@ pub enum Event {
         /// Free flight, with the throughput at its end.
         flight: Box<Flight>,
         /// The point where it is scattered, if it is.
-        point: Vec3,
+        point: Option<Vec3>,
     },
     /// A path has travelled in a medium that varies.
     Tracked {

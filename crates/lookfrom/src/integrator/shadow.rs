@@ -63,7 +63,16 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         contribution: Spectrum,
     ) {
         let wi = sample.wi;
-        let ray = ray_to(surface.origin(wi), sample);
+        let origin = surface.origin(wi);
+        let ray = match sample.target {
+            Target::Infinity => Ray::new(origin, wi.to_array()),
+            Target::Point(position) => toward(origin, position.to_array()),
+            Target::Surface(Point { position, error }, normal) => {
+                let points = Points::<f32> { position: position.into(), error: error.into() };
+                let way = points.just_before(normal.into(), wi.into(), origin.into());
+                Ray { t_max: 1.0, ..Ray::new(origin, way.into()) }
+            }
+        };
         let crosses = surface.crosses(wi);
         let all = self.mode(path).one();
         let last_scattering = self.last_scattering(path, crosses, || all);
@@ -77,19 +86,6 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
             interior: path.interior.leaving(&world.materials, surface, wi, crosses),
             last_scattering,
         });
-    }
-}
-
-/// The shadow ray from `origin` to the sample of a light.
-pub(super) fn ray_to(origin: [f32; 3], sample: &LightSample) -> Ray {
-    match sample.target {
-        Target::Infinity => Ray::new(origin, sample.wi.to_array()),
-        Target::Point(position) => toward(origin, position.to_array()),
-        Target::Surface(Point { position, error }, normal) => {
-            let points = Points::<f32> { position: position.into(), error: error.into() };
-            let way = points.just_before(normal.into(), sample.wi.into(), origin.into());
-            Ray { t_max: 1.0, ..Ray::new(origin, way.into()) }
-        }
     }
 }
 

@@ -6,6 +6,7 @@ use lookfrom_bvh::Ray;
 
 use super::majorants::Walk;
 use super::{Coefficients, Medium, Varying};
+use crate::core::hash;
 use crate::core::random::Random;
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, Textures};
@@ -70,8 +71,7 @@ impl Way {
     pub(crate) fn hash(&self) -> u64 {
         let bits = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
         let [o, d] = [self.origin, self.direction];
-        let pair = crate::core::hash::pair;
-        pair(pair(bits(o.x, o.y), bits(o.z, d.x)), bits(d.y, d.z))
+        hash::pair(hash::pair(bits(o.x, o.y), bits(o.z, d.x)), bits(d.y, d.z))
     }
 }
 
@@ -140,7 +140,7 @@ impl Collisions<'_> {
 }
 
 impl Collision {
-    /// What is left of the majorant: the coefficient of null collisions, at least 0.
+    /// Coefficient of null collisions: the majorant less the extinction coefficient, at least 0.
     pub fn null(&self) -> Spectrum {
         self.coefficients.extinction().map(|sigma| (self.majorant - sigma).max(0.0))
     }

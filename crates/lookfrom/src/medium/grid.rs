@@ -20,10 +20,10 @@ pub(super) struct PlacedGrid<T> {
 
 /// A point between eight centres of cells.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Between {
-    /// Of the centre with the least coordinates.
+struct Between {
+    /// Coordinates of the centre with the least ones.
     first: [i32; 3],
-    /// Of the point from there, in [0, 1].
+    /// Coordinates of the point from there, in [0, 1].
     fraction: Vec3,
 }
 
@@ -41,11 +41,6 @@ impl<T: Copy + Default + PartialEq> PlacedGrid<T> {
         PlacedGrid { grid: Arc::new(self.grid.map(of)), scale: self.scale, offset: self.offset }
     }
 
-    /// Coordinates of cells at a point of medium space.
-    pub(super) fn cells(&self, point: Vec3) -> Vec3 {
-        point * self.scale + self.offset
-    }
-
     /// Coordinates in medium space along an axis, from those of cells.
     pub(super) fn of_cell(&self, axis: usize, cell: f32) -> f32 {
         (cell - self.offset[axis]) / self.scale[axis]
@@ -53,8 +48,8 @@ impl<T: Copy + Default + PartialEq> PlacedGrid<T> {
 
     /// The centres around a point of medium space.
     #[inline]
-    pub(super) fn between(&self, point: Vec3) -> Between {
-        let cells = self.cells(point);
+    fn between(&self, point: Vec3) -> Between {
+        let cells = point * self.scale + self.offset;
         let first = cells.floor();
         Between { first: first.to_array().map(|coordinate| coordinate as i32), fraction: cells - first }
     }

@@ -18,7 +18,7 @@ pub(super) struct Majorants {
 /// A part of a ray in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Segment {
-    /// Where it ends.
+    /// Distance of its end.
     pub(super) end: f32,
     /// The bound of the density on it.
     pub(super) most: f32,
@@ -144,12 +144,12 @@ fn index(size: [u32; 3], cell: UVec3) -> usize {
 #[derive(Clone, Debug)]
 pub(super) struct Walk<'a> {
     majorants: &'a Majorants,
-    /// Where the ray enters the box.
+    /// Distance at which the ray enters the box.
     pub(super) start: f32,
     t: f32,
     end: f32,
     cell: UVec3,
-    /// Where the ray leaves its cell along each axis.
+    /// Distances at which the ray leaves its cell along each axis.
     next: Vec3,
     /// The distance between faces along each axis.
     step: Vec3,

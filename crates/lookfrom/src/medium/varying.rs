@@ -13,7 +13,7 @@ use crate::shading::texture::{
     FloatTexture, SpectralMode, SpectrumType, TexturePoint, Textures, spectrum_of, uplift,
 };
 
-/// How a medium varies in space.
+/// Variation of a medium in space.
 #[derive(Clone, Debug)]
 pub struct Varying {
     /// Medium space from render space: a matrix, then an offset.
@@ -24,7 +24,7 @@ pub struct Varying {
     pub(super) majorants: Majorants,
 }
 
-/// What multiplies the coefficients.
+/// Factor of the coefficients.
 #[derive(Clone, Debug)]
 enum Density {
     Grid(PlacedGrid<f32>),

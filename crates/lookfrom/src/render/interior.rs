@@ -46,10 +46,10 @@ fn is_boundary(world: &World, surface: &SurfaceInteraction) -> bool {
 }
 
 fn is_transparent_body(material: &Material) -> bool {
-    match &material.kind {
-        _ if material.medium.is_some() => true,
+    let is_transparent = match &material.kind {
         MaterialKind::Whitted(whitted) => !whitted.transmission.is_gray(0.0),
         MaterialKind::Principled(look) => look.is_solid,
         _ => false,
-    }
+    };
+    is_transparent || material.medium.is_some()
 }

@@ -221,7 +221,7 @@ impl Material {
     pub fn is_body(&self) -> bool {
         match &self.kind {
             MaterialKind::Whitted(_) => true,
-            MaterialKind::Principled(look) => look.is_solid || self.medium.is_some(),
+            MaterialKind::Principled(look) if look.is_solid => true,
             _ => self.medium.is_some(),
         }
     }

@@ -12,7 +12,7 @@ impl World {
     /// Transmittance of the medium that a ray is in over a length; in a medium that varies, an estimate of it. Over an infinite
     /// distance it is 0 in a homogeneous medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its surface.
     #[inline]
-    pub(crate) fn transmittance(
+    pub fn transmittance(
         &self,
         media: InteriorStack,
         (ray, length): (&Ray, f32),

@@ -6,14 +6,14 @@ use glam::{IVec3, Vec3};
 
 use super::super::Reader;
 use super::super::params::Parameters;
-use super::{UNSCALED, temperature};
+use super::temperature;
 use crate::error::{ErrorKind, Location, Result};
 use crate::grid::Placed;
 use crate::medium::{Density, Medium, Temperature, Variation};
 use crate::nanovdb::{NanoVdb, Volume, placement};
 
 impl Reader<'_, '_> {
-    /// How a medium varies, in index space of the densities; `None` if its file is missing.
+    /// Variation of a medium, in index space of the densities; `None` if its file is missing.
     pub(super) fn nano_vdb(&mut self, p: &Parameters, medium: &mut Medium) -> Result<Option<Variation>> {
         let scale = p.float_where("Lescale", 1.0, "a number of at least 0", |v| v >= 0.0)?;
         let name = p.string("gridname")?.unwrap_or("density");
@@ -38,7 +38,7 @@ impl Reader<'_, '_> {
             bounds = [bounds[0].min(low), bounds[1].max(high)];
             temperature = Some(hot);
         }
-        medium.emission_scale = scale * UNSCALED;
+        medium.emission_scale = scale * Medium::ABSOLUTE;
         Ok(Some(Variation {
             world_from_medium: self.state.matrix * density.world_from_index,
             bounds: Some(bounds),

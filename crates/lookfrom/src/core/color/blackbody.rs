@@ -20,12 +20,13 @@ pub fn blackbody(kelvin: f32, wavelengths: &Wavelengths) -> Spectrum {
     if !(kelvin > 0.0) {
         return Spectrum([0.0; 4]);
     }
+    let at_peak = libm::expm1f(PEAK);
     Spectrum(wavelengths.lambda.map(|nm| {
         // In units of the wavelength of the maximum.
         let ratio = nm * kelvin / WIEN;
         let fifth = ratio * ratio * ratio * ratio * ratio;
         let denominator = fifth * libm::expm1f(PEAK / ratio);
-        if denominator > 0.0 { (libm::expm1f(PEAK) / denominator).min(1.0) } else { 0.0 }
+        if denominator > 0.0 { (at_peak / denominator).min(1.0) } else { 0.0 }
     }))
 }
 

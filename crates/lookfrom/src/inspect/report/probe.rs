@@ -14,7 +14,7 @@ pub struct ProbeReport {
     pub choice: Factor,
     /// The line; `None` where it would be outside of the sphere in which points are looked for.
     pub segment: Option<ProbeSegmentReport>,
-    /// How often it meets the material.
+    /// Number of its intersections with the material.
     pub count: u32,
     /// One of these points, chosen by the light that leaves there; `None` where the path ends.
     pub exit: Option<ExitReport>,

@@ -10,8 +10,7 @@ use crate::medium::Collision;
 
 impl TraceLogBuilder<'_> {
     /// The flight of a ray in a homogeneous medium, which may have scattered it before its hit.
-    pub(super) fn flown(&mut self, address: u64, flight: &Flight, point: Vec3) {
-        let is_scattered = flight.is_scattered();
+    pub(super) fn flown(&mut self, address: u64, flight: &Flight, point: Option<Vec3>) {
         let report = FlightReport {
             extinction: self.factor(flight.extinction),
             scattering: self.factor(flight.scattering),
@@ -19,12 +18,12 @@ impl TraceLogBuilder<'_> {
             lane: flight.lane,
             limit: flight.limit,
             distance: flight.distance,
-            scattered_at: is_scattered.then(|| in_world(self.world, point.to_array())),
+            scattered_at: point.map(|point| in_world(self.world, point.to_array())),
             transmittance: self.factor(flight.transmittance),
             density: flight.density,
             throughput: self.factor(flight.after),
         };
-        self.traveled(address, is_scattered.then_some(point));
+        self.traveled(address, point);
         self.at(address, |ray| {
             ray.throughput_there = Some(report.throughput.clone());
             ray.flight = Some(report);

@@ -26,7 +26,7 @@ pub struct SubsurfaceProbe {
     pub choice: Spectrum,
     /// The line that was searched; `None` where no light leaves as near as points are looked for.
     pub segment: Option<ProbeSegment>,
-    /// How often it meets the material.
+    /// Number of its intersections with the material.
     pub count: u32,
     /// One of these points; `None` where no light leaves at any of them.
     pub exit: Option<SubsurfaceExit>,

@@ -63,10 +63,10 @@ impl PathTracer {
             return Traveled::Arrived(output.absorbed(world, path, hit));
         }
         let flight = Flight::sample(&coefficients, path.beta, way.length, stream.two(dimension::FLIGHT));
-        let point = way.origin + way.direction * flight.distance;
+        let point = flight.is_scattered().then(|| way.origin + way.direction * flight.distance);
         output.probe.notice(|| Event::Flown { address: path.address, flight: Box::new(flight), point });
         let path = Path { beta: flight.after, ..*path };
-        end(medium, path, stream, flight.is_scattered().then_some(point))
+        end(medium, path, stream, point)
     }
 
     /// Travels in a medium that varies.

@@ -23,13 +23,6 @@ pub(in crate::integrator::path) struct MediumVertex {
     pub(in crate::integrator::path) stream: SampleStream,
 }
 
-impl MediumVertex {
-    fn departure(&self) -> Departure<'_> {
-        let (path, origin_primitive) = (&self.path, OriginPrimitive::NONE);
-        Departure { path, origin_primitive, boundary: Boundary::None }
-    }
-}
-
 impl PathTracer {
     /// Whether a path is scattered at a point of a medium: unless it has bounced as often as it may.
     pub(in crate::integrator::path) fn is_scattered_in_medium(&self, vertex: &MediumVertex) -> bool {
@@ -45,8 +38,14 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let path = &vertex.path;
-        if scattered.has_density & 1 << lane != 0 {
-            self.shadow_ray_of_medium(vertex, lane, scattered, output);
+        if scattered.has_density & 1 << lane != 0
+            && let Some((light, ray, contribution)) = self.connection(path.address, lane, scattered, output)
+        {
+            let last_scattering = output.last_scattering_in_medium(path);
+            let (origin_primitive, boundary) = (OriginPrimitive::NONE, Boundary::None);
+            let departure = Departure { path, origin_primitive, boundary };
+            let shadow = departure.shadow(ray, (light, contribution), path.interior, last_scattering);
+            output.queues.shadows.push(shadow);
         }
 
         let wi = Vec3::from_array(row(&scattered.wi, lane));
@@ -77,21 +76,5 @@ impl PathTracer {
             },
             ..*path
         });
-    }
-
-    fn shadow_ray_of_medium<P: Probe>(
-        &self,
-        vertex: &MediumVertex,
-        lane: usize,
-        scattered: &Scattered,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let path = &vertex.path;
-        if let Some((light, ray, contribution)) = self.connection(path.address, lane, scattered, output) {
-            let last_scattering = output.last_scattering_in_medium(path);
-            let shadow =
-                vertex.departure().shadow(ray, (light, contribution), path.interior, last_scattering);
-            output.queues.shadows.push(shadow);
-        }
     }
 }
