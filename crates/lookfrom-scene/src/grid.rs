@@ -6,14 +6,14 @@ use glam::Vec3;
 
 /// Values at the centres of the cells of a grid, in bricks of 8³ cells. Outside of the grid, and in bricks that were never
 /// written, they are zero; such bricks take no memory. Bricks that were filled with one value take the memory of one.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Grid<T> {
     size: [u32; 3],
     /// Number of bricks along x, y and z.
     count: [u32; 3],
     /// By bricks, x fastest: the number of their block of values, or [`EMPTY`].
     bricks: Vec<u32>,
-    /// Blocks of [`BRICK`]³ values, x fastest.
+    /// Blocks of [`BRICK`]³ values, x fastest; the first is of zeros.
     values: Vec<T>,
 }
 
@@ -32,8 +32,8 @@ pub const BRICK: u32 = 8;
 /// Number of values of a brick.
 pub const BLOCK: usize = (BRICK * BRICK * BRICK) as usize;
 
-/// A brick without values.
-const EMPTY: u32 = u32::MAX;
+/// The block of all bricks without values.
+const EMPTY: u32 = 0;
 
 /// Largest number of cells along an axis: coordinates of cells are exact in `f32`.
 const MOST_CELLS: u32 = 1 << 20;
@@ -49,7 +49,7 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         if size.iter().any(|&cells| cells == 0 || cells > MOST_CELLS) || bricks > MOST_BRICKS {
             return None;
         }
-        Some(Self { size, count, bricks: vec![EMPTY; bricks as usize], values: Vec::new() })
+        Some(Self { size, count, bricks: vec![EMPTY; bricks as usize], values: vec![T::default(); BLOCK] })
     }
 
     /// A grid of all its values, x fastest. `None` as in [`Grid::new`], or if there are more or fewer of them.
@@ -77,7 +77,8 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         if self.bricks[brick] == EMPTY {
             self.bricks[brick] = self.push(&[T::default(); BLOCK]);
         }
-        self.values[self.bricks[brick] as usize * BLOCK + place(cell)] = value;
+        let place = self.place(cell);
+        self.values[place] = value;
     }
 
     /// Writes the values of a brick, x fastest, in a grid of whole bricks; nothing happens outside of the grid.
@@ -119,32 +120,56 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         if (0..3).any(|axis| cell[axis] >= self.size[axis]) {
             return T::default();
         }
-        match self.bricks[brick(self.count, cell)] {
-            EMPTY => T::default(),
-            block => self.values[block as usize * BLOCK + place(cell)],
-        }
+        self.values[self.place(cell)]
     }
 
     /// The values of eight neighbouring cells, x fastest, of which the first has the least coordinates.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self, first: [i32; 3]) -> [T; 8] {
-        let cell = first.map(|coordinate| coordinate as u32);
-        let is_within = (0..3).all(|axis| cell[axis] < self.size[axis] && cell[axis] % BRICK != BRICK - 1);
-        if is_within {
-            let block = self.bricks[brick(self.count, cell)];
-            if block == EMPTY {
-                return [T::default(); 8];
-            }
-            let first = block as usize * BLOCK + place(cell);
-            let values = &self.values[first..];
-            let (y, z) = (BRICK as usize, (BRICK * BRICK) as usize);
-            return [0, 1, y, y + 1, z, z + 1, z + y, z + y + 1].map(|offset| values[offset]);
+        let [a, b, c, d, e, f, g, h] = self.places_of_corners(first);
+        let of = &*self.values;
+        [of[a], of[b], of[c], of[d], of[e], of[f], of[g], of[h]]
+    }
+
+    /// The places of [`Grid::corners`] in [`Grid::values`].
+    #[inline(always)]
+    pub fn places_of_corners(&self, first: [i32; 3]) -> [usize; 8] {
+        // Negative coordinates are large ones.
+        let [x, y, z] = [first[0] as u32, first[1] as u32, first[2] as u32];
+        let [width, height, depth] = self.size;
+        let is_within = |at: u32, cells: u32| at < cells && at % BRICK != BRICK - 1;
+        if !(is_within(x, width) && is_within(y, height) && is_within(z, depth)) {
+            return self.places_beyond_brick(first);
         }
-        let [x, y, z] = first;
+        let first = self.place([x, y, z]);
+        let (y, z) = (BRICK as usize, (BRICK * BRICK) as usize);
+        let (top, back) = (first + y, first + z);
+        let rest = back + y;
+        [first, first + 1, top, top + 1, back, back + 1, rest, rest + 1]
+    }
+
+    /// [`Grid::places_of_corners`] of any cells: those outside of the grid are zeros.
+    #[inline(never)]
+    fn places_beyond_brick(&self, [x, y, z]: [i32; 3]) -> [usize; 8] {
         std::array::from_fn(|corner| {
             let step = |bit: usize| (corner >> bit & 1) as i32;
-            self.value([x.wrapping_add(step(0)), y.wrapping_add(step(1)), z.wrapping_add(step(2))])
+            let cell = [x.wrapping_add(step(0)), y.wrapping_add(step(1)), z.wrapping_add(step(2))];
+            let cell = cell.map(|coordinate| coordinate as u32);
+            let is_outside = (0..3).any(|axis| cell[axis] >= self.size[axis]);
+            if is_outside { 0 } else { self.place(cell) }
         })
+    }
+
+    /// The place of a cell of the grid among the values.
+    #[inline(always)]
+    fn place(&self, cell: [u32; 3]) -> usize {
+        self.bricks[brick(self.count, cell)] as usize * BLOCK + place(cell)
+    }
+
+    /// All values, with [`BLOCK`] zeros before those that are stored.
+    #[inline(always)]
+    pub fn values(&self) -> &[T] {
+        &self.values
     }
 
     /// Calls a function with all cells that are stored, and their values; those that are left out are zero.
@@ -171,7 +196,7 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
 
     /// All values that are stored, in no order: those that are missing are zero.
     pub fn stored(&self) -> &[T] {
-        &self.values
+        &self.values[BLOCK..]
     }
 
     /// Memory in bytes.

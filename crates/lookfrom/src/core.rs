@@ -14,7 +14,6 @@ pub mod noise;
 pub mod optics;
 pub(crate) mod parallel;
 pub(crate) mod points;
-pub(crate) mod random;
 pub mod sampler;
 pub mod spectrum;
 #[cfg(test)]

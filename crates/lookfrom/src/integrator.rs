@@ -40,9 +40,7 @@ pub use false_color::FalseColor;
 use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
-pub use path::{
-    Flight, LightSampling, PathTracer, PreviousVertex, SubsurfaceExit, SubsurfaceProbe, Tracked, Tracking,
-};
+pub use path::{Flight, LightSampling, PathTracer, PreviousVertex, SubsurfaceExit, SubsurfaceProbe};
 pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
 pub(crate) use scratch::Scratch;

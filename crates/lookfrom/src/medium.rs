@@ -2,20 +2,23 @@
 //! with them.
 
 mod cloud;
-mod collisions;
 mod grid;
 mod majorants;
+mod tracking;
 mod varying;
+mod way;
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use lookfrom_scene::material::Color;
 use lookfrom_scene::medium::Medium as Written;
+use lookfrom_simd::Real;
 
-pub use collisions::Collision;
-pub(crate) use collisions::{Way, survives};
+pub use tracking::{Collision, Tracking};
+pub(crate) use tracking::{Estimate, TrackedRay};
 pub use varying::Varying;
+pub(crate) use way::Way;
 
 use crate::core::spectrum::Spectrum;
 use crate::light::EmissionSpectrum;
@@ -48,13 +51,13 @@ pub struct Scattering {
 
 /// The coefficients of a medium that scatters or emits light, per unit of length.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Coefficients {
+pub struct Coefficients<R = f32> {
     /// σ_a.
-    pub absorption: Spectrum,
+    pub absorption: Spectrum<R>,
     /// σ_s.
-    pub scattering: Spectrum,
+    pub scattering: Spectrum<R>,
     /// The radiance that σ_a is multiplied by.
-    pub emission: Spectrum,
+    pub emission: Spectrum<R>,
 }
 
 impl Medium {
@@ -115,14 +118,17 @@ impl Medium {
     }
 }
 
+impl<R: Real> Coefficients<R> {
+    /// σ_t = σ_a + σ_s.
+    #[inline(always)]
+    pub fn extinction(&self) -> Spectrum<R> {
+        self.absorption + self.scattering
+    }
+}
+
 impl Coefficients {
     /// Largest coefficient, above which a way has no length; sums and products of it are finite.
     const MOST: f32 = 1e18;
-
-    /// σ_t = σ_a + σ_s.
-    pub fn extinction(&self) -> Spectrum {
-        self.absorption + self.scattering
-    }
 
     /// The radiance that a way of a length adds where it begins: ∫₀ᵈ e^(−σ_t t) σ_a L_e dt.
     pub(crate) fn emitted(&self, length: f32) -> Spectrum {

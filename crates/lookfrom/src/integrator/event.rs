@@ -4,7 +4,8 @@ use glam::Vec3;
 use lookfrom_bvh::Hit;
 
 use crate::core::spectrum::Spectrum;
-use crate::integrator::{Flight, Path, PreviousVertex, Shadow, SubsurfaceProbe, Tracking};
+use crate::integrator::{Flight, Path, PreviousVertex, Shadow, SubsurfaceProbe};
+use crate::medium::Tracking;
 use crate::shading::bsdf::BsdfSample;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;

@@ -10,7 +10,6 @@ mod catcher;
 mod flight;
 mod lanes;
 mod subsurface;
-mod tracking;
 mod travel;
 
 use glam::Vec3;
@@ -19,8 +18,7 @@ use lookfrom_bvh::Hit;
 pub use flight::Flight;
 use lanes::Waiting;
 pub use subsurface::{SubsurfaceExit, SubsurfaceProbe};
-pub use tracking::{Tracked, Tracking};
-use travel::Traveled;
+use travel::{Traveled, medium_on_way};
 
 use crate::core::lanes::{LANES, are_shaded_together};
 use crate::core::math::power_heuristic;
@@ -159,10 +157,13 @@ impl Integrator for PathTracer {
                 waiting.push_escaped(self, &batch, index, output);
             } else if in_vacuum && let Some(class) = batch.mesh_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
+            } else if !in_vacuum && let Some((medium, _)) = medium_on_way(world, path, hit) {
+                waiting.push_in_flight(medium, index);
             } else {
                 self.arrive(world, &streams.of(path), (path, hit), &mut waiting, output);
             }
         }
+        self.travel_all(&batch, &mut waiting, output);
         waiting.flush(self, &batch, output);
     }
 
@@ -198,15 +199,60 @@ impl PathTracer {
         waiting: &mut Waiting,
         output: &mut StepOutput<'_, P>,
     ) {
+        if !self.is_counted(world, (path, hit), output) {
+            let traveled = self.travel(world, stream, (path, hit), output);
+            self.go_on_from(world, stream, (path, hit), traveled, waiting, output);
+        }
+    }
+
+    /// As [`PathTracer::arrive`], of all paths that are in media that scatter, emit or vary.
+    #[inline(never)]
+    fn travel_all<P: Probe>(
+        &self,
+        batch: &HitBatch<'_>,
+        waiting: &mut Waiting,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let HitBatch { world, paths, hits, streams } = *batch;
+        for (medium, mut indices) in waiting.take_in_flight() {
+            indices.retain(|&index| {
+                !self.is_counted(world, (&paths[index as usize], &hits[index as usize]), output)
+            });
+            let medium = &world.media[medium as usize];
+            self.travel_together(batch, (medium, &indices), output, |index, traveled, output| {
+                let (path, hit) = (&paths[index], &hits[index]);
+                self.go_on_from(world, &streams.of(path), (path, hit), traveled, waiting, output);
+            });
+        }
+    }
+
+    /// Whether all light that a path from a shadow catcher finds has been counted.
+    fn is_counted<P: Probe>(
+        &self,
+        world: &World,
+        (path, hit): (&Path, &Hit),
+        output: &mut StepOutput<'_, P>,
+    ) -> bool {
         if path.state.is_catcher {
             if !hit.is_hit() && self.finds_what_it_expects(path) {
-                return;
+                return true;
             }
             self.expect_sky(world, path, output);
         }
+        false
+    }
 
-        // Travel there, unless a medium scatters the path on the way.
-        let mut path = match self.travel(world, stream, (path, hit), output) {
+    /// Goes on from the end of a path's way.
+    fn go_on_from<P: Probe>(
+        &self,
+        world: &World,
+        stream: &SampleStream,
+        (path, hit): (&Path, &Hit),
+        traveled: Traveled,
+        waiting: &mut Waiting,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let mut path = match traveled {
             Traveled::Arrived(path) => path,
             Traveled::Scattered(vertex) => {
                 output.leave_surface_behind(world, path, hit);
@@ -221,6 +267,9 @@ impl PathTracer {
         // A path that leaves the scene sees the sky.
         if !hit.is_hit() {
             return self.escape(world, (&[&path; LANES], 1), output);
+        }
+        if waiting.takes_at_interface(world, &path, hit) {
+            return;
         }
         let surface = world.surface(&path.ray, hit);
 

@@ -5,6 +5,7 @@
 //! ignored, as in most renderers of this kind since Whitted's.
 
 mod lanes;
+mod media;
 mod passing;
 mod queue;
 
@@ -19,6 +20,7 @@ use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{Material, MaterialKind};
 use crate::world::World;
 
+use media::Transmittances;
 use passing::let_through;
 pub(super) use queue::ShadowLight;
 pub use queue::Shadows;
@@ -169,12 +171,15 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     // All are replaced.
     blocked.resize(rays.len(), false);
     world.bvh.query().origins(origin_primitives).occluded_many(rays, blocked);
+    let through_media = Transmittances::estimate(world, modes, rays.len(), |index| {
+        (!blocked[index]).then(|| (&rays[index], &lights[index], rays[index].t_max))
+    });
     for (index, (light, blocked)) in lights.iter_mut().zip(&*blocked).enumerate() {
         let mode = &modes[light.slot as usize];
-        let passed = if *blocked {
-            Spectrum::BLACK
-        } else {
-            light.transmittance(world, &rays[index], rays[index].t_max, mode)
+        let passed = match (*blocked, through_media.at(index)) {
+            (true, _) => Spectrum::BLACK,
+            (false, Some(transmittance)) => transmittance,
+            (false, None) => light.transmittance(world, &rays[index], rays[index].t_max, mode),
         };
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {

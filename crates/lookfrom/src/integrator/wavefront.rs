@@ -3,6 +3,7 @@
 pub(super) mod bare_hits;
 mod bins;
 mod departure;
+mod interfaces;
 mod light_samples;
 mod modes;
 mod rounds;
@@ -13,6 +14,7 @@ use lookfrom_bvh::Hit;
 pub(super) use bare_hits::BareHits;
 pub(super) use bins::{Bins, Eight};
 pub(super) use departure::{Boundary, Departure};
+pub(super) use interfaces::{Behind, Interfaces};
 pub(super) use light_samples::{LightSamples, Receivers};
 pub(super) use modes::Modes;
 pub(super) use rounds::Rounds;

@@ -1,8 +1,9 @@
 //! pbrt-v4's procedural cloud: noise of five octaves, displaced by noise, that decreases with height.
 
-use glam::Vec3;
+use lookfrom_simd::{Float, Real};
 
 use crate::core::noise::perlin;
+use crate::core::vector::Vector;
 
 /// A cloud. Its density is 0 to 1.
 #[derive(Clone, Copy, Debug)]
@@ -13,27 +14,29 @@ pub(super) struct Cloud {
 }
 
 impl Cloud {
-    /// The density at a point of medium space.
-    pub(super) fn at(&self, point: Vec3) -> f32 {
-        // Displace the point by noise.
-        let mut at = point * self.frequency;
+    /// The densities at points of medium space.
+    #[inline(always)]
+    pub(super) fn at<R: Real>(&self, points: Vector<R>) -> R {
+        // Displace the points by noise.
+        let mut at = points * points.x.like(self.frequency);
         if self.wispiness > 0.0 {
             let (mut strength, mut frequency) = (0.05 * self.wispiness, 10.0);
             for _ in 0..2 {
-                at += strength * perlin::gradient(frequency * at);
+                at = at + perlin::gradients(at * at.x.like(frequency)) * at.x.like(strength);
                 strength *= 0.5;
                 frequency *= perlin::LACUNARITY;
             }
         }
         // Below, the cloud is full; above, it thins out.
-        let noise = perlin::fbm(at, 0.5, 5) * 0.5;
-        self.thinned(point.y, noise)
+        let noise = perlin::fbms(at, 0.5, 5) * 0.5;
+        self.thinned(points.y, noise)
     }
 
     /// The density where the noise has a value.
-    fn thinned(&self, y: f32, noise: f32) -> f32 {
-        let above = ((1.0 - y) * 4.5 * self.density * noise).clamp(0.0, 1.0);
-        (above + 2.0 * (0.5 - y).max(0.0)).clamp(0.0, 1.0)
+    #[inline(always)]
+    fn thinned<R: Real>(&self, y: R, noise: R) -> R {
+        let above = Float::clamp((-y + 1.0) * 4.5 * self.density * noise, 0.0, 1.0);
+        Float::clamp(above + Float::max(-y + 0.5, y.like(0.0)) * 2.0, 0.0, 1.0)
     }
 
     /// A bound of the density between two heights.

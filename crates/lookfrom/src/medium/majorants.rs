@@ -3,8 +3,12 @@
 //! Cells are walked by their next faces along each axis (Amanatides & Woo 1987).
 
 use glam::{UVec3, Vec3};
+use lookfrom_simd::{Float, Real};
 
 use super::grid::PlacedGrid;
+use crate::core::lanes::width::{Lanes, Width};
+use crate::core::lanes::{Columns, load, set_row, store};
+use crate::core::vector::Vector;
 
 /// Largest densities in the cells of a grid over the box that a medium is in.
 #[derive(Clone, Debug)]
@@ -13,15 +17,6 @@ pub(super) struct Majorants {
     size: [u32; 3],
     /// By cells, x fastest.
     values: Vec<f32>,
-}
-
-/// A part of a ray in a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Segment {
-    /// Distance of its end.
-    pub(super) end: f32,
-    /// The bound of the density on it.
-    pub(super) most: f32,
 }
 
 /// Most cells along an axis.
@@ -92,8 +87,9 @@ impl Majorants {
         (place as u32).min(self.size[axis] - 1)
     }
 
-    /// The way of a ray through the box, up to a distance; `None` where it does not meet it. The direction need not be of unit length.
-    pub(super) fn walk(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<Walk<'_>> {
+    /// The distance at which a ray enters the box, and its way through the cells from there, up to a distance; `None` where it does not
+    /// meet the box. The direction need not be of unit length.
+    pub(super) fn walk(&self, origin: Vec3, direction: Vec3, limit: f32) -> Option<(f32, Walk<f32>)> {
         // Clip the ray by the box.
         let (mut start, mut end) = (0.0_f32, limit);
         for axis in 0..3 {
@@ -111,28 +107,19 @@ impl Majorants {
         // Find its first cell, and where it leaves that along each axis.
         let at = origin + direction * start;
         let width = (self.bounds[1] - self.bounds[0]) / UVec3::from_array(self.size).as_vec3();
-        let mut walk = Walk {
-            majorants: self,
-            start,
-            t: start,
-            end,
-            cell: UVec3::ZERO,
-            next: Vec3::INFINITY,
-            step: Vec3::ZERO,
-            is_down: [false; 3],
-        };
+        let [mut cells, mut next, mut step] = [[0.0; 3], [f32::INFINITY; 3], [0.0; 3]];
         for axis in 0..3 {
             let cell = self.cell(axis, at[axis]);
-            walk.cell[axis] = cell;
-            walk.is_down[axis] = direction[axis] < 0.0;
+            cells[axis] = cell as f32;
             if direction[axis] != 0.0 {
-                let face =
-                    self.bounds[0][axis] + width[axis] * (cell + u32::from(!walk.is_down[axis])) as f32;
-                walk.next[axis] = (face - origin[axis]) / direction[axis];
-                walk.step[axis] = width[axis] / direction[axis].abs();
+                let is_up = direction[axis] > 0.0;
+                let face = self.bounds[0][axis] + width[axis] * (cell + u32::from(is_up)) as f32;
+                next[axis] = (face - origin[axis]) / direction[axis];
+                step[axis] = width[axis] / direction[axis].abs();
             }
         }
-        Some(walk)
+        let [cell, next, step] = [cells, next, step].map(|[x, y, z]| Vector { x, y, z });
+        Some((start, Walk { end: start, last: end, cell, next, step }))
     }
 }
 
@@ -140,43 +127,100 @@ fn index(size: [u32; 3], cell: UVec3) -> usize {
     (cell.x + size[0] * (cell.y + size[1] * cell.z)) as usize
 }
 
-/// The way of a ray through the cells: an iterator over its segments, in order.
-#[derive(Clone, Debug)]
-pub(super) struct Walk<'a> {
-    majorants: &'a Majorants,
-    /// Distance at which the ray enters the box.
-    pub(super) start: f32,
-    t: f32,
-    end: f32,
-    cell: UVec3,
-    /// Distances at which the ray leaves its cell along each axis.
-    next: Vec3,
+/// Rays on their way through the cells.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Walk<R> {
+    /// The distance up to which a ray has come: the beginning of its cell.
+    pub(super) end: R,
+    /// The distance at which it leaves the box, or ends.
+    pub(super) last: R,
+    /// The coordinates of its cell.
+    cell: Vector<R>,
+    /// Distances at which it leaves its cell along each axis.
+    next: Vector<R>,
     /// The distance between faces along each axis.
-    step: Vec3,
-    is_down: [bool; 3],
+    step: Vector<R>,
 }
 
-impl Iterator for Walk<'_> {
-    type Item = Segment;
-
-    #[inline]
-    fn next(&mut self) -> Option<Segment> {
-        if self.t >= self.end {
-            return None;
-        }
-        let most = self.majorants.values[index(self.majorants.size, self.cell)];
-        let axis = self.next.min_position();
-        self.t = self.next[axis].clamp(self.t, self.end);
-        let mut segment = Segment { end: self.t, most };
+impl<R: Real> Walk<R> {
+    /// Goes to the ends of the cells, in the lanes of a mask, along directions. Returns the bounds of the density up to there.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, majorants: &Majorants, direction: Vector<R>, lanes: R::Mask) -> R {
+        let Vector { x, y, z } = self.cell;
+        let [width, height, depth] = majorants.size;
+        let [width, height, depth] = [width as f32, height as f32, depth as f32];
+        let place = ((z * height + y) * width + x).to_integer();
+        let most = R::lookup(
+            place,
+            #[inline(always)]
+            |place| majorants.values[place],
+        );
+        // Find the nearest face.
+        let next = self.next;
+        let on_x = !next.y.lt(next.x) & !next.z.lt(next.x);
+        let on_y = !on_x & !next.z.lt(next.y);
+        let on_z = !on_x & !on_y;
+        let face = R::select(on_x, next.x, R::select(on_y, next.y, next.z));
+        let end = Float::min(Float::max(face, self.end), self.last);
         // Step into the next cell. Behind the last one the ray has left the box, up to rounding.
-        self.next[axis] += self.step[axis];
-        let cell = &mut self.cell[axis];
-        let next = if self.is_down[axis] { cell.wrapping_sub(1) } else { *cell + 1 };
-        if next < self.majorants.size[axis] {
-            *cell = next;
-        } else {
-            (self.t, segment.end) = (self.end, self.end);
+        let Vector { x, y, z } = &mut self.cell;
+        let out_x = step([x, &mut self.next.x], (self.step.x, direction.x, width), lanes & on_x);
+        let out_y = step([y, &mut self.next.y], (self.step.y, direction.y, height), lanes & on_y);
+        let out_z = step([z, &mut self.next.z], (self.step.z, direction.z, depth), lanes & on_z);
+        let are_out = out_x | out_y | out_z;
+        self.end = R::select(lanes, R::select(are_out, self.last, end), self.end);
+        most
+    }
+}
+
+/// Steps into the next of so many cells along an axis, in the lanes of a mask. Returns those that have left the last one, and stay there.
+#[inline(always)]
+fn step<R: Real>(
+    [cell, next]: [&mut R; 2],
+    (step, direction, cells): (R, R, f32),
+    lanes: R::Mask,
+) -> R::Mask {
+    *next = R::select(lanes, *next + step, *next);
+    let beside = *cell + step.like(1.0).copysign(direction);
+    let is_out = beside.lt(step.like(0.0)) | !beside.lt(step.like(cells));
+    *cell = R::select(lanes & !is_out, beside, *cell);
+    lanes & is_out
+}
+
+/// [`Walk`] by lane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct StoredWalk {
+    ends: Columns<2>,
+    cell: Columns<3>,
+    next: Columns<3>,
+    step: Columns<3>,
+}
+
+impl StoredWalk {
+    /// Replaces that of a lane.
+    pub(super) fn set(&mut self, lane: usize, walk: &Walk<f32>) {
+        set_row(&mut self.ends, lane, [walk.end, walk.last]);
+        set_row(&mut self.cell, lane, walk.cell.into());
+        set_row(&mut self.next, lane, walk.next.into());
+        set_row(&mut self.step, lane, walk.step.into());
+    }
+
+    #[inline(always)]
+    pub(super) fn load<W: Width>(&self, width: W) -> Walk<W::Real> {
+        Walk {
+            end: width.load_f32(&self.ends[0]),
+            last: width.load_f32(&self.ends[1]),
+            cell: load(width, &self.cell),
+            next: load(width, &self.next),
+            step: load(width, &self.step),
         }
-        Some(segment)
+    }
+
+    /// Keeps what has changed on the way.
+    #[inline(always)]
+    pub(super) fn store<R: Lanes>(&mut self, walk: &Walk<R>) {
+        self.ends[0] = walk.end.column();
+        self.cell = store(walk.cell);
+        self.next = store(walk.next);
     }
 }

@@ -2,13 +2,17 @@
 
 use glam::{DMat4, DVec3, Mat3, Vec3};
 use lookfrom_scene::medium::{Density as Written, Variation};
+use lookfrom_simd::{Float, Real};
 
 use super::Coefficients;
 use super::cloud::Cloud;
 use super::grid::PlacedGrid;
 use super::majorants::Majorants;
-use crate::core::color::{Unbounded, blackbody, blackbody_rgb};
+use crate::core::color::{Unbounded, Wavelengths, blackbody, blackbody_rgb};
+use crate::core::lanes::width::Width;
+use crate::core::lanes::{LANES, row, store};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::shading::texture::{
     FloatTexture, SpectralMode, SpectrumType, TexturePoint, Textures, spectrum_of, uplift,
 };
@@ -101,44 +105,61 @@ impl Varying {
         self.medium_from_render.0 * direction
     }
 
-    /// The coefficients at a point of medium space, from those where the density is 1; `emission_scale` multiplies what emits in the
+    /// The coefficients at points of medium space, from those where the density is 1; `emission_scale` multiplies what emits in the
     /// place of their emission.
-    #[inline]
-    pub(super) fn at(
+    #[inline(always)]
+    pub(super) fn at<W: Width>(
         &self,
-        point: Vec3,
-        even: &Coefficients,
+        width: W,
+        points: Vector<W::Real>,
+        even: &Coefficients<W::Real>,
         emission_scale: f32,
-        (textures, mode): (&Textures, &SpectralMode),
-    ) -> Coefficients {
+        (textures, modes): (&Textures, &[&SpectralMode; LANES]),
+    ) -> Coefficients<W::Real> {
         let mut here = *even;
+        let emission_scale = points.x.like(emission_scale);
         match &self.density {
             Density::Colors { absorption, scattering, emission } => {
                 if let Some(colors) = absorption {
-                    here.absorption *= colors.at(point, mode);
+                    here.absorption *= colors.at(width, points, modes);
                 }
                 if let Some(colors) = scattering {
-                    here.scattering *= colors.at(point, mode);
+                    here.scattering *= colors.at(width, points, modes);
                 }
                 if let Some(colors) = emission {
-                    here.emission = colors.at(point, mode) * emission_scale;
+                    here.emission = colors.at(width, points, modes) * emission_scale;
                 }
             }
             one => {
-                let density = one.number(point, textures);
+                let density = one.numbers(width, points, textures);
                 here.absorption = here.absorption * density;
                 here.scattering = here.scattering * density;
             }
         }
         if let Some(temperature) = &self.temperature {
-            here.emission = temperature.emission(point, mode) * emission_scale;
+            let columns = store(points);
+            let emission = width.spectra_of(
+                #[inline(always)]
+                |lane| temperature.emission(Vec3::from_array(row(&columns, lane)), modes[lane]),
+            );
+            here.emission = emission * emission_scale;
         }
         if let Some(scale) = &self.emission_scale {
-            here.emission = here.emission * scale.at(point, |value| value);
+            here.emission = here.emission * scale.numbers_at(width, points);
         }
-        let limited = |coefficient: Spectrum| coefficient.map(|sigma| sigma.min(Coefficients::MOST));
-        Coefficients { absorption: limited(here.absorption), scattering: limited(here.scattering), ..here }
+        let most = points.x.like(Coefficients::MOST);
+        let [absorption, scattering] = [at_most(here.absorption, most), at_most(here.scattering, most)];
+        Coefficients { absorption, scattering, ..here }
     }
+}
+
+/// A spectrum no greater than a bound in any lane.
+#[inline(always)]
+fn at_most<R: Real>(spectrum: Spectrum<R>, most: R) -> Spectrum<R> {
+    spectrum.map(
+        #[inline(always)]
+        |lane| Float::min(lane, most),
+    )
 }
 
 impl Density {
@@ -175,18 +196,28 @@ impl Density {
         }
     }
 
-    /// The number at a point of medium space; of colours there is none.
-    #[inline]
-    fn number(&self, point: Vec3, textures: &Textures) -> f32 {
+    /// The numbers at points of medium space; of colours there are none.
+    #[inline(always)]
+    fn numbers<W: Width>(&self, width: W, points: Vector<W::Real>, textures: &Textures) -> W::Real {
         match self {
-            Self::Grid(grid) => grid.at(point, |value| value),
-            Self::Cloud(cloud) => cloud.at(point),
+            Self::Grid(grid) => grid.numbers_at(width, points),
+            Self::Cloud(cloud) => cloud.at(points),
             Self::Texture { of, most, world_from_medium } => {
-                let world = world_from_medium.transform_point3(point.as_dvec3());
-                // NaN is no density.
-                textures.float(*of, &TexturePoint { world, ..TexturePoint::NOWHERE }).max(0.0).min(*most)
+                let columns = store(points);
+                width.f32s(
+                    #[inline(always)]
+                    |lane| {
+                        let point = Vec3::from_array(row(&columns, lane));
+                        let world = world_from_medium.transform_point3(point.as_dvec3());
+                        // NaN is no density.
+                        textures
+                            .float(*of, &TexturePoint { world, ..TexturePoint::NOWHERE })
+                            .max(0.0)
+                            .min(*most)
+                    },
+                )
             }
-            Self::Colors { .. } => 1.0,
+            Self::Colors { .. } => points.x.like(1.0),
         }
     }
 
@@ -208,17 +239,45 @@ impl Density {
 }
 
 impl Colors {
-    fn at(&self, point: Vec3, mode: &SpectralMode) -> Spectrum {
-        match (&self.uplifted, mode) {
-            (Some(uplifted), SpectralMode::Spectral(wavelengths)) => {
-                let values = uplifted.spectrum_at(point, &wavelengths.lambda);
-                if self.spectrum_type == SpectrumType::Illuminant {
-                    values * wavelengths.daylight
-                } else {
-                    values
+    #[inline(always)]
+    fn at<W: Width>(
+        &self,
+        width: W,
+        points: Vector<W::Real>,
+        modes: &[&SpectralMode; LANES],
+    ) -> Spectrum<W::Real> {
+        match &self.uplifted {
+            Some(uplifted) if wavelengths(modes[0]).is_some() => {
+                let lambda = width.spectra_of(
+                    #[inline(always)]
+                    |lane| match wavelengths(modes[lane]) {
+                        Some(wavelengths) => Spectrum(wavelengths.lambda),
+                        None => Spectrum::BLACK,
+                    },
+                );
+                let values = uplifted.spectra_at(width, points, &lambda);
+                if self.spectrum_type != SpectrumType::Illuminant {
+                    return values;
                 }
+                let daylight = width.spectra_of(
+                    #[inline(always)]
+                    |lane| match wavelengths(modes[lane]) {
+                        Some(wavelengths) => wavelengths.daylight,
+                        None => Spectrum::BLACK,
+                    },
+                );
+                values * daylight
             }
-            _ => self.rgb.at(point, |rgb| spectrum_of(rgb, self.spectrum_type, mode)),
+            _ => {
+                let columns = store(points);
+                width.spectra_of(
+                    #[inline(always)]
+                    |lane| {
+                        let point = Vec3::from_array(row(&columns, lane));
+                        self.rgb.at(point, |rgb| spectrum_of(rgb, self.spectrum_type, modes[lane]))
+                    },
+                )
+            }
         }
     }
 
@@ -228,6 +287,15 @@ impl Colors {
             Some(uplifted) => Majorants::of_grid(bounds, uplifted, |of| of.most()),
             None => Majorants::of_grid(bounds, &self.rgb, |[r, g, b]| r.max(g).max(b)),
         }
+    }
+}
+
+/// The wavelengths of a spectral mode.
+#[inline(always)]
+fn wavelengths(mode: &SpectralMode) -> Option<&Wavelengths> {
+    match mode {
+        SpectralMode::Spectral(wavelengths) => Some(wavelengths),
+        SpectralMode::Rgb => None,
     }
 }
 

@@ -17,9 +17,16 @@ pub(crate) enum Class {
         bsdf: Option<BsdfClass>,
         /// Its material, where it is bare.
         bare: Option<u32>,
+        /// Whether it is an interface of media and nothing else.
+        is_interface: bool,
     },
-    /// The material of each sphere that is bare.
-    Spheres(Vec<Option<u32>>),
+    /// Spheres.
+    Spheres {
+        /// The material of each one that is bare.
+        bare: Vec<Option<u32>>,
+        /// Whether each is an interface of media and nothing else.
+        are_interfaces: Vec<bool>,
+    },
     /// Anything else.
     General,
 }
@@ -49,6 +56,10 @@ impl World {
             let is_bare = binding.is_bare() && !matches!(kind, MaterialKind::Unlit { .. });
             is_bare.then_some(binding.material)
         };
+        let is_interface = |binding: &MaterialBinding| {
+            let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
+            is_alone && matches!(self.materials[binding.material as usize].kind, MaterialKind::Interface)
+        };
         match primitives {
             Primitives::Mesh(mesh) => {
                 let binding = &mesh.binding;
@@ -56,11 +67,14 @@ impl World {
                 let material = &self.materials[binding.material as usize];
                 // Paths into what fills a body leave its surface one by one.
                 let bsdf = material.class().filter(|_| is_whole && material.medium.is_none());
-                Class::Mesh { bsdf, bare: bare(binding) }
+                Class::Mesh { bsdf, bare: bare(binding), is_interface: is_interface(binding) }
             }
             Primitives::Spheres(spheres) => {
-                let of = |binding: &u32| bare(&spheres.bindings[*binding as usize].binding);
-                Class::Spheres(spheres.binding_of.iter().map(of).collect())
+                let bindings = || spheres.binding_of.iter().map(|&of| &spheres.bindings[of as usize].binding);
+                Class::Spheres {
+                    bare: bindings().map(bare).collect(),
+                    are_interfaces: bindings().map(is_interface).collect(),
+                }
             }
             _ => Class::General,
         }
@@ -74,10 +88,24 @@ impl World {
         }
         let (material, is_sphere) = match &self.classes[hit.geometry as usize] {
             Class::Mesh { bare, .. } => (*bare, false),
-            Class::Spheres(materials) => (materials[hit.primitive as usize], true),
+            Class::Spheres { bare, .. } => (bare[hit.primitive as usize], true),
             Class::General => return None,
         };
         material.map(|material| BareSurface { material, is_sphere })
+    }
+
+    /// Whether a hit is on a triangle or sphere outside of instances that is an interface of media, without alpha or vertex data; then
+    /// also whether it is a sphere.
+    #[inline(always)]
+    pub(crate) fn interface(&self, hit: &Hit) -> Option<bool> {
+        if !self.has_media || !hit.is_hit() || hit.instance != NONE {
+            return None;
+        }
+        match &self.classes[hit.geometry as usize] {
+            Class::Mesh { is_interface, .. } => is_interface.then_some(false),
+            Class::Spheres { are_interfaces, .. } => are_interfaces[hit.primitive as usize].then_some(true),
+            Class::General => None,
+        }
     }
 
     /// The class of the BSDFs at a hit on a mesh that has one; `None` for instances with a material of their own.
@@ -95,7 +123,7 @@ impl World {
         };
         match class {
             Class::Mesh { bsdf, .. } => *bsdf,
-            Class::Spheres(_) | Class::General => None,
+            Class::Spheres { .. } | Class::General => None,
         }
     }
 

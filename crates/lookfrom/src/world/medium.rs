@@ -34,8 +34,8 @@ impl World {
         }
         if medium.varying.is_some() {
             let way = Way::new(ray, length);
-            let estimate = medium.estimated_transmittance(&way, (&self.textures, mode), |_, _| {});
-            return estimate.unwrap_or(mode.one());
+            let estimate = medium.estimated_transmittance(&way, (&self.textures, mode), false);
+            return estimate.map_or(mode.one(), |tracking| tracking.after);
         }
         let (sigma, scale) = self.extinction(medium, mode);
         if scale == 0.0 {

@@ -61,14 +61,6 @@ impl Sigmoid {
     }
 }
 
-impl Sigmoid {
-    /// The values of eight, by their coefficients, at a wavelength in nm.
-    #[inline]
-    pub(crate) fn values([a, b, c]: &[[f32; 8]; 3], nm: f32) -> [f32; 8] {
-        std::array::from_fn(|k| Self([a[k], b[k], c[k]]).value(nm))
-    }
-}
-
 impl<R: Real> Sigmoid<R> {
     /// The values at wavelengths in nm.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Numbers of a width between vectors and columns of memory: eight side by side, or one, which is that of the first lane.
 
 use lookfrom_bvh::Ray;
-use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*, u32x8, u64x8};
+use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, mask32x8, prelude::*, transposed, u32x8, u64x8};
 
 use super::{LANES, by_lane, gather_spectrum, scatter_rays, scatter_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -11,6 +11,8 @@ use crate::core::vector::Vector;
 pub(crate) trait Width: Copy {
     /// The numbers.
     type Real: Lanes;
+    /// The bits of all lanes.
+    const ALL: u32;
 
     /// Numbers of single precision.
     fn load_f32(self, column: &[f32; LANES]) -> Self::Real;
@@ -22,6 +24,12 @@ pub(crate) trait Width: Copy {
     fn u32s(self, of: impl Fn(usize) -> u32) -> Bits<Self>;
     /// Integers of 64 bits by lane.
     fn u64s(self, of: impl Fn(usize) -> u64) -> Bits64<Self>;
+    /// The column of integers of 64 bits.
+    fn u64_column(self, bits: Bits64<Self>) -> [u64; LANES];
+    /// Values by lane.
+    fn by_lane<T: Copy>(self, of: impl Fn(usize) -> T) -> [T; LANES];
+    /// The columns of rows of eight numbers.
+    fn eights(self, rows: &[[f32; 8]; LANES]) -> [Self::Real; 8];
     /// The mask whose lane i is bit i.
     fn mask(self, bits: u32) -> Mask<Self>;
     /// The bits of a mask: bit i is lane i.
@@ -68,6 +76,7 @@ pub(crate) struct One;
 
 impl Width for One {
     type Real = f32;
+    const ALL: u32 = 1;
 
     #[inline(always)]
     fn load_f32(self, column: &[f32; LANES]) -> f32 {
@@ -88,6 +97,18 @@ impl Width for One {
     #[inline(always)]
     fn u64s(self, of: impl Fn(usize) -> u64) -> u64 {
         of(0)
+    }
+    #[inline(always)]
+    fn u64_column(self, bits: u64) -> [u64; LANES] {
+        [bits; LANES]
+    }
+    #[inline(always)]
+    fn by_lane<T: Copy>(self, of: impl Fn(usize) -> T) -> [T; LANES] {
+        [of(0); LANES]
+    }
+    #[inline(always)]
+    fn eights(self, rows: &[[f32; 8]; LANES]) -> [f32; 8] {
+        rows[0]
     }
     #[inline(always)]
     fn mask(self, bits: u32) -> bool {
@@ -131,6 +152,7 @@ impl WideLanes for f64 {
 
 impl<S: Simd> Width for S {
     type Real = f32x8<S>;
+    const ALL: u32 = 0xff;
 
     #[inline(always)]
     fn load_f32(self, column: &[f32; LANES]) -> f32x8<S> {
@@ -151,6 +173,18 @@ impl<S: Simd> Width for S {
     #[inline(always)]
     fn u64s(self, of: impl Fn(usize) -> u64) -> u64x8<S> {
         u64x8::load_array(self, by_lane!(lane => of(lane)))
+    }
+    #[inline(always)]
+    fn u64_column(self, bits: u64x8<S>) -> [u64; LANES] {
+        bits.into()
+    }
+    #[inline(always)]
+    fn by_lane<T: Copy>(self, of: impl Fn(usize) -> T) -> [T; LANES] {
+        by_lane!(lane => of(lane))
+    }
+    #[inline(always)]
+    fn eights(self, rows: &[[f32; 8]; LANES]) -> [f32x8<S>; 8] {
+        transposed(by_lane!(lane => f32x8::load_array(self, rows[lane])))
     }
     #[inline(always)]
     fn mask(self, bits: u32) -> mask32x8<S> {

@@ -7,7 +7,11 @@
 //! octaves that are finer than a pixel, by its ray differentials. There are none here: all octaves are summed, and
 //! detail below a pixel is left to the pixel's samples.
 
+mod lanes;
+
 use glam::Vec3;
+
+pub(crate) use lanes::{fbms, gradients};
 
 use super::permutation::PERMUTATION;
 use super::{EDGES, fade, mix_linearly};
@@ -57,13 +61,6 @@ pub fn noise(p: Vec3) -> f32 {
     let edge = |j, k| mix_linearly(corner(0, j, k), corner(1, j, k), u);
     let face = |k| mix_linearly(edge(0, k), edge(1, k), v);
     mix_linearly(face(0), face(1), w)
-}
-
-/// The gradient of the noise, by differences over 0.01, as in pbrt.
-pub fn gradient(p: Vec3) -> Vec3 {
-    const STEP: f32 = 0.01;
-    let here = noise(p);
-    Vec3::from_array(Vec3::AXES.map(|axis| (noise(p + axis * STEP) - here) / STEP))
 }
 
 /// Fractional Brownian motion: the sum of `octaves` noises, each of 1.99 times the frequency and `roughness` times

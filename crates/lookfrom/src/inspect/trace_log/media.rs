@@ -5,8 +5,8 @@ use glam::Vec3;
 use super::TraceLogBuilder;
 use super::rays::in_world;
 use crate::inspect::report::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
-use crate::integrator::{Flight, PhaseSample, Shadow, Tracked, Tracking};
-use crate::medium::Collision;
+use crate::integrator::{Flight, PhaseSample, Shadow};
+use crate::medium::{Collision, Tracking};
 
 impl TraceLogBuilder<'_> {
     /// The flight of a ray in a homogeneous medium, which may have scattered it before its hit.
@@ -34,7 +34,7 @@ impl TraceLogBuilder<'_> {
     pub(super) fn tracked(&mut self, address: u64, tracking: &Tracking, point: Option<Vec3>) {
         let report = TrackingReport {
             limit: tracking.limit,
-            collisions: tracking.collisions.iter().map(|tracked| self.collision(tracked)).collect(),
+            collisions: tracking.collisions.iter().map(|collision| self.collision(collision)).collect(),
             scattered_at: point.map(|point| in_world(self.world, point.to_array())),
             throughput: self.factor(tracking.after),
         };
@@ -55,14 +55,8 @@ impl TraceLogBuilder<'_> {
         self.at(address, |ray| ray.met = None);
     }
 
-    fn collision(&self, tracked: &Tracked) -> CollisionReport {
-        let Tracked {
-            collision: Collision { t, majorant, coefficients },
-            probability,
-            is_real,
-            emitted,
-            beta,
-        } = *tracked;
+    fn collision(&self, collision: &Collision) -> CollisionReport {
+        let Collision { t, majorant, coefficients, probability, is_real, emitted, beta } = *collision;
         CollisionReport {
             t,
             majorant,
@@ -77,23 +71,17 @@ impl TraceLogBuilder<'_> {
 
     /// The collisions of a shadow ray with a medium that varies, as far as its hit.
     pub(super) fn null_collisions(&self, shadow: &Shadow, t: f32) -> Vec<NullReport> {
-        let mut reports = Vec::new();
-        let Some(medium) = self.world.medium(shadow.interior) else { return reports };
+        let Some(medium) = self.world.medium(shadow.interior) else { return Vec::new() };
         let way = shadow.way(self.world, t);
         let of_mode = (&*self.world.textures, &self.mode);
-        medium.estimated_transmittance(
-            &way,
-            of_mode,
-            |Collision { t, majorant, coefficients }, transmittance| {
-                reports.push(NullReport {
-                    t,
-                    majorant,
-                    extinction: self.factor(coefficients.extinction()),
-                    transmittance: self.factor(transmittance),
-                });
-            },
-        );
-        reports
+        let Some(tracking) = medium.estimated_transmittance(&way, of_mode, true) else { return Vec::new() };
+        let report = |&Collision { t, majorant, coefficients, beta, .. }: &Collision| NullReport {
+            t,
+            majorant,
+            extinction: self.factor(coefficients.extinction()),
+            transmittance: self.factor(beta),
+        };
+        tracking.collisions.iter().map(report).collect()
     }
 
     /// The direction in which a medium scatters a ray.

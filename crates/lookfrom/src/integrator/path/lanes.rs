@@ -16,7 +16,7 @@ mod skies;
 mod vertices;
 
 use glam::Vec3;
-use lookfrom_bvh::Ray;
+use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_simd::LaneMask;
 
 pub(super) use in_medium::MediumVertex;
@@ -30,7 +30,7 @@ use super::{Departure, HitBatch, Path, StepOutput};
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::{Bins, Boundary, Modes};
+use crate::integrator::wavefront::{Behind, Bins, Boundary, Interfaces, Modes};
 use crate::integrator::{Bounce, Event, Probe, SampleStream};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
@@ -52,6 +52,11 @@ pub(super) struct Waiting {
     bins: Bins,
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
     in_media: Vec<MediumVertex>,
+    interfaces: Interfaces,
+    /// Paths at interfaces of media.
+    at_interfaces: Vec<(Path, Hit)>,
+    /// Media by their numbers, and the paths on their ways in them.
+    in_flight: Vec<(u32, Vec<u32>)>,
     memory: Memory,
 }
 
@@ -148,6 +153,48 @@ impl Waiting {
         }
     }
 
+    /// Adds a path on its way in a medium.
+    pub(super) fn push_in_flight(&mut self, medium: u32, index: usize) {
+        let place = self.in_flight.iter().position(|(known, _)| *known == medium).unwrap_or_else(|| {
+            self.in_flight.push((medium, Vec::new()));
+            self.in_flight.len() - 1
+        });
+        self.in_flight[place].1.push(index as u32);
+    }
+
+    /// Takes a path that has arrived at an interface of media which it may cross beside others.
+    #[inline]
+    pub(super) fn takes_at_interface(&mut self, world: &World, path: &Path, hit: &Hit) -> bool {
+        let Some(kind) = Interfaces::kind(world, hit).filter(|_| self.in_lanes) else { return false };
+        self.interfaces.push(kind, self.at_interfaces.len());
+        self.at_interfaces.push((*path, *hit));
+        true
+    }
+
+    /// Lets paths go on behind interfaces.
+    fn cross_interfaces<P: Probe>(&mut self, world: &World, output: &mut StepOutput<'_, P>) {
+        let at = std::mem::take(&mut self.at_interfaces);
+        let behind = self.interfaces.cross(world, |place| {
+            let (path, hit) = &at[place as usize];
+            (&path.ray, hit, path.interior)
+        });
+        for Behind { place, origin, interior } in behind {
+            let (path, hit) = &at[place as usize];
+            output.paths.push(Path {
+                ray: Ray::new(origin, path.ray.direction),
+                address: path.address + 1,
+                origin_primitive: OriginPrimitive::of(hit),
+                interior,
+                ..*path
+            });
+        }
+    }
+
+    /// Takes all paths on their ways in media.
+    pub(super) fn take_in_flight(&mut self) -> Vec<(u32, Vec<u32>)> {
+        std::mem::take(&mut self.in_flight)
+    }
+
     /// Adds a vertex in a medium, and scatters those there where they fill the lanes.
     pub(super) fn push_in_medium<P: Probe>(
         &mut self,
@@ -169,6 +216,7 @@ impl Waiting {
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
+        self.cross_interfaces(batch.world, output);
         self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
         tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
         for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {

@@ -3,13 +3,14 @@
 use glam::Vec3;
 use lookfrom_bvh::Hit;
 
-use super::flight::Flight;
+use super::flight::{Flight, Flying};
 use super::lanes::MediumVertex;
-use super::tracking::Tracking;
-use super::{Path, PathTracer, StepOutput, dimension};
+use super::{HitBatch, Path, PathTracer, StepOutput, dimension};
+use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{Event, Probe, SampleStream, Term};
-use crate::medium::{Medium, Way};
+use crate::medium::{Estimate, Medium, TrackedRay, Tracking, Way};
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// The end of a path's way.
@@ -18,6 +19,19 @@ pub(super) enum Traveled {
     Arrived(Path),
     /// A point of a medium before, which scatters it.
     Scattered(MediumVertex),
+}
+
+/// The medium that acts on a path on its way to what it has hit, and its number in the world; `None` where none does more than absorb.
+pub(super) fn medium_on_way<'a>(world: &'a World, path: &Path, hit: &Hit) -> Option<(u32, &'a Medium)> {
+    // A body must end somewhere: where a ray in it hits nothing, it is in none.
+    let is_in_medium = !path.interior.is_empty() && (hit.is_hit() || path.interior.space().is_some());
+    if !is_in_medium || path.beta.is_black() {
+        return None;
+    }
+    let number = path.interior.medium(&world.materials)?;
+    let medium = world.media.get(number as usize)?;
+    let acts = medium.scattering.is_some() || medium.emission.is_some() || medium.varying.is_some();
+    acts.then_some((number, medium))
 }
 
 impl PathTracer {
@@ -29,58 +43,95 @@ impl PathTracer {
         (path, hit): (&Path, &Hit),
         output: &mut StepOutput<'_, P>,
     ) -> Traveled {
-        // A body must end somewhere: where a ray in it hits nothing, it is in none.
-        let is_in_medium = !path.interior.is_empty() && (hit.is_hit() || path.interior.space().is_some());
-        let medium = match is_in_medium && !path.beta.is_black() {
-            true => world.medium(path.interior),
-            false => None,
+        let Some((_, medium)) = medium_on_way(world, path, hit) else {
+            return Traveled::Arrived(output.absorbed(world, path, hit));
         };
-        match medium {
-            Some(medium) if medium.varying.is_some() => {
-                self.track(world, stream, (path, medium), &path.way_to(hit), output)
+        let mode = output.mode(path);
+        let ray = tracked_ray(stream, (path, hit), &mode);
+        match medium.track(&world.textures, Estimate::Flight, &[ray], P::LISTENS) {
+            Some(mut tracked) => {
+                let tracking = tracked.pop().unwrap_or_default();
+                self.tracked(stream, path, (medium, &ray.way), tracking, output)
             }
-            Some(medium) if medium.scattering.is_some() || medium.emission.is_some() => {
-                self.fly(world, stream, (path, hit), (medium, &path.way_to(hit)), output)
+            None => {
+                let flying = flying(world, stream, path, (medium, &ray.way), &mode);
+                let flight = medium.scattering.map(|_| flying.fly());
+                self.flown(world, (path, hit), (medium, &ray.way), (&flying, flight), output)
             }
-            _ => Traveled::Arrived(output.absorbed(world, path, hit)),
         }
     }
 
-    /// Travels in a homogeneous medium that scatters or emits.
-    fn fly<P: Probe>(
+    /// Brings paths, by their indices in a batch, to the ends of their ways in one medium.
+    pub(super) fn travel_together<P: Probe>(
+        &self,
+        batch: &HitBatch<'_>,
+        (medium, indices): (&Medium, &[u32]),
+        output: &mut StepOutput<'_, P>,
+        mut go_on: impl FnMut(usize, Traveled, &mut StepOutput<'_, P>),
+    ) {
+        let HitBatch { world, paths, hits, streams } = *batch;
+        let path_and_hit = |index: u32| (&paths[index as usize], &hits[index as usize]);
+        if medium.varying.is_some() {
+            let modes = &output.queues.modes;
+            let ray = |&index: &u32| {
+                let (path, hit) = path_and_hit(index);
+                tracked_ray(&streams.of(path), (path, hit), &modes[path.slot as usize])
+            };
+            let rays: Vec<TrackedRay<'_>> = indices.iter().map(ray).collect();
+            let tracked = medium.track(&world.textures, Estimate::Flight, &rays, P::LISTENS);
+            for (&index, tracking) in indices.iter().zip(tracked.into_iter().flatten()) {
+                let (path, hit) = path_and_hit(index);
+                let way = path.way_to(hit);
+                let traveled = self.tracked(&streams.of(path), path, (medium, &way), tracking, output);
+                go_on(index as usize, traveled, output);
+            }
+            return;
+        }
+        let flying = |&index: &u32| {
+            let (path, hit) = path_and_hit(index);
+            let mode = &output.queues.modes[path.slot as usize];
+            flying(world, &streams.of(path), path, (medium, &path.way_to(hit)), mode)
+        };
+        let flying: Vec<Flying> = indices.iter().map(flying).collect();
+        let flights = medium.scattering.map(|_| Flying::fly_all(&flying));
+        for (place, (&index, flying)) in indices.iter().zip(&flying).enumerate() {
+            let (path, hit) = path_and_hit(index);
+            let flight = flights.as_ref().map(|flights| flights[place]);
+            let way = path.way_to(hit);
+            let traveled = self.flown(world, (path, hit), (medium, &way), (flying, flight), output);
+            go_on(index as usize, traveled, output);
+        }
+    }
+
+    /// The end of a way in a homogeneous medium that emits, or scatters: then there is a flight.
+    fn flown<P: Probe>(
         &self,
         world: &World,
-        stream: &SampleStream,
         (path, hit): (&Path, &Hit),
         (medium, way): (&Medium, &Way),
+        (flying, flight): (&Flying, Option<Flight>),
         output: &mut StepOutput<'_, P>,
     ) -> Traveled {
-        let coefficients = medium.coefficients(&world.textures, &output.mode(path));
         if medium.emission.is_some() {
-            self.add_emission_of_medium(path, path.beta * coefficients.emitted(way.length), output);
+            let emitted = path.beta * flying.coefficients.emitted(way.length);
+            self.add_emission_of_medium(path, emitted, output);
         }
-        if medium.scattering.is_none() {
-            return Traveled::Arrived(output.absorbed(world, path, hit));
-        }
-        let flight = Flight::sample(&coefficients, path.beta, way.length, stream.two(dimension::FLIGHT));
+        let Some(flight) = flight else { return Traveled::Arrived(output.absorbed(world, path, hit)) };
         let point = flight.is_scattered().then(|| way.origin + way.direction * flight.distance);
         output.probe.notice(|| Event::Flown { address: path.address, flight: Box::new(flight), point });
         let path = Path { beta: flight.after, ..*path };
-        end(medium, path, stream, point)
+        end(medium, path, &flying.stream, point)
     }
 
-    /// Travels in a medium that varies.
-    fn track<P: Probe>(
+    /// The end of a way in a medium that varies.
+    fn tracked<P: Probe>(
         &self,
-        world: &World,
         stream: &SampleStream,
-        (path, medium): (&Path, &Medium),
-        way: &Way,
+        path: &Path,
+        (medium, way): (&Medium, &Way),
+        tracking: Tracking,
         output: &mut StepOutput<'_, P>,
     ) -> Traveled {
-        let mode = output.mode(path);
-        let tracking =
-            Tracking::sample(medium, (&world.textures, &mode), (way, path.beta), stream, P::LISTENS);
         if medium.emission.is_some() {
             self.add_emission_of_medium(path, tracking.emitted, output);
         }
@@ -96,6 +147,29 @@ impl PathTracer {
             output.add(path, Term::Medium, light);
         }
     }
+}
+
+/// The ray of a path, as far as its hit, to be tracked.
+fn tracked_ray<'a>(
+    stream: &SampleStream,
+    (path, hit): (&Path, &Hit),
+    mode: &'a SpectralMode,
+) -> TrackedRay<'a> {
+    let [u, seed] = stream.two(dimension::FLIGHT);
+    let seed = hash::pair(u64::from(u.to_bits()), u64::from(seed.to_bits()));
+    TrackedRay { way: path.way_to(hit), throughput: path.beta, u, seed, mode }
+}
+
+/// A path that is to fly through a homogeneous medium.
+fn flying(
+    world: &World,
+    stream: &SampleStream,
+    path: &Path,
+    (medium, way): (&Medium, &Way),
+    mode: &SpectralMode,
+) -> Flying {
+    let coefficients = medium.coefficients(&world.textures, mode);
+    Flying { stream: *stream, coefficients, throughput: path.beta, limit: way.length }
 }
 
 /// The end of a way: at the point where the medium scatters the path, if there is one.

@@ -4,9 +4,11 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use super::lanes::Crossings;
+use super::media::Transmittances;
 use super::{ShadowLight, ShadowTransparency, Shadows, rest};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
+use crate::integrator::wavefront::{Behind, Interfaces};
 use crate::integrator::{Event, Probe, Queues};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Coefficients;
@@ -30,6 +32,7 @@ pub(super) fn let_through<P: Probe>(
     // The lights of the rays that are left.
     let mut left: Vec<u32> = (0..lights.len() as u32).collect();
     let mut crossings = Crossings::new(P::LISTENS);
+    let mut interfaces = Interfaces::default();
     // Rays that cross surfaces side by side, for a probe: as they arrive.
     let mut crossing = Vec::new();
     for round in 0.. {
@@ -38,12 +41,21 @@ pub(super) fn let_through<P: Probe>(
         world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
         traced += rays.len() as u64;
 
+        let is_blocked = |hit: &Hit| {
+            hit.is_hit() && (round >= MOST_CROSSINGS || shadow_transparency.is_blocked(world, hit))
+        };
+        let through_media = Transmittances::estimate(world, modes, rays.len(), |place| {
+            let (ray, hit) = (&rays[place], &hits[place]);
+            let t = if hit.is_hit() { hit.t } else { ray.t_max };
+            (!is_blocked(hit)).then(|| (ray, &lights[left[place] as usize], t))
+        });
+
         // Those that go on keep their order.
         let mut count = 0;
         for place in 0..rays.len() {
             let (mut ray, mut origin_primitive, hit) = (rays[place], origin_primitives[place], hits[place]);
             let light = &mut lights[left[place] as usize];
-            let is_blocked = round >= MOST_CROSSINGS || shadow_transparency.is_blocked(world, &hit);
+            let is_blocked = is_blocked(&hit);
             if !is_blocked && crossings.take(world, count as u32, &hit) {
                 if P::LISTENS {
                     crossing.push((count, light.of(ray, origin_primitive)));
@@ -51,25 +63,56 @@ pub(super) fn let_through<P: Probe>(
                 origin_primitive = OriginPrimitive::of(&hit);
             } else {
                 let mode = &modes[light.slot as usize];
-                let surface = (hit.is_hit() && !is_blocked).then(|| world.surface(&ray, &hit));
-                let passed = match surface.as_ref() {
+                let interface = Interfaces::kind(world, &hit).filter(|_| !is_blocked);
+                let surface =
+                    (hit.is_hit() && !is_blocked && interface.is_none()).then(|| world.surface(&ray, &hit));
+                let through_surface = match &surface {
                     Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
-                    None if hit.is_hit() => Spectrum::BLACK,
-                    None => light.transmittance(world, &ray, ray.t_max, mode),
+                    None if is_blocked => Spectrum::BLACK,
+                    None => mode.one(),
+                };
+                let passed = match through_surface.is_black() {
+                    true => Spectrum::BLACK,
+                    false => {
+                        let t = if hit.is_hit() { hit.t } else { ray.t_max };
+                        let through_medium = through_media.at(place);
+                        through_surface
+                            * through_medium.unwrap_or_else(|| light.transmittance(world, &ray, t, mode))
+                    }
                 };
                 probe.notice(|| Event::Shadow { shadow: light.of(ray, origin_primitive), hit, passed });
                 light.contribution *= passed;
-                let Some(surface) = surface.filter(|_| !light.contribution.is_black()) else { continue };
-                light.go_on_behind(world, &mut ray, &hit, &surface);
+                if !hit.is_hit() || light.contribution.is_black() {
+                    continue;
+                }
+                // Behind interfaces rays go on side by side.
+                match (&surface, interface) {
+                    (Some(surface), _) => {
+                        light.go_on_behind(world, &mut ray, &hit, surface);
+                        origin_primitive = surface.origin_primitive;
+                    }
+                    (None, Some(kind)) => {
+                        interfaces.push(kind, count);
+                        origin_primitive = OriginPrimitive::of(&hit);
+                    }
+                    (None, None) => continue,
+                }
                 ray.t_max = match shadow_transparency {
                     ShadowTransparency::AlphaTested => rest(ray.t_max, hit.t),
                     ShadowTransparency::Transparent => ray.t_max - hit.t,
                 };
-                origin_primitive = surface.origin_primitive;
             }
             (rays[count], origin_primitives[count], hits[count]) = (ray, origin_primitive, hit);
             left[count] = left[place];
             count += 1;
+        }
+        let behind = interfaces.cross(world, |place| {
+            let place = place as usize;
+            (&rays[place], &hits[place], lights[left[place] as usize].interior)
+        });
+        for Behind { place, origin, interior } in behind {
+            rays[place as usize].origin = origin;
+            lights[left[place as usize] as usize].interior = interior;
         }
         let are_all_lit = crossings.go_on(world, modes, (rays, hits), lights, &left);
         for (place, shadow) in crossing.drain(..) {
@@ -98,7 +141,7 @@ pub(super) fn let_through<P: Probe>(
 }
 
 impl ShadowLight {
-    /// Transmittance of the medium up to `surface` and of the surface.
+    /// Transmittance of a surface.
     fn passed(
         &self,
         world: &World,
@@ -107,19 +150,18 @@ impl ShadowLight {
         surface: &SurfaceInteraction,
         mode: &SpectralMode,
     ) -> Spectrum {
-        let through_medium = self.transmittance(world, ray, hit.t, mode);
         if !meets(world, ray, hit, surface) || world.has_media && world.is_interface(surface) {
-            return through_medium;
+            return mode.one();
         }
         if world.is_open_front(surface) {
-            return through_medium * (1.0 - World::COVERAGE_OF_OPEN_FRONTS);
+            return mode.one() * (1.0 - World::COVERAGE_OF_OPEN_FRONTS);
         }
         if shadow_transparency == ShadowTransparency::AlphaTested {
             return Spectrum::BLACK;
         }
         let material = &world.materials[surface.material as usize].whitted;
         let point = world.texture_point(surface);
-        Coefficients::at(material, &world.textures, &point, mode).transmission * through_medium
+        Coefficients::at(material, &world.textures, &point, mode).transmission
     }
 
     /// Continues the ray behind a surface that lets light pass.

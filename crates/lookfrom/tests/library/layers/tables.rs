@@ -17,7 +17,6 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("clock", ""),
     ("parallel", ""),
     ("hash", ""),
-    ("random", "hash"),
     ("vector", ""),
     ("elementary", ""),
     ("optics", "vector"),
@@ -33,7 +32,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("sampler", "hash lanes"),
     ("bssrdf", "elementary math parallel spectrum"),
     ("bsdf", "bssrdf elementary hash lanes math optics sampler spectrum vector warp"),
-    ("noise", "hash"),
+    ("noise", "hash vector"),
     ("filter", "sampler"),
     ("distribution", "sampler lanes"),
     ("camera", "math vector warp"),
@@ -51,7 +50,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "distribution elementary lanes math parallel points sampler primitive spectrum interaction \
          texture vector warp",
     ),
-    ("medium", "bsdf color hash light noise random spectrum texture"),
+    ("medium", "bsdf color elementary hash lanes light noise spectrum texture vector"),
     (
         "world",
         "bsdf distribution footprint interior_stack light material math medium points primitive spectrum \
@@ -65,7 +64,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("view", "camera"),
     (
         "integrator",
-        "aov bsdf bssrdf hash interior_stack lanes light material math medium optics points random sampler primitive \
+        "aov bsdf bssrdf elementary hash interior_stack lanes light material math medium optics points sampler primitive \
          spectrum interaction texture vector warp world",
     ),
     (

@@ -43,6 +43,17 @@ fn noise_agrees_with_its_definition() {
 }
 
 #[test]
+fn noise_side_by_side_is_noise() {
+    for trial in 0..50_000 {
+        let p = [0, 1, 2].map(|k| coordinate(trial * 3 + k, 40));
+        assert_eq!(lanes::noises(p.into()), noise(Vec3::from(p)), "{p:?}");
+    }
+    for p in [[f32::NAN, 0.5, 0.5], [0.5, f32::INFINITY, 0.5], [0.5, 0.5, f32::MIN], [-0.25, 1e9, -1e18]] {
+        assert_eq!(lanes::noises(p.into()), noise(Vec3::from(p)), "{p:?}");
+    }
+}
+
+#[test]
 fn known_values() {
     for trial in 0..1000 {
         let p = Vec3::from([0, 1, 2].map(|k| coordinate(trial * 3 + k, 9))).round();

@@ -1,6 +1,9 @@
 //! Do free flights have the density that is told, and do they keep the light?
 
+use lookfrom_scene::settings::Sampler as Kind;
+
 use super::*;
+use crate::core::sampler::Sampler;
 
 /// A medium whose lanes differ widely, the last without extinction.
 fn medium() -> Coefficients {
@@ -88,4 +91,18 @@ fn extremes_stay_finite() {
             }
         }
     }
+}
+
+#[test]
+fn flights_side_by_side_are_those_of_one() {
+    let sampler = Sampler::new(Kind::Sobol, 1);
+    let flying = |k: u32| Flying {
+        stream: SampleStream { sampler: sampler.of_pixel([k, 3]), sample: k % 5, address: u64::from(k) },
+        coefficients: medium(),
+        throughput: if k.is_multiple_of(7) { Spectrum([0.0, 0.0, 0.3, 0.0]) } else { BETA },
+        limit: if k.is_multiple_of(3) { f32::INFINITY } else { 0.1 * k as f32 },
+    };
+    let flying: Vec<Flying> = (1..100).map(flying).collect();
+    let alone: Vec<Flight> = flying.iter().map(Flying::fly).collect();
+    assert_eq!(format!("{:?}", Flying::fly_all(&flying)), format!("{alone:?}"));
 }
