@@ -2,6 +2,8 @@
 
 pub mod presets;
 
+use std::ops::RangeInclusive;
+
 use glam::{DMat4, Vec3};
 
 use crate::error::Location;
@@ -9,6 +11,9 @@ use crate::grid::Placed;
 use crate::material::{Color, Scalar};
 use crate::scene::MediumId;
 use crate::spectrum::observer;
+
+/// Diameters of water droplets that have a phase function, in micrometres.
+pub const DROPLETS: RangeInclusive<f32> = 0.1..=50.0;
 
 /// A participating medium: the same everywhere, or varying in space.
 #[derive(Clone, Debug)]
@@ -24,6 +29,8 @@ pub struct Medium {
     /// Mean cosine of the angle between the directions before and after scattering, by the phase function of Henyey & Greenstein:
     /// between −1 and 1, 0 for all directions alike.
     pub g: f32,
+    /// Diameter of the water droplets of a fog or cloud in micrometres, in [`DROPLETS`]: their phase function instead.
+    pub droplets: Option<f32>,
     /// Multiplies both coefficients: ≥ 0.
     pub scale: f32,
     /// The radiance that the medium emits, times its absorption coefficient, per unit of length …
@@ -106,6 +113,7 @@ impl Medium {
             absorption: Color::BLACK,
             scattering: Color::BLACK,
             g: 0.0,
+            droplets: None,
             scale: 1.0,
             emission: Color::BLACK,
             emission_scale: 1.0,

@@ -17,7 +17,7 @@ use crate::grid::Placed;
 use crate::image::Image;
 use crate::light::Power;
 use crate::material::{Color, Scalar};
-use crate::medium::{Density, Medium};
+use crate::medium::{DROPLETS, Density, Medium};
 use crate::scene::{CurveId, ImageId, Instance, MaterialId, MediumId, Scene, TextureId};
 use crate::spectrum::Curve;
 
@@ -81,6 +81,9 @@ fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
     part.at_least_zero("scale", medium.scale.into())?;
     part.at_least_zero("emission_scale", medium.emission_scale.into())?;
     part.number("g", medium.g.into(), "between −1 and 1", medium.g.abs() < 1.0)?;
+    if let Some(diameter) = medium.droplets {
+        part.number("droplets", diameter.into(), "between 0.1 and 50", DROPLETS.contains(&diameter))?;
+    }
     let Some(variation) = &medium.variation else { return Ok(()) };
     part.matrix("world_from_medium", &variation.world_from_medium)?;
     if variation.world_from_medium.determinant() == 0.0 {

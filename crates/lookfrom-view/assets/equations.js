@@ -4,6 +4,7 @@ import { display, formula, frac } from "./formula.js";
 import { byId, h, replace } from "./html.js";
 import { counted, exact, fileName, lanes, point, short, swatch } from "./format.js";
 import { candidateTable } from "./candidates.js";
+import { densityPlot } from "./density.js";
 import { ends } from "./tree.js";
 
 /** @typedef {import("./protocol.js").Ray} Ray */
@@ -80,11 +81,13 @@ function theAbsorption(ray) {
 }
 
 /** @param {Ray} ray */
-function theFlight({ flight }) {
+function theFlight(ray) {
+    const { flight } = ray;
     if (!flight) return null;
     const { scattered_at: place } = flight;
     return section("A flight in a medium",
         display("β′ = ", place ? frac("β σ_s T", "q") : frac("β T", "Q")),
+        densityPlot(ray),
         terms([
             ["σ_t", "extinction coefficient, per unit of length", lanes(flight.extinction)],
             ["σ_s", "scattering coefficient", lanes(flight.scattering)],
@@ -99,11 +102,13 @@ function theFlight({ flight }) {
 }
 
 /** @param {Ray} ray */
-function theCollisions({ tracking }) {
+function theCollisions(ray) {
+    const { tracking } = ray;
     if (!tracking) return null;
     const { collisions, limit, scattered_at: place } = tracking;
     return section("Collisions in a medium that varies",
         display("β′ = ", frac("β (m − σ_t)", "m (1 − q)"), " null, ", frac("β σ_s", "m q"), " real"),
+        densityPlot(ray),
         terms([
             ["d", "the distance of what is hit", exact(limit)],
             ...collisions.flatMap(({ t, majorant, absorption, scattering, emitted, probability, is_real, throughput }) => [
@@ -125,7 +130,10 @@ function thePhase({ phase, ends: reason }) {
     return section("Goes on by the phase function",
         terms([
             ["ω", "the sampled direction", point(phase.wi)],
+            ["cos θ", "of the angle to the direction before", exact(phase.cos)],
             ["p", "phase function, which is its own density: β stays", exact(phase.pdf)],
+            ...(phase.lobes.length < 2 ? [] : phase.lobes.map(({ name, weight, g, alpha, value, is_sampled }) =>
+                /** @type {Row} */ (["", `share × value of the lobe of ${name}${is_sampled ? ", which has sampled it" : ""}; g = ${short(g)}, α = ${short(alpha)}`, `${short(weight, 6)} × ${exact(value)}`]))),
             ...(phase.survival < 1 ? [
                 /** @type {Row} */ (["P", "probability that Russian roulette lets it go on", exact(phase.survival)]),
                 /** @type {Row} */ (["β / P", "throughput of the next ray", lanes(phase.next_throughput)]),

@@ -7,6 +7,7 @@ import { sphereLesson } from "./lesson-sphere.js";
 import { fresnelLesson } from "./lesson-fresnel.js";
 import { treeLesson } from "./lesson-tree.js";
 import { exerciseLesson } from "./lesson-exercise.js";
+import { mediumLesson } from "./lesson-medium.js";
 
 /** @typedef {import("./app.js").App} App */
 /** @typedef {{element: HTMLElement, show: () => void}} Lesson */
@@ -19,6 +20,7 @@ const LESSONS = [
     ["A ray and a sphere", sphereLesson],
     ["Snell and Fresnel", fresnelLesson],
     ["The tree, and its sum", treeLesson],
+    ["Light through fog", mediumLesson],
 ];
 
 /** @param {App} app */

@@ -1,7 +1,7 @@
 // Rays on a picture: the segments of an inspection, projected; what is hidden behind geometry is dashed.
 
 import { byId } from "./html.js";
-import { mix } from "./vector.js";
+import { add, length, mix, scale } from "./vector.js";
 
 /** @typedef {import("./protocol.js").Inspection} Inspection */
 /** @typedef {import("./protocol.js").Segment} Segment */
@@ -41,13 +41,43 @@ export function drawRays(context, drawing) {
         drawLine(context, drawing, segment.from, segment.to, color(segment.kind), segment.width + (isSelected ? 1.5 : 0), isSelected && !isShadow(segment));
     }
     context.globalAlpha = 1;
+    const inMedia = new Set(inspection.rays.filter(({ flight, tracking }) => flight?.scattered_at || tracking?.scattered_at).map(({ address }) => address));
     for (const segment of segments) {
         if (segment.is_endless) continue;
         const [x, y, depth] = drawing.project(segment.to);
         if (depth <= 0) continue;
-        const radius = isShadow(segment) ? 2.5 : 3;
-        dot(context, x, y, segment.address === selected ? 1.5 * radius : radius, color(segment.kind));
+        const radius = (isShadow(segment) ? 2.5 : 3) * (segment.address === selected ? 1.5 : 1);
+        if (!isShadow(segment) && inMedia.has(segment.address)) diamond(context, x, y, 1.7 * radius, color(segment.kind));
+        else dot(context, x, y, radius, color(segment.kind));
     }
+    drawNullCollisions(context, drawing);
+}
+
+/** Where the selected ray collided with a medium and went on: rings. @param {CanvasRenderingContext2D} context @param {Drawing} drawing */
+function drawNullCollisions(context, { inspection, selected, project }) {
+    const ray = inspection.rays.find(({ address }) => address === selected);
+    for (const { t, is_real: isReal } of ray?.tracking?.collisions ?? []) {
+        if (isReal || !ray) continue;
+        const [x, y, depth] = project(add(ray.a, scale(ray.direction, t / length(ray.direction))));
+        if (depth <= 0) continue;
+        context.beginPath();
+        context.arc(x, y, 3, 0, 2 * Math.PI);
+        context.lineWidth = 1.6;
+        context.strokeStyle = color(ray.kind);
+        context.stroke();
+    }
+}
+
+/** The mark of a point of a medium. @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} radius @param {string} fill */
+function diamond(context, x, y, radius, fill) {
+    context.beginPath();
+    for (const [dx, dy] of [[0, -1], [1, 0], [0, 1], [-1, 0]]) context.lineTo(x + radius * dx, y + radius * dy);
+    context.closePath();
+    context.fillStyle = fill;
+    context.fill();
+    context.lineWidth = 1;
+    context.strokeStyle = "#fff";
+    context.stroke();
 }
 
 /** @param {CanvasRenderingContext2D} context @param {number} x @param {number} y @param {number} radius @param {string} fill */

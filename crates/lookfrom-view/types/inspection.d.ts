@@ -511,6 +511,10 @@ export type Pair = [number, number];
 
 /** Scattering by the phase function of a medium, which is its own density: β stays. */
 export interface Phase {
+    /** The cosine of the angle between the directions before and after it. */
+    cos: number;
+    /** The lobes whose mix it is. */
+    lobes: PhaseLobe[];
     /** β of the next ray: β / survival; null where there is none. */
     next_throughput: Factor | null;
     /** The phase function in that direction, per steradian: its value and its density. */
@@ -521,6 +525,22 @@ export interface Phase {
     survives: boolean;
     /** The sampled direction, unit length. */
     wi: Vector;
+}
+
+/** A lobe of a phase function. */
+export interface PhaseLobe {
+    /** α: 0 in that of Henyey and Greenstein. */
+    alpha: number;
+    /** g: its mean cosine; of Draine's lobe a parameter beside it. */
+    g: number;
+    /** Whether the direction was sampled by it. */
+    is_sampled: boolean;
+    /** Whose it is. */
+    name: "Henyey-Greenstein" | "Draine";
+    /** Its value in the sampled direction, per steradian. */
+    value: number;
+    /** Its share. */
+    weight: number;
 }
 
 /** The samples of a pixel, and what the picture makes of them. */
@@ -575,6 +595,18 @@ export interface ProbeSegment {
     length: number;
     /** Its distance from the point where the path has entered. */
     radius: number;
+}
+
+/** Density along a ray: at the middles of as many equal parts of its way as there are numbers. */
+export interface Profile {
+    /** The distance up to which. */
+    end: number;
+    /** σ_t, in the mean of the lanes. */
+    extinction: number[];
+    /** The majorants of the cells there. */
+    majorant: number[];
+    /** The distance from which on there is something of the medium. */
+    start: number;
 }
 
 export type Quadruple = [number, number, number, number];
@@ -843,6 +875,8 @@ export interface Tracking {
     collisions: Collision[];
     /** The distance of what the ray hits; infinite where it hits nothing. */
     limit: number;
+    /** The medium along the whole way, whether the ray goes on to there or not; null where it does not meet it. */
+    profile: Profile | null;
     /** The point where it is scattered, in the world; null where it arrives. */
     scattered_at: Vector | null;
     /** The throughput at the end. */

@@ -37,8 +37,9 @@ pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
     CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection, LiftReport,
-    LightReport, MatrixStep, MetReport, NullReport, PhaseReport, ProbeReport, ProbeSegmentReport, RayReport,
-    SensorReport, ShadowReport, SphereMapping, TrackingReport, WavelengthsReport,
+    LightReport, MatrixStep, MetReport, NullReport, PhaseLobeReport, PhaseReport, ProbeReport,
+    ProbeSegmentReport, ProfileReport, RayReport, SensorReport, ShadowReport, SphereMapping, TrackingReport,
+    WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,

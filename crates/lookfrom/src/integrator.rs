@@ -62,6 +62,9 @@ pub trait Integrator: std::fmt::Debug + Send + Sync {
     /// True if the integrator computes light, to which the spectral mode and the sensor apply; false for false colours.
     const IS_LIGHT: bool = true;
 
+    /// True if media scatter paths, and emit light, before what they hit.
+    const FLIES: bool = false;
+
     /// The state that the integrator keeps of a path beside its throughput: weights, densities. `()` for none.
     type State: PathState;
 
@@ -323,6 +326,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     pub fn absorbed(&mut self, world: &World, path: &Path<S>, hit: &Hit) -> Path<S> {
         let mode = self.mode(path);
         let absorbed = path.absorbed(world, hit, &mode);
+        self.set_transmittance(world, path, absorbed.beta);
         let length = || path.length_to(hit);
         self.probe.notice_some(|| {
             (!path.interior.is_empty()).then(|| Event::Absorbed {
@@ -334,6 +338,24 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
             })
         });
         absorbed
+    }
+
+    /// Sets the layers of transmittance of a path that comes straight from the camera, by its throughput at the end of a way; black where it
+    /// does not arrive there.
+    fn set_transmittance(&mut self, world: &World, path: &Path<S>, passed: Spectrum) {
+        if let Some(light_paths) = self.light_paths
+            && path.depth == 0
+        {
+            let white = world.light_of([1.0; 3], &self.mode(path));
+            light_paths.set_transmittance(white * passed, self.queues.layers_of(path.slot, light_paths));
+        }
+    }
+
+    /// Sets the layers before the first step: light is none, and media let all pass.
+    pub(crate) fn start_layers(&mut self, world: &World, paths: &[Path<S>]) {
+        let Some(light_paths) = self.light_paths else { return };
+        self.queues.layers.resize(paths.len() * light_paths.count(), Spectrum::BLACK);
+        paths.iter().for_each(|path| self.set_transmittance(world, path, path.beta));
     }
 
     /// Adds light to a path's sample.
@@ -370,16 +392,8 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         albedo: impl FnOnce() -> Option<[f32; 3]>,
     ) {
         let first_surfaces = &mut self.queues.first_surfaces;
-        if first_surfaces.are_wanted() && path.is_root() && world.opacity(surface) == 1.0 {
+        if first_surfaces.are_left_in(path.interior) && path.is_root() && world.opacity(surface) == 1.0 {
             first_surfaces.leave(world, path.slot, surface, albedo());
-        }
-    }
-
-    /// Leaves the surface behind a medium to AOVs, where that scatters a camera ray before it: all samples of a pixel then leave the
-    /// same, whatever their flights.
-    fn leave_surface_behind(&mut self, world: &World, path: &Path<S>, hit: &Hit) {
-        if hit.is_hit() && path.is_root() && self.queues.first_surfaces.are_wanted() {
-            self.leave_first_surface(world, path, &world.surface(&path.ray, hit), || None);
         }
     }
 

@@ -2,8 +2,10 @@
 //! with them.
 
 mod cloud;
+mod cover;
 mod grid;
 mod majorants;
+mod profile;
 mod tracking;
 mod varying;
 mod way;
@@ -15,6 +17,8 @@ use lookfrom_scene::material::Color;
 use lookfrom_scene::medium::Medium as Written;
 use lookfrom_simd::Real;
 
+pub(crate) use cover::Cover;
+pub use profile::Profile;
 pub use tracking::{Collision, Tracking};
 pub(crate) use tracking::{Estimate, TrackedRay};
 pub use varying::Varying;
@@ -22,7 +26,9 @@ pub(crate) use way::Way;
 
 use crate::core::spectrum::Spectrum;
 use crate::light::EmissionSpectrum;
+use crate::shading::bsdf::droplets::Droplets;
 use crate::shading::bsdf::henyey_greenstein::HenyeyGreenstein;
+use crate::shading::bsdf::phase::Phase;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
 /// A medium.
@@ -46,7 +52,7 @@ pub struct Scattering {
     /// Scattering coefficient, per unit of length.
     pub coefficient: SpectrumTexture,
     /// Its distribution over directions.
-    pub phase: HenyeyGreenstein,
+    pub phase: Phase,
 }
 
 /// The coefficients of a medium that scatters or emits light, per unit of length.
@@ -78,7 +84,10 @@ impl Medium {
         let coefficient = |color| textures.spectrum_texture(color, SpectrumType::Unbounded);
         let scattering = written.scatters().then(|| Scattering {
             coefficient: coefficient(written.scattering),
-            phase: HenyeyGreenstein::new(written.g),
+            phase: match written.droplets {
+                Some(diameter) => Phase::Droplets(Droplets::new(diameter)),
+                None => Phase::HenyeyGreenstein(HenyeyGreenstein::new(written.g)),
+            },
         });
         let luminance = match written.emission {
             Color::Curve(curve) => textures.curve(curve).to_xyz()[1],
@@ -99,7 +108,7 @@ impl Medium {
     }
 
     /// The phase function; `None` where nothing is scattered.
-    pub(crate) fn phase(&self) -> Option<HenyeyGreenstein> {
+    pub(crate) fn phase(&self) -> Option<Phase> {
         self.scattering.as_ref().map(|scattering| scattering.phase)
     }
 
@@ -129,6 +138,12 @@ impl<R: Real> Coefficients<R> {
 impl Coefficients {
     /// Largest coefficient, above which a way has no length; sums and products of it are finite.
     const MOST: f32 = 1e18;
+
+    /// The majorant where the bound of the density is 1: a little more than σ_t, which interpolation may exceed by rounding.
+    fn most(&self) -> f32 {
+        const MARGIN: f32 = 1.0 + 1.0 / 65_536.0;
+        self.extinction().max_lane() * MARGIN
+    }
 
     /// The radiance that a way of a length adds where it begins: ∫₀ᵈ e^(−σ_t t) σ_a L_e dt.
     pub(crate) fn emitted(&self, length: f32) -> Spectrum {

@@ -328,8 +328,6 @@ impl Renderer {
         // Start: a ray from the camera for each sample.
         self.start(ids, start);
         output.queues.start(ids.len(), start.modes());
-        let layers = ids.len() * light_paths.map_or(0, LightPaths::count);
-        output.queues.layers.resize(layers, Spectrum::BLACK);
         let modes = &output.queues.modes;
         output.paths.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
             beta: modes[slot].one(),
@@ -337,6 +335,9 @@ impl Renderer {
             light_path,
             ..self.root(*ray)
         }));
+        let starting = std::mem::take(&mut output.paths);
+        output.start_layers(&self.world, &starting);
+        output.paths = starting;
 
         let streams = BatchStreams { sampler: &self.sampler, ids };
         let mut are_from_camera = true;

@@ -733,17 +733,41 @@ class Phase:
     """Scattering by the phase function of a medium, which is its own density: β stays.
 
     wi: The sampled direction, unit length.
+    cos: The cosine of the angle between the directions before and after it.
     pdf: The phase function in that direction, per steradian: its value and its density.
+    lobes: The lobes whose mix it is.
     survival: The survival probability of Russian roulette.
     survives: Whether the path goes on.
     next_throughput: β of the next ray: β / survival; null where there is none.
     """
 
     wi: tuple[float, float, float]
+    cos: float
     pdf: float
+    lobes: list[PhaseLobe]
     survival: float
     survives: bool
     next_throughput: tuple[float, ...] | None
+
+
+@dataclass(frozen=True)
+class PhaseLobe:
+    """A lobe of a phase function.
+
+    name: Whose it is.
+    weight: Its share.
+    g: g: its mean cosine; of Draine's lobe a parameter beside it.
+    alpha: α: 0 in that of Henyey and Greenstein.
+    value: Its value in the sampled direction, per steradian.
+    is_sampled: Whether the direction was sampled by it.
+    """
+
+    name: str
+    weight: float
+    g: float
+    alpha: float
+    value: float
+    is_sampled: bool
 
 
 @dataclass(frozen=True)
@@ -783,6 +807,22 @@ class ProbeSegment:
     from_: tuple[float, float, float]
     direction: tuple[float, float, float]
     length: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Density along a ray: at the middles of as many equal parts of its way as there are numbers.
+
+    start: The distance from which on there is something of the medium.
+    end: The distance up to which.
+    extinction: σ_t, in the mean of the lanes.
+    majorant: The majorants of the cells there.
+    """
+
+    start: float
+    end: float
+    extinction: tuple[float, ...]
+    majorant: tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -1050,12 +1090,15 @@ class Tracking:
 
     limit: The distance of what the ray hits; infinite where it hits nothing.
     collisions: Its collisions, in order: all are null, but for the last where the medium scatters it.
+    profile: The medium along the whole way, whether the ray goes on to there or not; null where it does not
+        meet it.
     scattered_at: The point where it is scattered, in the world; null where it arrives.
     throughput: The throughput at the end.
     """
 
     limit: float
     collisions: list[Collision]
+    profile: Profile | None
     scattered_at: tuple[float, float, float] | None
     throughput: tuple[float, ...]
 

@@ -14,13 +14,22 @@ use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
-use crate::medium::{Density, Medium, Temperature, Variation};
+use crate::medium::{DROPLETS, Density, Medium, Temperature, Variation};
 use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
 
 /// The keys of media, besides those of transforms.
-pub(super) const KEYS: &[&str] =
-    &["preset", "absorption", "scattering", "g", "density", "max_density", "emission", "temperature"];
+pub(super) const KEYS: &[&str] = &[
+    "preset",
+    "absorption",
+    "scattering",
+    "g",
+    "droplets",
+    "density",
+    "max_density",
+    "emission",
+    "temperature",
+];
 
 /// The keys of numbers by the place.
 pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
@@ -61,8 +70,13 @@ impl Reader<'_, '_> {
             preset.map_or([[0.0; 3]; 2], |preset| [preset.absorption, preset.scattering]).map(Color::Value);
         medium.absorption = table.or("absorption", absorption, |value| self.coefficient(value));
         medium.scattering = table.or("scattering", scattering, |value| self.coefficient(value));
+        table.one_of(&["g", "droplets"]);
         medium.g = table.or("g", 0.0, |value| {
             value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
+        });
+        medium.droplets = table.maybe("droplets", |value| {
+            let what = "a diameter in micrometres, of 0.1 to 50";
+            value.single_where(what, |diameter| DROPLETS.contains(&diameter))
         });
         let density = table.maybe("density", |value| self.density(value, table));
         let temperature = table.maybe("temperature", |value| self.volume(value));

@@ -86,7 +86,7 @@ for (const [width, height, colorScheme] of [[360, 740, "light"], [360, 740, "dar
         await screenshot(page, `why-${width}-${colorScheme}`);
         assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "the page scrolls sideways");
         assert.deepEqual(await page.evaluate(faint), []);
-        for (let lesson = 0; lesson < 6; lesson++) {
+        for (let lesson = 0; lesson < 7; lesson++) {
             await page.getByRole("tab", { name: "Notes, alive" }).click();
             await page.getByLabel("Lesson").selectOption(String(lesson));
             await page.waitForTimeout(100);

@@ -3,8 +3,10 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFile, writeFile } from "node:fs/promises";
-import { PATIENCE, copyOf, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
+import { join } from "node:path";
+import { PATIENCE, SCENES, copyOf, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
 
+const SMOKE = ["--width", "240", "--height", "150", "--samples", "2"];
 const SMALL = ["--width", "160", "--height", "160", "--samples", "4"];
 let browser, copy, server;
 
@@ -119,6 +121,44 @@ test("the exercise of the notes: M_vw = I", async () => {
     await until("the identity again", async () => /^M_vw = I/.test((await page.locator("#exercise-verdict").textContent()) ?? ""));
     assert.deepEqual(errors, []);
     await context.close();
+});
+
+test("the lesson on fog: its exercise checks itself", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    await page.getByLabel("Lesson").selectOption({ label: "7. Light through fog" });
+    const verdict = page.locator("#medium-verdict");
+    assert.match((await verdict.textContent()) ?? "", /too long/);
+    const way = page.getByRole("slider", { name: "Length of the way through the medium" });
+    await way.focus();
+    // From 3 to 1.75, where exp(−0.4 · 1.75) is nearly a half.
+    for (let step = 0; step < 25; step++) await page.keyboard.press("ArrowLeft");
+    assert.match((await verdict.textContent()) ?? "", /ln2|ln 2/);
+    for (let step = 0; step < 4; step++) await page.keyboard.press("ArrowLeft");
+    assert.match((await verdict.textContent()) ?? "", /too short/);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("a ray in smoke has a plot of the density with its collisions", async () => {
+    const smoke = await serve(join(SCENES, "media.toml"), SMOKE);
+    const { page, context, errors } = await open(browser, smoke.url);
+    await inspect(page, 179, 75);
+    await until("the sample is in the link", async () => /sample=\d+/.test(page.url()));
+    const sample = Number(/sample=(\d+)/.exec(page.url())?.[1]);
+    const said = await inspection(join(SCENES, "media.toml"), 179, 75, sample, SMOKE);
+    const ray = said.rays.find(({ tracking }) => tracking?.profile && tracking.collisions.length > 0);
+    // The row itself: what comes after the ray is inside of its item.
+    await page.locator(`#ray-${ray.address}`).click({ position: { x: 60, y: 8 } });
+    const plot = page.locator("#equations svg.density");
+    await plot.waitFor();
+    assert.equal(await plot.locator("circle").count(), ray.tracking.collisions.length);
+    assert.deepEqual([await plot.locator("polyline.curve").count(), await plot.locator("polyline.stairs").count()], [1, 1]);
+    await plot.scrollIntoViewIfNeeded();
+    assert.deepEqual(errors, []);
+    await screenshot(page, "density");
+    await context.close();
+    await smoke.stop();
 });
 
 test("an edit of the file reloads it, a broken one shows the error over the last picture", async () => {

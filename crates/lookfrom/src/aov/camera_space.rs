@@ -1,12 +1,14 @@
 //! Camera space, that of AOVs: from surfaces in render space, one by one or eight side by side.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec3};
 use lookfrom_simd::{Float, Kernel, LaneMask, Real, Simd, dispatch, f32x8, level};
 
 use super::{AovColumns, Aovs, FirstSurfaceColumns};
 use crate::core::lanes::{LANES, load, load_f64, store};
 use crate::core::vector::Vector;
+use crate::medium::{Cover, Way};
 use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material;
 use crate::world::World;
 
@@ -17,6 +19,8 @@ pub(crate) struct CameraSpace {
     view_from_world: [DVec3; 4],
     /// The origin of render space.
     origin: DVec3,
+    /// The medium that the camera is in, if light is scattered in media.
+    pub(super) in_media: Option<InteriorStack>,
 }
 
 impl CameraSpace {
@@ -24,7 +28,21 @@ impl CameraSpace {
     pub(crate) fn new(world_from_view: DMat4, origin: DVec3) -> Self {
         let view_from_world = world_from_view.inverse();
         let [x, y, z, w] = std::array::from_fn(|column| view_from_world.col(column).truncate());
-        Self { view_from_world: [x, y, z, w], origin }
+        Self { view_from_world: [x, y, z, w], origin, in_media: None }
+    }
+
+    /// The space of a camera in a medium, of a picture with media that scatter or emit light.
+    pub(crate) fn in_media(self, interior: InteriorStack) -> Self {
+        Self { in_media: Some(interior), ..self }
+    }
+
+    /// The AOVs of a medium, as it covers a way. Its shading normal faces the camera: so it differs from what surrounds it, which is white
+    /// and without a normal.
+    pub(super) fn aovs_of_medium(&self, cover: &Cover, way: &Way) -> Aovs {
+        let point = (way.origin + way.direction * cover.distance).as_dvec3().to_array();
+        let position: [f32; 3] = self.position::<f32>(Vector::from(point)).into();
+        let ns = -Vec3::from(position).normalize_or_zero();
+        Aovs { albedo: cover.albedo.to_array(), ns: ns.to_array(), position, ..Aovs::default() }
     }
 
     /// The AOVs of a surface interaction, with its albedo where that is known.

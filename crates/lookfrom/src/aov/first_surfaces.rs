@@ -3,7 +3,8 @@
 //! No probe is needed, so that rendering is not slowed down: steps leave the surfaces that they have at hand; first hits
 //! are noted besides as they are traced, and evaluated after the batch where no step has left a surface. Where a ray
 //! passes a surface as if it were not there, the hit behind it counts; but where chance decides that, by an alpha between
-//! 0 and 1, all surfaces along the ray count by what they cover, so that features have no noise that light does not have.
+//! 0 and 1, or where a medium scatters light before, all along the ray counts by what it covers, so that features have no noise that light
+//! does not have.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
@@ -12,6 +13,7 @@ use lookfrom_simd::LaneMask;
 use super::{AovColumns, Aovs, CameraSpace, FirstSurfaceColumns};
 use crate::core::lanes::LANES;
 use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
 /// Number of surfaces of fractional alpha that are looked through.
@@ -50,10 +52,16 @@ impl FirstSurfaces {
         self.space = space;
     }
 
-    /// Whether steps are to leave surfaces.
+    /// Whether there are to be any.
     #[inline]
     pub(crate) fn are_wanted(&self) -> bool {
         self.space.is_some()
+    }
+
+    /// Whether steps are to leave surfaces that rays from the camera meet in a medium.
+    #[inline]
+    pub(crate) fn are_left_in(&self, interior: InteriorStack) -> bool {
+        self.space.as_ref().is_some_and(|space| space.in_media.is_none() || interior.is_empty())
     }
 
     /// Removes all, for a batch of `count` camera rays.
@@ -118,7 +126,7 @@ impl FirstSurfaces {
         self.behind.sort_by_key(|&(slot, _)| slot);
         for (block, hits) in self.outermost.chunks(LANES).enumerate() {
             let left = !self.aovs[block].hits & ((1 << hits.len()) - 1);
-            for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit()) {
+            for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit() || fills_space(&space)) {
                 let slot = block * LANES + lane;
                 if let Some(aovs) = self.found_again(world, &space, slot, rays[slot]) {
                     self.aovs[block].set(lane, &aovs);
@@ -139,7 +147,8 @@ impl FirstSurfaces {
         let outermost = RayHit { ray, hit: self.outermost[slot] };
         let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
         let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
-        let blended = if world.has_gaps { space.blended_aovs(world, outermost) } else { None };
+        let is_blended = world.has_gaps || space.in_media.is_some();
+        let blended = if is_blended { space.blended_aovs(world, outermost) } else { None };
         blended.or_else(|| {
             let RayHit { ray, hit } = behind.map_or(outermost, |(_, seen)| *seen);
             hit.is_hit().then(|| space.aovs(world, &world.surface(&ray, &hit), None))
@@ -147,38 +156,57 @@ impl FirstSurfaces {
     }
 }
 
+/// Whether rays from the camera are in a medium without an end, which is seen where they hit nothing.
+fn fills_space(space: &CameraSpace) -> bool {
+    space.in_media.is_some_and(|interior| interior.space().is_some())
+}
+
 impl CameraSpace {
-    /// The mean albedo and shading normal of all surfaces along a camera ray by what each covers, and the place of the one
-    /// that covers most; `None` where none has an alpha between 0 and 1. What nothing covers is white, as a miss is.
+    /// The mean albedo and shading normal of all surfaces and media along a camera ray by what each covers, and the place of
+    /// what covers most; `None` where no surface has an alpha between 0 and 1, and no medium covers anything. What nothing covers is
+    /// white, as a miss is. Where there are media, the normal is as long as the part that is covered.
     fn blended_aovs(&self, world: &World, outermost: RayHit) -> Option<Aovs> {
         let RayHit { mut ray, mut hit } = outermost;
-        let (mut left, mut is_blended) = (1.0, false);
+        let (mut left, mut is_blended, mut has_medium) = (1.0, false, false);
         let (mut albedo, mut ns) = (Vec3::ZERO, Vec3::ZERO);
         let mut most: Option<(f32, Aovs)> = None;
+        let mut cover = |part: f32, aovs: Aovs| {
+            albedo += part * Vec3::from(aovs.albedo);
+            ns += part * Vec3::from(aovs.ns);
+            if most.is_none_or(|(greatest, _)| part > greatest) {
+                most = Some((part, aovs));
+            }
+        };
+        let mut interior = self.in_media;
         for _ in 0..MOST_LAYERS {
-            if !hit.is_hit() {
+            if let Some((way, medium)) = interior.and_then(|interior| world.cover(interior, &ray, &hit)) {
+                (is_blended, has_medium) = (true, true);
+                cover(left * medium.part, self.aovs_of_medium(&medium, &way));
+                left *= 1.0 - medium.part;
+            }
+            if !hit.is_hit() || left < LEAST_PART {
                 break;
             }
             let surface = world.surface(&ray, &hit);
             let opacity = world.opacity(&surface);
             is_blended |= opacity > 0.0 && opacity < 1.0;
             if opacity > 0.0 {
-                let aovs = self.aovs(world, &surface, None);
-                let part = left * opacity;
-                albedo += part * Vec3::from(aovs.albedo);
-                ns += part * Vec3::from(aovs.ns);
-                if most.is_none_or(|(greatest, _)| part > greatest) {
-                    most = Some((part, aovs));
-                }
+                cover(left * opacity, self.aovs(world, &surface, None));
             }
             left *= 1.0 - opacity;
             if left < LEAST_PART {
                 break;
             }
+            if world.is_interface(&surface) {
+                let direction = Vec3::from(ray.direction);
+                interior = interior.map(|of| of.leaving(&world.materials, &surface, direction, true));
+            }
             ray = Ray::new(surface.origin(Vec3::from(ray.direction)), ray.direction);
             hit = world.bvh.query().origin(surface.origin_primitive).closest_hit(&ray);
         }
         let (_, aovs) = most.filter(|_| is_blended)?;
-        Some(Aovs { albedo: (albedo + left).to_array(), ns: ns.normalize_or_zero().to_array(), ..aovs })
+        let length = if has_medium { 1.0 - left } else { 1.0 };
+        let ns = ns.normalize_or_zero() * length;
+        Some(Aovs { albedo: (albedo + left).to_array(), ns: ns.to_array(), ..aovs })
     }
 }

@@ -13,7 +13,9 @@ use super::segments::RaySegment;
 
 pub use camera::{CameraSteps, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
-pub use medium::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
+pub use medium::{
+    CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, ProfileReport, TrackingReport,
+};
 pub use probe::{ExitReport, ProbeReport, ProbeSegmentReport};
 pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
 

@@ -8,28 +8,30 @@ use lookfrom_scene::settings::Background;
 
 use super::{Path, PathState, Probe, StepOutput, Term};
 use crate::core::spectrum::Spectrum;
+use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// Alpha of a sample over the view's own background.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Alpha {
     /// The sample hides the background.
     #[default]
     Opaque,
-    /// The sample shows the background.
-    Transparent,
-    /// The sample shows a shadow catcher: its light is the unshadowed part of white, and the rest hides the background.
-    Shadow,
+    /// The sample shows the background, of which media on the way let this part pass: 1 where there are none.
+    Transparent(f32),
+    /// The sample shows a shadow catcher: its light is the unshadowed part of white, and the rest hides the background; but for this light,
+    /// which media have added before it.
+    Shadow(Spectrum),
 }
 
 impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// For a path that hit nothing: whether it shows the view's own background instead of the environment, and so ends.
-    /// Its sample is then transparent.
+    /// Its sample is then transparent, as far as media are.
     #[inline]
     pub fn shows_background(&mut self, path: &Path<S>) -> bool {
         let shows = path.depth == 0 && self.background != Background::Environment;
         if shows {
-            self.queues.alpha[path.slot as usize] = Alpha::Transparent;
+            self.queues.alpha[path.slot as usize] = Alpha::Transparent(passed(path.beta, &self.mode(path)));
         }
         shows
     }
@@ -65,4 +67,10 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
             }
         }
     }
+}
+
+/// What has passed media, by the throughput of a path from the camera: the mean of its lanes.
+fn passed(beta: Spectrum, mode: &SpectralMode) -> f32 {
+    let sum = |of: Spectrum| of.0.into_iter().sum::<f32>();
+    sum(beta) / sum(mode.one())
 }

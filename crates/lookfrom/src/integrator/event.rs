@@ -7,6 +7,7 @@ use crate::core::spectrum::Spectrum;
 use crate::integrator::{Flight, Path, PreviousVertex, Shadow, SubsurfaceProbe};
 use crate::medium::Tracking;
 use crate::shading::bsdf::BsdfSample;
+use crate::shading::bsdf::phase::Phase;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::Shading;
@@ -255,6 +256,10 @@ pub struct Bounce {
 /// The continuation of a path by the phase function of a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseSample {
+    /// The phase function.
+    pub phase: Phase,
+    /// Whether the direction is of Draine's lobe, of droplets.
+    pub is_draine: bool,
     /// In render space.
     pub wi: Vec3,
     /// The phase function in that direction, which is also its density.

@@ -18,7 +18,7 @@ use regex_automata::util::syntax;
 use super::Term;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::lobes::Lobes;
-use grammar::{Ending, Labels, Symbol, pattern};
+use grammar::{Ending, Labels, Symbol, is_transmittance, pattern};
 
 /// Names that channels of other contents have.
 const TAKEN: &[&str] =
@@ -41,7 +41,8 @@ pub struct LightPaths {
     start: LightPathState,
     /// The symbol of each light, by its index.
     lights: Vec<Symbol>,
-    layers: usize,
+    /// For each layer whether it has the transmittance of media.
+    are_transmittances: Vec<bool>,
 }
 
 /// The two ways on which light of a light that was sampled may have been scattered last, and their shares.
@@ -108,12 +109,19 @@ impl LightPaths {
             .build_many(&patterns)
             .map_err(too_large)?;
         let start = automaton.universal_start_state(Anchored::Yes).unwrap_or_default();
-        Ok(Self { automaton, start: state(start), lights: symbols, layers: layers.len() })
+        let are_transmittances = layers.iter().map(|layer| is_transmittance(&layer.expression)).collect();
+        Ok(Self { automaton, start: state(start), lights: symbols, are_transmittances })
     }
 
     /// Number of layers.
     pub fn count(&self) -> usize {
-        self.layers
+        self.are_transmittances.len()
+    }
+
+    /// Sets the layers of transmittance of a sample, as light whose colour white has.
+    pub(super) fn set_transmittance(&self, value: Spectrum, layers: &mut [Spectrum]) {
+        let transmittances = layers.iter_mut().zip(&self.are_transmittances).filter(|(_, is)| **is);
+        transmittances.for_each(|(layer, _)| *layer = value);
     }
 
     /// The state of a path that leaves the camera.

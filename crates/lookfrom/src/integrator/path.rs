@@ -129,6 +129,8 @@ type HitBatch<'a> = wavefront::HitBatch<'a, PreviousVertex>;
 type Departure<'a> = wavefront::Departure<'a, PreviousVertex>;
 
 impl Integrator for PathTracer {
+    const FLIES: bool = true;
+
     type State = PreviousVertex;
 
     fn name(&self) -> &'static str {
@@ -201,7 +203,7 @@ impl PathTracer {
     ) {
         if !self.is_counted(world, (path, hit), output) {
             let traveled = self.travel(world, stream, (path, hit), output);
-            self.go_on_from(world, stream, (path, hit), traveled, waiting, output);
+            self.go_on_from(world, stream, hit, traveled, waiting, output);
         }
     }
 
@@ -221,7 +223,7 @@ impl PathTracer {
             let medium = &world.media[medium as usize];
             self.travel_together(batch, (medium, &indices), output, |index, traveled, output| {
                 let (path, hit) = (&paths[index], &hits[index]);
-                self.go_on_from(world, &streams.of(path), (path, hit), traveled, waiting, output);
+                self.go_on_from(world, &streams.of(path), hit, traveled, waiting, output);
             });
         }
     }
@@ -247,7 +249,7 @@ impl PathTracer {
         &self,
         world: &World,
         stream: &SampleStream,
-        (path, hit): (&Path, &Hit),
+        hit: &Hit,
         traveled: Traveled,
         waiting: &mut Waiting,
         output: &mut StepOutput<'_, P>,
@@ -255,7 +257,6 @@ impl PathTracer {
         let mut path = match traveled {
             Traveled::Arrived(path) => path,
             Traveled::Scattered(vertex) => {
-                output.leave_surface_behind(world, path, hit);
                 if self.is_scattered_in_medium(&vertex) {
                     waiting.push_in_medium(self, world, vertex, output);
                 }

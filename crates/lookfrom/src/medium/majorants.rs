@@ -3,8 +3,9 @@
 //! Cells are walked by their next faces along each axis (Amanatides & Woo 1987).
 
 use glam::{UVec3, Vec3};
-use lookfrom_simd::{Float, Real};
+use lookfrom_simd::{Float, Mask as _, Real};
 
+use super::Coefficients;
 use super::grid::PlacedGrid;
 use crate::core::lanes::width::{Lanes, Width};
 use crate::core::lanes::{Columns, load, set_row, store};
@@ -170,6 +171,50 @@ impl<R: Real> Walk<R> {
         let are_out = out_x | out_y | out_z;
         self.end = R::select(lanes, R::select(are_out, self.last, end), self.end);
         most
+    }
+}
+
+/// Rays on their way from one optical depth by majorants to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach<R> {
+    pub(super) walk: Walk<R>,
+    /// The distance up to which a ray has come.
+    pub(super) t: R,
+    /// The majorant up to the end of the cell.
+    pub(super) majorant: R,
+    /// The optical depth that is left.
+    pub(super) left: R,
+}
+
+impl<R: Real> Approach<R> {
+    /// Brings rays in the lanes of a mask along directions to the points where nothing is left. The majorants are the bounds of the density
+    /// times `most`. Returns the rays that get there before they leave the box.
+    #[inline(always)]
+    pub(super) fn arrive(
+        &mut self,
+        majorants: &Majorants,
+        (direction, most): (Vector<R>, R),
+        lanes: R::Mask,
+    ) -> R::Mask {
+        let mut are_within = lanes;
+        loop {
+            let depth = self.majorant * (self.walk.end - self.t);
+            let go_beyond = are_within & !self.left.lt(depth);
+            if !go_beyond.any() {
+                break;
+            }
+            self.left = R::select(go_beyond, self.left - depth, self.left);
+            self.t = R::select(go_beyond, self.walk.end, self.t);
+            let are_at_end = go_beyond & !self.t.lt(self.walk.last);
+            are_within = are_within & !are_at_end;
+            let go_beyond = go_beyond & !are_at_end;
+            let bound = self.walk.advance(majorants, direction, go_beyond) * most;
+            let majorant = Float::min(bound, bound.like(Coefficients::MOST));
+            self.majorant = R::select(go_beyond, majorant, self.majorant);
+        }
+        let t = Float::min(self.t + self.left / self.majorant, self.walk.end);
+        self.t = R::select(are_within, t, self.t);
+        are_within
     }
 }
 

@@ -12,8 +12,7 @@ mod lanes;
 
 use lanes::Tracker;
 
-use super::{Coefficients, Medium, Way};
-use crate::core::hash;
+use super::{Coefficients, Medium, Profile, Way};
 use crate::core::lanes::width::One;
 use crate::core::lanes::{are_shaded_together, shade_together};
 use crate::core::spectrum::Spectrum;
@@ -56,6 +55,8 @@ pub struct Tracking {
     pub scattered_at: Option<f32>,
     /// All collisions, for a probe; otherwise none.
     pub collisions: Vec<Collision>,
+    /// The medium along the way, for a probe of a flight.
+    pub profile: Option<Box<Profile>>,
 }
 
 /// A point of a ray at which it may interact with a medium.
@@ -78,7 +79,7 @@ pub struct Collision {
 }
 
 impl Medium {
-    /// Tracks rays; `None` in a homogeneous medium. `listens` keeps the collisions.
+    /// Tracks rays; `None` in a homogeneous medium. `listens` keeps collisions and profiles.
     pub(crate) fn track(
         &self,
         textures: &Textures,
@@ -87,14 +88,18 @@ impl Medium {
         listens: bool,
     ) -> Option<Vec<Tracking>> {
         let varying = self.varying.as_deref()?;
+        let is_flight = estimate == Estimate::Flight;
         let begun = |ray: &TrackedRay<'_>| Tracking {
             before: ray.throughput,
             after: ray.throughput,
             limit: ray.way.length,
+            profile: match listens && is_flight {
+                true => self.profile(&ray.way, (textures, ray.mode)),
+                false => None,
+            },
             ..Tracking::default()
         };
         let mut tracked: Vec<Tracking> = rays.iter().map(begun).collect();
-        let is_flight = estimate == Estimate::Flight;
         let tracker = Tracker {
             medium: self,
             varying,
@@ -127,9 +132,7 @@ impl Medium {
 impl<'a> TrackedRay<'a> {
     /// A ray whose transmittance is asked for; its random numbers are a function of the way.
     pub(crate) fn of_shadow(way: &Way, mode: &'a SpectralMode) -> Self {
-        let seed = way.hash();
-        let u = (hash::mix(seed) >> 40) as f32 * (1.0 / 16_777_216.0);
-        Self { way: *way, throughput: mode.one(), u, seed, mode }
+        Self { way: *way, throughput: mode.one(), u: way.number(), seed: way.hash(), mode }
     }
 }
 

@@ -28,4 +28,8 @@ impl Way {
         let [o, d] = [self.origin, self.direction];
         hash::pair(hash::pair(bits(o.x, o.y), bits(o.z, d.x)), bits(d.y, d.z))
     }
+    /// A number in [0, 1) of it, a multiple of 2⁻²⁴.
+    pub(crate) fn number(&self) -> f32 {
+        (hash::mix(self.hash()) >> 40) as f32 * (1.0 / 16_777_216.0)
+    }
 }

@@ -7,7 +7,11 @@ use crate::film::FilmTile;
 impl Renderer {
     /// The space of AOVs.
     pub(super) fn camera_space(&self) -> CameraSpace {
-        CameraSpace::new(self.view.camera.world_from_view(), self.world.origin)
+        let space = CameraSpace::new(self.view.camera.world_from_view(), self.world.origin);
+        match self.integrator.flies() && self.world.has_luminous_media() {
+            true => space.in_media(self.interior),
+            false => space,
+        }
     }
 
     /// Adds the AOVs of a sample of each pixel to a tile or to its sums, where they are wanted.
@@ -73,9 +77,16 @@ mod tests {
 
     #[test]
     fn first_hits_of_eight_are_those_of_each() {
-        for name in
-            ["whitted1980", "many-lights", "materials", "textures", "instances", "cutouts", "still-life"]
-        {
+        for name in [
+            "whitted1980",
+            "many-lights",
+            "materials",
+            "textures",
+            "instances",
+            "cutouts",
+            "still-life",
+            "media",
+        ] {
             test_scene(name, None, ColorMode::Rgb);
         }
     }

@@ -37,7 +37,7 @@ impl Renderer {
     }
 
     /// The colours of a sample's layers, by light-path expressions, as the film of its light has them: weighted, and with the
-    /// sample's limit of brightness. Nothing of a sample that shows the view's own background.
+    /// sample's limit of brightness. Nothing of a sample that shows a shadow catcher on the view's own background.
     pub(super) fn light_by_paths<'a>(
         &'a self,
         batch: &'a Batch,
@@ -46,7 +46,8 @@ impl Renderer {
     ) -> impl Iterator<Item = [f32; 3]> + 'a {
         let Queues { layers, alpha, .. } = &batch.queues;
         let count = self.light_paths.as_ref().map_or(0, |light_paths| light_paths.count());
-        let is_seen = alpha[slot] == Alpha::Opaque || self.image().background == Background::Environment;
+        let is_catcher = matches!(alpha[slot], Alpha::Shadow(_));
+        let is_seen = !is_catcher || self.image().background == Background::Environment;
         let whole = self.measured(traced.radiance * traced.weight, &traced.mode);
         let limit = self.limit(whole);
         layers[slot * count..][..count].iter().map(move |light| match is_seen {
@@ -60,8 +61,8 @@ impl Renderer {
         self.settings.color == ColorMode::Spectral && self.integrator.is_light()
     }
 
-    /// The colour and alpha of a sample. Over the view's own background, a shadow catcher has only alpha; single
-    /// samples of it may be outside of 0 … 1, but not their mean, up to noise.
+    /// The colour and alpha of a sample. Over the view's own background, a shadow catcher has only alpha, as has what is transparent, but for
+    /// the light of media before them; single samples of a catcher may be outside of 0 … 1, but not their mean, up to noise.
     fn with_alpha(
         &self,
         radiance: Spectrum,
@@ -70,11 +71,12 @@ impl Renderer {
         alpha: Alpha,
     ) -> ([f32; 3], f32) {
         match alpha {
-            Alpha::Transparent => ([0.0; 3], 0.0),
-            Alpha::Shadow if self.image().background != Background::Environment => {
-                ([0.0; 3], 1.0 - math::luminance(self.rgb(radiance, mode)))
+            Alpha::Transparent(passed) => (self.rgb(radiance * weight, mode), 1.0 - passed),
+            Alpha::Shadow(before) if self.image().background != Background::Environment => {
+                let lit = math::luminance(self.rgb(radiance - before, mode));
+                (self.rgb(before * weight, mode), 1.0 - lit)
             }
-            Alpha::Shadow | Alpha::Opaque => (self.rgb(radiance * weight, mode), 1.0),
+            Alpha::Shadow(_) | Alpha::Opaque => (self.rgb(radiance * weight, mode), 1.0),
         }
     }
 

@@ -17,6 +17,8 @@ pub(super) trait Transport: std::fmt::Debug + Send + Sync {
 
     fn is_light(&self) -> bool;
 
+    fn flies(&self) -> bool;
+
     /// Computes samples.
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays;
 
@@ -37,6 +39,10 @@ impl<I: Integrator> Transport for I {
 
     fn is_light(&self) -> bool {
         I::IS_LIGHT
+    }
+
+    fn flies(&self) -> bool {
+        I::FLIES
     }
 
     fn trace(&self, renderer: &Renderer, ids: &[SampleId], batch: &mut Batch) -> Rays {

@@ -1,10 +1,11 @@
 //! The media of a world, as rays travel in them.
 
-use lookfrom_bvh::Ray;
+use glam::Vec3;
+use lookfrom_bvh::{Hit, Ray};
 
 use super::World;
 use crate::core::spectrum::Spectrum;
-use crate::medium::{Medium, Way};
+use crate::medium::{Cover, Medium, Way};
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
 
@@ -53,6 +54,22 @@ impl World {
             None => (absorption, medium.scale),
             Some(scattering) => (absorption + coefficient(&scattering.coefficient), medium.scale),
         }
+    }
+
+    /// The way of a ray to what it hits, or without an end, and what of it a medium that scatters or emits light covers; `None` where there is
+    /// none.
+    pub(crate) fn cover(&self, media: InteriorStack, ray: &Ray, hit: &Hit) -> Option<(Way, Cover)> {
+        let length = match hit.is_hit() {
+            true => Vec3::from_array(ray.direction).length() * hit.t,
+            false => media.space().map(|_| f32::INFINITY)?,
+        };
+        let way = Way::new(ray, length);
+        Some((way, self.medium(media)?.cover(&self.textures, &way)?))
+    }
+
+    /// Whether any medium scatters or emits light.
+    pub(crate) fn has_luminous_media(&self) -> bool {
+        self.media.iter().any(|medium| medium.scattering.is_some() || medium.emission.is_some())
     }
 
     /// The medium that a ray is in; `None` in a vacuum.

@@ -33,6 +33,7 @@ mod references;
 mod robust;
 mod same_bits;
 mod scattering;
+mod seen_media;
 mod sensor;
 mod session;
 mod shapes;

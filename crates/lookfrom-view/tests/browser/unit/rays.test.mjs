@@ -19,6 +19,7 @@ function recorder() {
         fill: () => drawn.dots.push([...ends[0], context.fillStyle]),
         stroke: () => ends.length === 2 && drawn.lines.push([...ends.flat(), context.strokeStyle, context.lineWidth]),
         setLineDash: () => {},
+        closePath: () => {},
     };
     return { context, drawn };
 }
@@ -30,10 +31,12 @@ const segments = [
     segment(1, "blocked", [1, 1, 1], [1, 2, 1]),
     segment(2, "straight on", [1, 0, 1], [2, 0, 1], true),
 ];
+/** Rays at surfaces. */
+const rays = [{ address: 1 }, { address: 2 }];
 
 test("each segment is a line of its kind's colour, and an end is a dot", () => {
     const { context, drawn } = recorder();
-    drawRays(context, { inspection: { segments }, selected: null, project: (p) => p, isCameraRayShown: false });
+    drawRays(context, { inspection: { segments, rays }, selected: null, project: (p) => p, isCameraRayShown: false });
     assert.deepEqual(drawn.lines.filter(([, , , , color]) => color.startsWith("--ray")), [
         [1, 0, 1, 1, "--ray-shadow", 2],
         [1, 1, 1, 2, "--ray-blocked", 2],
@@ -44,9 +47,29 @@ test("each segment is a line of its kind's colour, and an end is a dot", () => {
 
 test("the selected ray is wider, and above the others", () => {
     const { context, drawn } = recorder();
-    drawRays(context, { inspection: { segments }, selected: 1, project: (p) => p, isCameraRayShown: true });
+    drawRays(context, { inspection: { segments, rays }, selected: 1, project: (p) => p, isCameraRayShown: true });
     const colors = drawn.lines.filter(([, , , , color]) => color.startsWith("--ray")).map(([, , , , color, width]) => [color, width]);
     assert.deepEqual(colors, [["--ray-straight-on", 2], ["--ray-camera", 3.5], ["--ray-shadow", 3.5], ["--ray-blocked", 3.5]]);
+});
+
+test("a point of a medium is a diamond, and null collisions of the selected ray are rings", () => {
+    const { context, drawn } = recorder();
+    let rings = 0;
+    const arc = context.arc;
+    context.arc = (x, y, ...rest) => {
+        if (x === 0.25 && y === 0) rings++;
+        arc(x, y, ...rest);
+    };
+    const collisions = [{ t: 0.25, is_real: false }, { t: 1, is_real: true }];
+    const scattered = { address: 1, kind: "camera", a: [0, 0, 1], direction: [3, 0, 0], tracking: { collisions, scattered_at: [1, 0, 1] } };
+    const draw = (selected) => drawRays(context, { inspection: { segments: segments.slice(0, 1), rays: [scattered] }, selected, project: (p) => p, isCameraRayShown: true });
+    draw(null);
+    assert.equal(rings, 0);
+    // Its first corner is above the point.
+    const [[x, y, color]] = drawn.dots;
+    assert.ok(x === 1 && y < -3 && color === "--ray-camera");
+    draw(1);
+    assert.equal(rings, 1);
 });
 
 test("a ray has one line, its shadow rays have others", () => {

@@ -35,14 +35,35 @@ pub struct FlightReport {
 pub struct PhaseReport {
     /// The sampled direction, unit length.
     pub wi: [f32; 3],
+    /// The cosine of the angle between the directions before and after it.
+    pub cos: f32,
     /// The phase function in that direction, per steradian: its value and its density.
     pub pdf: f32,
+    /// The lobes whose mix it is.
+    pub lobes: Vec<PhaseLobeReport>,
     /// The survival probability of Russian roulette.
     pub survival: f32,
     /// Whether the path goes on.
     pub survives: bool,
     /// β of the next ray: β / survival; `None` where there is none.
     pub next_throughput: Option<Factor>,
+}
+
+/// A lobe of a phase function.
+#[derive(Clone, Debug, Serialize)]
+pub struct PhaseLobeReport {
+    /// `Henyey-Greenstein` or `Draine`.
+    pub name: &'static str,
+    /// Its share.
+    pub weight: f32,
+    /// g: its mean cosine; of Draine's lobe a parameter beside it.
+    pub g: f32,
+    /// α: 0 in that of Henyey and Greenstein.
+    pub alpha: f32,
+    /// Its value in the sampled direction, per steradian.
+    pub value: f32,
+    /// Whether the direction was sampled by it.
+    pub is_sampled: bool,
 }
 
 /// The way of a ray through a medium that varies, by collisions whose density is a majorant of the extinction.
@@ -52,10 +73,25 @@ pub struct TrackingReport {
     pub limit: f32,
     /// Its collisions, in order: all are null, but for the last where the medium scatters it.
     pub collisions: Vec<CollisionReport>,
+    /// The medium along the whole way, whether the ray goes on to there or not; `None` where it does not meet it.
+    pub profile: Option<ProfileReport>,
     /// The point where it is scattered, in the world; `None` where it arrives.
     pub scattered_at: Option<[f64; 3]>,
     /// The throughput at the end.
     pub throughput: Factor,
+}
+
+/// Density along a ray: at the middles of as many equal parts of its way as there are numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProfileReport {
+    /// The distance from which on there is something of the medium.
+    pub start: f32,
+    /// The distance up to which.
+    pub end: f32,
+    /// σ_t, in the mean of the lanes.
+    pub extinction: Vec<f32>,
+    /// The majorants of the cells there.
+    pub majorant: Vec<f32>,
 }
 
 /// A collision of a ray with a medium.

@@ -6,7 +6,9 @@ use lookfrom_scene::plural::counted;
 
 use super::hit::write_absorption;
 use super::{RayReport, amount, full, lanes, vector, vector32};
-use crate::inspect::report::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
+use crate::inspect::report::{
+    CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, TrackingReport,
+};
 
 /// Media along a ray.
 pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
@@ -109,8 +111,15 @@ fn write_flight(f: &mut String, flight: &FlightReport) -> fmt::Result {
 
 /// The direction in which a medium scatters a path.
 pub(super) fn write_phase(f: &mut String, phase: &PhaseReport) -> fmt::Result {
-    let PhaseReport { wi, pdf, survival, survives, next_throughput } = phase;
-    writeln!(f, "    goes on by the phase function: wi = {}", vector32(wi))?;
+    let PhaseReport { wi, cos, pdf, lobes, survival, survives, next_throughput } = phase;
+    writeln!(f, "    goes on by the phase function: wi = {}   cos θ = {}", vector32(wi), full(*cos))?;
+    // One lobe is the whole phase function.
+    for lobe in lobes.iter().filter(|_| lobes.len() > 1) {
+        let PhaseLobeReport { name, weight, g, alpha, value, is_sampled } = lobe;
+        let [weight, g, alpha, value] = [weight, g, alpha, value].map(|number| full(*number));
+        let sampled = if *is_sampled { ", which has sampled it" } else { "" };
+        writeln!(f, "      lobe of {name}: {weight} · {value}, by g = {g}, α = {alpha}{sampled}")?;
+    }
     writeln!(f, "      pdf = {}, which is the phase function itself: β stays", full(*pdf))?;
     if *survival >= 1.0 {
         return Ok(());

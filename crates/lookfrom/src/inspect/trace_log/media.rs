@@ -4,9 +4,13 @@ use glam::Vec3;
 
 use super::TraceLogBuilder;
 use super::rays::in_world;
-use crate::inspect::report::{CollisionReport, FlightReport, NullReport, PhaseReport, TrackingReport};
+use crate::core::spectrum::Spectrum;
+use crate::inspect::report::{
+    CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, ProfileReport, TrackingReport,
+};
 use crate::integrator::{Flight, PhaseSample, Shadow};
-use crate::medium::{Collision, Tracking};
+use crate::medium::{Collision, Profile, Tracking};
+use crate::shading::bsdf::phase::PhaseLobe;
 
 impl TraceLogBuilder<'_> {
     /// The flight of a ray in a homogeneous medium, which may have scattered it before its hit.
@@ -35,6 +39,7 @@ impl TraceLogBuilder<'_> {
         let report = TrackingReport {
             limit: tracking.limit,
             collisions: tracking.collisions.iter().map(|collision| self.collision(collision)).collect(),
+            profile: tracking.profile.as_deref().map(|profile| self.profile(profile)),
             scattered_at: point.map(|point| in_world(self.world, point.to_array())),
             throughput: self.factor(tracking.after),
         };
@@ -53,6 +58,20 @@ impl TraceLogBuilder<'_> {
             *surface = None;
         }
         self.at(address, |ray| ray.met = None);
+    }
+
+    fn profile(&self, profile: &Profile) -> ProfileReport {
+        let Profile { start, end, extinction, majorant } = profile;
+        let mean = |of: &Spectrum| {
+            let lanes = self.factor(*of);
+            lanes.iter().sum::<f32>() / lanes.len() as f32
+        };
+        ProfileReport {
+            start: *start,
+            end: *end,
+            extinction: extinction.iter().map(mean).collect(),
+            majorant: majorant.clone(),
+        }
     }
 
     fn collision(&self, collision: &Collision) -> CollisionReport {
@@ -86,8 +105,24 @@ impl TraceLogBuilder<'_> {
 
     /// The direction in which a medium scatters a ray.
     pub(super) fn phase(&mut self, address: u64, sample: &PhaseSample) {
-        let PhaseSample { wi, pdf, survival, survives, .. } = *sample;
-        let report = PhaseReport { wi: wi.to_array(), pdf, survival, survives, next_throughput: None };
-        self.at(address, |ray| ray.phase = Some(report));
+        let PhaseSample { phase, is_draine, wi, pdf, survival, survives, .. } = *sample;
+        self.at(address, |ray| {
+            let ahead = Vec3::from_array(ray.direction).normalize();
+            let lobe = |lobe: PhaseLobe, is_sampled| {
+                let PhaseLobe { name, weight, g, alpha, value } = lobe;
+                PhaseLobeReport { name, weight, g, alpha, value, is_sampled }
+            };
+            let (first, second) = phase.lobes((-ahead).into(), wi.into());
+            let lobes = std::iter::once(lobe(first, !is_draine)).chain(second.map(|of| lobe(of, is_draine)));
+            ray.phase = Some(PhaseReport {
+                wi: wi.to_array(),
+                cos: ahead.dot(wi),
+                pdf,
+                lobes: lobes.collect(),
+                survival,
+                survives,
+                next_throughput: None,
+            });
+        });
     }
 }

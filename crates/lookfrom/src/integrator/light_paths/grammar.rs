@@ -5,7 +5,8 @@
 //! glass; `D` alone is short for `<.D>`, `R` for `<R.>`; `V` is a medium (a volume), which has neither side nor kind. The last event is where the light comes from: `L` a light, `B` the
 //! background or an environment, `O` an object that shines and is no light, `A` Whitted's ambient light; `<L.'lamp'>` is the
 //! light of a name. `.` is any event, `[…]` one of several, `[^…]` any other; `(…)`, `|`, `*`, `+`, `?`, `{n}`, `{n,}` and
-//! `{n,m}` mean what they mean in regular expressions. Blanks do not count.
+//! `{n,m}` mean what they mean in regular expressions. Blanks do not count. `volume` is short for `CV.*`, what a medium scatters toward the
+//! camera; a layer of `transmittance` has no light, but the part of it that media before the first surface let pass.
 
 use std::fmt::Write as _;
 
@@ -140,8 +141,20 @@ impl Fault {
     }
 }
 
-/// The regular expression over bytes that an expression means.
+/// What light of media is called, and its expression.
+const VOLUME: [&str; 2] = ["volume", "CV.*"];
+
+/// Whether a layer has the transmittance of media.
+pub(super) fn is_transmittance(expression: &str) -> bool {
+    expression.trim() == "transmittance"
+}
+
+/// The regular expression over bytes that an expression means: one that matches no way where that is not one of light.
 pub(super) fn pattern(expression: &str, labels: &mut Labels) -> Result<String, Fault> {
+    if is_transmittance(expression) {
+        return Ok("\\xff".to_owned());
+    }
+    let expression = if expression.trim() == VOLUME[0] { VOLUME[1] } else { expression };
     let mut parser = Parser { rest: expression, whole: expression, labels, pattern: String::new(), depth: 0 };
     if parser.next() != Some('C') {
         parser.rest = expression;

@@ -27,7 +27,8 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let mode = output.mode(path);
-        output.queues.alpha[path.slot as usize] = Alpha::Shadow;
+        let slot = path.slot as usize;
+        output.queues.alpha[slot] = Alpha::Shadow(output.queues.radiance[slot]);
         let behind = match output.background {
             Background::Environment => world.sky(&path.ray, &mode),
             // White: the light of the sample is the unshadowed part.

@@ -51,7 +51,7 @@ impl PathTracer {
         match medium.track(&world.textures, Estimate::Flight, &[ray], P::LISTENS) {
             Some(mut tracked) => {
                 let tracking = tracked.pop().unwrap_or_default();
-                self.tracked(stream, path, (medium, &ray.way), tracking, output)
+                self.tracked(world, stream, path, (medium, &ray.way), tracking, output)
             }
             None => {
                 let flying = flying(world, stream, path, (medium, &ray.way), &mode);
@@ -82,7 +82,7 @@ impl PathTracer {
             for (&index, tracking) in indices.iter().zip(tracked.into_iter().flatten()) {
                 let (path, hit) = path_and_hit(index);
                 let way = path.way_to(hit);
-                let traveled = self.tracked(&streams.of(path), path, (medium, &way), tracking, output);
+                let traveled = self.tracked(world, &streams.of(path), path, (medium, &way), tracking, output);
                 go_on(index as usize, traveled, output);
             }
             return;
@@ -120,12 +120,13 @@ impl PathTracer {
         let point = flight.is_scattered().then(|| way.origin + way.direction * flight.distance);
         output.probe.notice(|| Event::Flown { address: path.address, flight: Box::new(flight), point });
         let path = Path { beta: flight.after, ..*path };
-        end(medium, path, &flying.stream, point)
+        end(world, (medium, path), &flying.stream, point, output)
     }
 
     /// The end of a way in a medium that varies.
     fn tracked<P: Probe>(
         &self,
+        world: &World,
         stream: &SampleStream,
         path: &Path,
         (medium, way): (&Medium, &Way),
@@ -138,7 +139,7 @@ impl PathTracer {
         let point = tracking.scattered_at.map(|distance| way.origin + way.direction * distance);
         let path = Path { beta: tracking.after, ..*path };
         output.probe.notice(|| Event::Tracked { address: path.address, tracking: Box::new(tracking), point });
-        end(medium, path, stream, point)
+        end(world, (medium, path), stream, point, output)
     }
 
     /// Adds what a medium emits on the way of a path. Where no path goes on, that is left out, as in pbrt.
@@ -173,11 +174,21 @@ fn flying(
 }
 
 /// The end of a way: at the point where the medium scatters the path, if there is one.
-fn end(medium: &Medium, path: Path, stream: &SampleStream, point: Option<Vec3>) -> Traveled {
+fn end<P: Probe>(
+    world: &World,
+    (medium, path): (&Medium, Path),
+    stream: &SampleStream,
+    point: Option<Vec3>,
+    output: &mut StepOutput<'_, P>,
+) -> Traveled {
     match (point, medium.phase()) {
         (Some(point), Some(phase)) => {
+            output.set_transmittance(world, &path, Spectrum::BLACK);
             Traveled::Scattered(MediumVertex { path, point, phase, stream: *stream })
         }
-        _ => Traveled::Arrived(path),
+        _ => {
+            output.set_transmittance(world, &path, path.beta);
+            Traveled::Arrived(path)
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The loop of [tracking](super): rays under way in lanes, from collision to collision.
 
-use lookfrom_simd::{Bits, Float, Kernel, LaneMask, Mask as _, Real, Simd};
+use lookfrom_simd::{Bits, Float, Kernel, LaneMask, Real, Simd};
 
 use super::{Collision, TrackedRay, Tracking};
 use crate::core::elementary::ln;
@@ -8,15 +8,12 @@ use crate::core::hash;
 use crate::core::lanes::width::{Bits64, Lanes, Width};
 use crate::core::lanes::{Columns, LANES, load, load_spectrum, row, set_row, store_spectrum};
 use crate::core::spectrum::Spectrum;
-use crate::medium::majorants::StoredWalk;
+use crate::medium::majorants::{Approach, StoredWalk};
 use crate::medium::{Coefficients, Medium, Varying};
 use crate::shading::texture::{SpectralMode, Textures};
 
 /// Most collisions of a ray: after so many, a density is so far below its bound that nothing is to be expected.
 const MOST_COLLISIONS: f32 = 65_536.0;
-
-/// Majorants are greater than bounds by so much, which interpolation may exceed by rounding.
-const MARGIN: f32 = 1.0 + 1.0 / 65_536.0;
 
 /// Below this part of its throughput at the beginning a ray is ended by Russian roulette, …
 const WEAK: f32 = 0.05;
@@ -122,7 +119,7 @@ impl<'a> Tracker<'a, '_> {
         under_way.walk.set(lane, &walk);
         under_way.t[lane] = start;
         under_way.majorant[lane] = 0.0;
-        under_way.most[lane] = even.extinction().max_lane() * MARGIN;
+        under_way.most[lane] = even.most();
         under_way.left[lane] = -ln(1.0 - u);
         under_way.count[lane] = 0.0;
         under_way.random[lane] = hash::mix(seed.wrapping_add(hash::GOLDEN));
@@ -144,33 +141,18 @@ impl<'a> Tracker<'a, '_> {
         // Walk through cells up to the optical depth.
         let [origin, direction] = [load(width, &under_way.origin), load(width, &under_way.direction)];
         let most = width.load_f32(&under_way.most);
-        let mut t = width.load_f32(&under_way.t);
-        let mut majorant = width.load_f32(&under_way.majorant);
-        let mut left = width.load_f32(&under_way.left);
-        let mut walk = under_way.walk.load(width);
-        let mut are_within = width.mask(lanes);
-        loop {
-            let depth = majorant * (walk.end - t);
-            let go_beyond = are_within & !left.lt(depth);
-            if !go_beyond.any() {
-                break;
-            }
-            left = Float::select(go_beyond, left - depth, left);
-            t = Float::select(go_beyond, walk.end, t);
-            let are_at_end = go_beyond & !t.lt(walk.last);
-            are_within = are_within & !are_at_end;
-            let go_beyond = go_beyond & !are_at_end;
-            let bound = Float::min(
-                walk.advance(&self.varying.majorants, direction, go_beyond) * most,
-                most.like(Coefficients::MOST),
-            );
-            majorant = Float::select(go_beyond, bound, majorant);
-        }
+        let mut approach = Approach {
+            walk: under_way.walk.load(width),
+            t: width.load_f32(&under_way.t),
+            majorant: width.load_f32(&under_way.majorant),
+            left: width.load_f32(&under_way.left),
+        };
+        let are_within = approach.arrive(&self.varying.majorants, (direction, most), width.mask(lanes));
+        let Approach { walk, t, majorant, .. } = approach;
 
         // Collide there.
         let count = width.load_f32(&under_way.count) + 1.0;
         let collide = are_within & !count.gt(count.like(MOST_COLLISIONS));
-        t = Float::select(collide, Float::min(t + left / majorant, walk.end), t);
         let mut random = width.u64s(
             #[inline(always)]
             |lane| under_way.random[lane],

@@ -56,7 +56,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "bsdf distribution footprint interior_stack light material math medium points primitive spectrum \
          interaction texture warp",
     ),
-    ("aov", "accumulator fixed_point interaction lanes material sampler vector world"),
+    ("aov", "accumulator fixed_point interaction interior_stack lanes material medium sampler vector world"),
     ("film", "accumulator aov fixed_point hash lanes parallel sampler spectrum"),
     ("denoise", "film parallel"),
     ("develop", "film"),

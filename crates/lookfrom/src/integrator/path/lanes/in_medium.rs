@@ -11,7 +11,7 @@ use crate::core::spectrum::Spectrum;
 use crate::integrator::path::{Departure, Path, PathTracer, PreviousVertex, StepOutput};
 use crate::integrator::wavefront::Boundary;
 use crate::integrator::{Event, PhaseSample, Probe, SampleStream};
-use crate::shading::bsdf::henyey_greenstein::HenyeyGreenstein;
+use crate::shading::bsdf::phase::Phase;
 
 /// A path at a point of a medium that scatters it.
 pub(in crate::integrator::path) struct MediumVertex {
@@ -19,7 +19,7 @@ pub(in crate::integrator::path) struct MediumVertex {
     pub(in crate::integrator::path) path: Path,
     /// In render space.
     pub(in crate::integrator::path) point: Vec3,
-    pub(in crate::integrator::path) phase: HenyeyGreenstein,
+    pub(in crate::integrator::path) phase: Phase,
     pub(in crate::integrator::path) stream: SampleStream,
 }
 
@@ -53,7 +53,15 @@ impl PathTracer {
         let survives = scattered.survives & 1 << lane != 0;
         output.probe.notice(|| Event::ScatteredInMedium {
             address: path.address,
-            sample: PhaseSample { wi, pdf, beta: path.beta, survival, survives },
+            sample: PhaseSample {
+                phase: vertex.phase,
+                is_draine: scattered.is_draine & 1 << lane != 0,
+                wi,
+                pdf,
+                beta: path.beta,
+                survival,
+                survives,
+            },
         });
         if !survives {
             return;

@@ -51,6 +51,8 @@ pub(super) struct Scattered {
     /// Probabilities of surviving Russian roulette, and the lanes that survive it.
     pub(super) survival: [f32; LANES],
     pub(super) survives: u32,
+    /// Lanes in media whose direction is of Draine's lobe.
+    pub(super) is_draine: u32,
     /// Lanes whose path goes on.
     pub(super) goes_on: u32,
     /// The points and the shading normals, in single precision.

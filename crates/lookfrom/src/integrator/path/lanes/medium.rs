@@ -13,7 +13,7 @@ use crate::integrator::path::{LightSampling, dimension};
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::wavefront::{LightSamples, Receivers};
 use crate::light::IncompletePdf;
-use crate::shading::bsdf::henyey_greenstein::HenyeyGreenstein;
+use crate::shading::bsdf::phase::Phases;
 use crate::world::World;
 
 /// Paths at points of media.
@@ -45,10 +45,11 @@ impl<W: Width> Step<'_, W> {
             |lane| vertices[lane].path.ray.direction,
         );
         let wo = -direction.normalize();
-        let phase = HenyeyGreenstein::of(width.f32s(
+        let phase = Phases::by_lane(
+            width,
             #[inline(always)]
-            |lane| vertices[lane].phase.g(),
-        ));
+            |lane| vertices[lane].phase,
+        );
         let beta = task.beta(width);
 
         // Sample one light.
@@ -68,7 +69,9 @@ impl<W: Width> Step<'_, W> {
         }
 
         // Go on in one direction, unless Russian roulette ends the path.
-        let wi = phase.sample(wo, streams.two_with_pixel(dimension::DIRECTION));
+        let u = streams.two_with_pixel(dimension::DIRECTION);
+        let wi = phase.sample(wo, u);
+        scattered.is_draine = width.bits(phase.choose_draine(u[0]));
         let eta_scale = width.f32s(
             #[inline(always)]
             |lane| vertices[lane].path.state.eta_scale,
