@@ -146,6 +146,11 @@ pub(crate) fn size(typed: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// `X,Y`: column and row of a pixel.
+pub(crate) fn pixel(typed: &str) -> Result<[u32; 2], String> {
+    separated(typed, "column and row of a pixel, such as 120,240")
+}
+
 /// `C` or `CxR`: columns, and rows.
 pub(crate) fn sheet(typed: &str) -> Result<(u32, Option<u32>), String> {
     let side = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&side| (1..=1000).contains(&side));

@@ -2,24 +2,56 @@
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr};
+use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 
 use lookfrom_scene::load::has_known_name;
-use lookfrom_scene::{Error, ErrorKind, Location};
-use lookfrom_view::{Server, Settings};
+use lookfrom_scene::{Disk, Error, ErrorKind, Inputs, Location};
+use lookfrom_view::{Address, Server, Settings, handout};
 
 use crate::args::ViewArguments;
-use crate::exit::{Failure, INTERRUPTED, answer, say};
-use crate::output::folder_or_here;
+use crate::exit::{DONE, Failure, INTERRUPTED, answer, say};
+use crate::output::{folder_or_here, replace_file};
 use crate::{interrupt, prepare};
 
 /// Serves until Ctrl-C, and returns the exit code. `typed` are the arguments by which `render` opens the same session.
 pub(crate) fn run(arguments: &ViewArguments, typed: &[String]) -> u8 {
+    if let Some(page) = &arguments.export {
+        return export(arguments, typed, page).map_or_else(|failure| failure.report(), |()| DONE);
+    }
     serve(arguments, typed).map_or_else(|failure| failure.report(), |()| INTERRUPTED)
 }
 
+/// Writes a hand-out.
+fn export(arguments: &ViewArguments, typed: &[String], page: &Path) -> Result<(), Failure> {
+    prepare::use_threads(&arguments.common)?;
+    let html = handout(settings(arguments, typed), Arc::new(Disk), arguments.pixel, arguments.sample)
+        .map_err(Failure::Scene)?;
+    let is_file = page.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"));
+    let page = if is_file { page.to_owned() } else { page.join("index.html") };
+    if !is_file {
+        let folder = folder_or_here(page.parent());
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Failure::Output(format!("{}: {error}", folder.display())))?;
+    }
+    replace_file(&page, html.as_bytes(), &Inputs::default(), "--export")?;
+    answer(&page.display().to_string())
+}
+
+fn settings(arguments: &ViewArguments, typed: &[String]) -> Settings {
+    let ViewArguments { scene, reference, common, overrides, .. } = arguments;
+    Settings {
+        scene: scene.clone(),
+        options: overrides.options(common, None),
+        environment: overrides.model.environment.clone(),
+        reference: reference.clone(),
+        typed: typed.to_vec(),
+    }
+}
+
 fn serve(arguments: &ViewArguments, typed: &[String]) -> Result<(), Failure> {
-    let ViewArguments { scene, host, port, open, reference, common, overrides } = arguments;
+    let ViewArguments { scene, host, port, open, common, .. } = arguments;
     prepare::use_threads(common)?;
     // What is wrong in a file may be mended while the page is open, and a new file may be saved; but not without a folder.
     if !scene.is_file() {
@@ -33,18 +65,9 @@ fn serve(arguments: &ViewArguments, typed: &[String]) -> Result<(), Failure> {
         say(&format!("{} is not there yet: the page shows it as soon as it is saved", scene.display()));
     }
     let host = host.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST));
-    let settings = Settings {
-        scene: scene.clone(),
-        options: overrides.options(common, None),
-        environment: overrides.model.environment.clone(),
-        reference: reference.clone(),
-        typed: typed.to_vec(),
-        host,
-        port: *port,
-        may_be_framed: false,
-    };
+    let address = Address { host, port: *port, may_be_framed: false };
     let refused = |error: io::Error| Failure::Output(format!("cannot serve at {host}, port {port}: {error}"));
-    let server = Server::bind(settings).map_err(refused)?;
+    let server = Server::bind(settings(arguments, typed), address).map_err(refused)?;
     let url = server.url();
     answer(&url)?;
     if !host.is_loopback() {

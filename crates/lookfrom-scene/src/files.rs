@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::io::{ErrorKind as IoKind, Read};
 use std::path::{Component, Path, PathBuf};
-use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
 use crate::budget::{Budget, Reservation, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -49,6 +49,9 @@ pub trait Files: Sync {
         vec![FileId::Path(path.to_owned())]
     }
 }
+
+/// Files that are read again and again, by whoever may want to.
+pub type SharedFiles = Arc<dyn Files + Send + Sync>;
 
 /// An identity of a file. A file may have several.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -2,14 +2,15 @@
 
 import { byId } from "./html.js";
 import { signal } from "./signal.js";
-import { Unanswered, connect } from "./socket.js";
+import { Unanswered } from "./socket.js";
 import { viewState } from "./state.js";
 
 /** @typedef {ReturnType<typeof createApp>} App */
 
-export function createApp() {
+/** @param {import("./socket.js").Socket} socket */
+export function createApp(socket) {
     const app = {
-        socket: connect(),
+        socket,
         view: viewState(),
         scene: signal(/** @type {import("./protocol.js").Scene | null} */ (null)),
         frame: signal(/** @type {import("./protocol.js").PictureHeader | null} */ (null)),
@@ -21,6 +22,8 @@ export function createApp() {
         inspection: signal(/** @type {import("./protocol.js").Inspection | null} */ (null)),
         /** The address of the selected ray. */
         ray: signal(/** @type {number | null} */ (null)),
+        /** What the link says of the scene; empty where the other end knows it. */
+        source: signal(""),
         /** Whether the rays are drawn over the picture. */
         raysOverPicture: signal(true),
 

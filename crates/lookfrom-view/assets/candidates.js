@@ -33,7 +33,7 @@ export function candidateTable(candidate) {
         inputRows(inputs),
         rows.length > 0 && h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": `numbers of ${candidate.name}` },
             h("table", { class: "twice" },
-                h("thead", {}, h("tr", {}, ["", "f32", "f64", "bits"].map((name) => h("th", { scope: "col" }, name)))),
+                h("thead", {}, h("tr", {}, h("td"), ["f32", "f64", "bits"].map((name) => h("th", { scope: "col" }, name)))),
                 h("tbody", {}, rows.map(([name, value]) =>
                     h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, exact(value.f32)), h("td", {}, exact(value.f64)), h("td", { title: "leading bits that agree, of 24" }, bits(value.bits))))))));
 }

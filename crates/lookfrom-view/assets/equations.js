@@ -34,7 +34,7 @@ export function showEquations(app) {
 /** @param {Row[]} rows */
 export const terms = (rows) =>
     h("table", { class: "terms" }, h("tbody", {}, rows.map(([symbol, meaning, value]) =>
-        h("tr", {}, h("th", { scope: "row" }, symbol && formula(symbol)), h("td", { class: "number" }, value), h("td", { class: "meaning" }, meaning)))));
+        h("tr", {}, symbol ? h("th", { scope: "row" }, formula(symbol)) : h("td"), h("td", { class: "number" }, value), h("td", { class: "meaning" }, meaning)))));
 
 /** @typedef {{title: string, content: (Child | Child[])[]}} Section */
 

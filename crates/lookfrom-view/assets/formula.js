@@ -56,8 +56,20 @@ export const matrix = (rows) =>
  */
 export const formula = (...parts) => h("span", { class: "math", role: "math" }, row(...parts));
 
+/** What is wider than its place scrolls, by keys too. */
+const widths = new ResizeObserver((entries) => {
+    for (const { target } of entries) {
+        if (target.scrollWidth > target.clientWidth) target.setAttribute("tabindex", "0");
+        else target.removeAttribute("tabindex");
+    }
+});
+
 /**
  * A formula on a line of its own.
  * @param {...Part} parts
  */
-export const display = (...parts) => h("div", { class: "math", role: "math" }, row(...parts));
+export function display(...parts) {
+    const element = h("div", { class: "math", role: "math" }, row(...parts));
+    widths.observe(element);
+    return element;
+}

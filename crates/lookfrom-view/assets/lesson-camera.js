@@ -3,7 +3,7 @@
 import { formula, matrix } from "./formula.js";
 import { byId, h, replace, svg } from "./html.js";
 import { short } from "./format.js";
-import { noPixel } from "./notes.js";
+import { noPixel } from "./no-pixel.js";
 
 /** @typedef {import("./protocol.js").Step} Step */
 

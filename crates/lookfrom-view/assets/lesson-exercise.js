@@ -3,7 +3,7 @@
 import { display, formula, matrix } from "./formula.js";
 import { h, replace } from "./html.js";
 import { exact, point, short } from "./format.js";
-import { noPixel } from "./notes.js";
+import { noPixel } from "./no-pixel.js";
 
 /** The eye of the exercise. @type {import("./protocol.js").Camera} */
 const EXERCISE = { lookfrom: [0, 0, 0], lookat: [0, 0, 1], up: [0, 1, 0], fov: 60 };

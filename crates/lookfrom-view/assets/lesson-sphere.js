@@ -3,8 +3,8 @@
 import { display, frac, row, sqrt } from "./formula.js";
 import { h, replace, svg } from "./html.js";
 import { candidateTable, numbersOf } from "./candidates.js";
-import { select, slider } from "./fields.js";
-import { exact, short, single } from "./format.js";
+import { select } from "./fields.js";
+import { short } from "./format.js";
 
 /** @typedef {{A: number, B: number, C: number}} Quadratic */
 
@@ -13,7 +13,6 @@ export function sphereLesson(app) {
     const element = h("div");
     /** @type {string | null} */
     let chosen = null;
-    const far = farSphere();
     return { element, show };
 
     function show() {
@@ -29,10 +28,7 @@ export function sphereLesson(app) {
             }, "Tested sphere")),
             display("A t² + 2 B t + C = 0,  t = ", frac(row("− B ±", sqrt("B² − A C")), "A")),
             parabola(quadratic),
-            candidate ? candidateTable(candidate) : h("p", { class: "hint" }, "The selected ray was tested against no sphere; the picture above is an example."),
-            h("h4", {}, "The numerical trap"),
-            h("p", {}, "Move a sphere of radius 1 away, and watch f32 lose the digits of B² − A C, which subtracts two numbers that grow alike. Δ, from the distance between centre and line, does not."),
-            far);
+            candidate ? candidateTable(candidate) : h("p", { class: "hint" }, "The selected ray was tested against no sphere; the picture above is an example."));
     }
 }
 
@@ -56,30 +52,4 @@ function parabola({ A, B, C }) {
             roots.map((t, i) => [svg("circle", { cx: x(t), cy: y(0), r: 5, class: t > 0 && (i === 0 || roots[0] <= 0) ? "handle" : "root" }),
                 svg("text", { x: x(t) + (i === 0 ? -7 : 7), y: y(0) + 16, class: i === 0 ? "end" : "" }, short(t, 5))]).flat()),
         h("p", { class: "number centred" }, roots.length ? `two roots; the nearest in front is ${short(roots.find((t) => t > 0) ?? NaN, 6)}` : "no real root: the ray misses"));
-}
-
-/** f32 beside f64 for a sphere that moves away. */
-function farSphere() {
-    const body = h("tbody");
-    const control = slider("Distance", { min: 0, max: 7, step: 0.1 }, 3, show, (power) => short(10 ** power, 3));
-    /** @param {number} power */
-    function show(power) {
-        const f = Math.fround;
-        // The ray passes the centre at 0.6: the true Δ is 1 − 0.36.
-        const [d, offset] = [f(10 ** power + 1), f(0.6)];
-        const exactOffset = offset * offset;
-        const [b32, c32] = [f(-d), f(f(f(d * d) + f(offset * offset)) - 1)];
-        const [b64, c64] = [-d, d * d + exactOffset - 1];
-        const rows = /** @type {[string, number, number][]} */ ([
-            ["B²", f(b32 * b32), b64 * b64],
-            ["A C", c32, c64],
-            ["B² − A C", f(f(b32 * b32) - c32), b64 * b64 - c64],
-            ["Δ (stable)", f(1 - f(offset * offset)), 1 - exactOffset],
-            ["t, textbook", f(f(-b32) - f(Math.sqrt(f(f(b32 * b32) - c32)))), -b64 - Math.sqrt(b64 * b64 - c64)],
-            ["t = C/q", f(c32 / f(-b32 + f(Math.sqrt(f(1 - f(offset * offset)))))), c64 / (-b64 + Math.sqrt(1 - exactOffset))],
-        ]);
-        replace(body, rows.map(([name, f32, f64]) => h("tr", { class: Math.abs(f32 - f64) > 0.01 * Math.abs(f64) || Number.isNaN(f32) ? "lost" : "" }, h("th", { scope: "row" }, name), h("td", {}, single(f32)), h("td", {}, exact(f64)))));
-    }
-    show(3);
-    return h("div", {}, control.element, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "f32 beside f64" }, h("table", { class: "twice" }, h("thead", {}, h("tr", {}, ["", "f32", "f64"].map((name) => h("th", { scope: "col" }, name)))), body)));
 }

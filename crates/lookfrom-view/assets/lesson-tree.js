@@ -4,7 +4,7 @@ import { h, replace, svg } from "./html.js";
 import { slider } from "./fields.js";
 import { exact, fileName, short, single, swatch } from "./format.js";
 import { linesOfRays } from "./rays.js";
-import { noPixel } from "./notes.js";
+import { noPixel } from "./no-pixel.js";
 
 /** @typedef {import("./protocol.js").Inspection} Inspection */
 

@@ -74,12 +74,13 @@ export function keepPermalink(app) {
         clearTimeout(timer);
         // Browsers limit how often the address may change.
         timer = window.setTimeout(() => {
-            const text = fragment(app.view.get(), app.pixel.get(), app.sample.get(), app.ray.get());
+            const parts = [app.source.get(), fragment(app.view.get(), app.pixel.get(), app.sample.get(), app.ray.get())];
+            const text = parts.filter((part) => part !== "").join("&");
             history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
         }, 150);
     };
     app.view.on((_, moving) => void (moving || write()));
-    for (const signal of [app.pixel, app.sample, app.ray]) signal.on(write);
+    for (const signal of [app.source, app.pixel, app.sample, app.ray]) signal.on(write);
     window.addEventListener("hashchange", () => {
         const { view, pixel, sample } = parse(location.hash);
         app.view.set(view);

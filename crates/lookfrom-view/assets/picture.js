@@ -39,7 +39,7 @@ export function showPicture(app) {
                 for (const old of bitmaps) old.close();
                 bitmaps = decoded;
             } catch {
-                app.toast("A picture of the server could not be decoded");
+                app.toast("A picture could not be decoded");
                 continue;
             }
             draw();
@@ -70,9 +70,13 @@ export function showPicture(app) {
     /** The place of the picture in its frame, in pixels of the page. */
     function place() {
         const frame = overlay.getBoundingClientRect();
-        const scale = Math.min(frame.width / canvas.width, frame.height / canvas.height);
+        const ratio = window.devicePixelRatio || 1;
+        const fit = Math.min(frame.width / canvas.width, frame.height / canvas.height);
+        // A picture of the window's size has exactly a pixel for each of the screen.
+        const scale = Math.abs(fit * ratio - 1) < 0.01 ? 1 / ratio : fit;
         const [width, height] = [canvas.width * scale, canvas.height * scale];
-        return { left: (frame.width - width) / 2, top: (frame.height - height) / 2, width, height, scale };
+        const [left, top] = [frame.width - width, frame.height - height].map((rest) => Math.round((rest / 2) * ratio) / ratio);
+        return { left, top, width, height, scale };
     }
 
     function drawOverlay() {
@@ -139,7 +143,7 @@ export function showPicture(app) {
     });
 
     new ResizeObserver(drawOverlay).observe(overlay);
-    for (const signal of [app.pixel, app.inspection, app.ray, app.raysOverPicture]) signal.on(drawOverlay);
+    for (const signal of [app.pixel, app.inspection, app.ray, app.raysOverPicture]) signal.on(() => requestAnimationFrame(drawOverlay));
     return { pixelAt, canvas, overlay };
 }
 

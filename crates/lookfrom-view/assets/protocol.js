@@ -34,6 +34,7 @@
  * @property {number} generation
  * @property {string} name
  * @property {[number, number]} size
+ * @property {boolean} is_sized Whether the size was asked for on the command line.
  * @property {Camera & {projection: string}} camera
  * @property {{min: Vector, max: Vector}} bounds
  * @property {string} integrator
@@ -57,8 +58,8 @@
  * @property {string} version
  */
 
-/** @typedef {{type: "progress", view: number, samples: number, of: number, seconds: number, rays_per_second: number, done: boolean}} Progress */
-/** @typedef {{type: "error", id: number | null, message: string, excerpt: string | null}} Failure */
+/** @typedef {{type: "progress", view: number, samples: number, of: number, seconds: number, rays_per_second: number, done: boolean, hash: string | null}} Progress */
+/** @typedef {{type: "error", id: number | null, message: string, place: {file: string, line: number, column: number} | null, excerpt: string | null}} Failure */
 /** @typedef {{type: "value", x: number, y: number, rgb: Vector, samples: number, variance: Vector, reference: Vector | null}} Value */
 /** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, sizes?: number[]}} PictureHeader */
 /** @typedef {{kind: "space", id: number, width: number, height: number, screen_from_world: number[], sizes: number[]}} SpaceHeader */

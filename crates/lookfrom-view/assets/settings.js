@@ -2,6 +2,7 @@
 
 import { byId, h, replace } from "./html.js";
 import { field, number, select, slider } from "./fields.js";
+import { MOST_PIXELS, fitted } from "./fit.js";
 import { count, counted } from "./format.js";
 
 /** @typedef {import("./app.js").App} App */
@@ -112,9 +113,6 @@ function showRendering(app, scene) {
     refocus("settings", focused);
 }
 
-/** The most pixels of a view, as the server has it. */
-const MOST_PIXELS = 3840 * 2160;
-
 /**
  * The sizes to choose from: the scene's, parts of it, twice it, that of the window, and the one that is chosen.
  * @param {Scene} scene
@@ -123,12 +121,10 @@ const MOST_PIXELS = 3840 * 2160;
  */
 function sizesOf(scene, chosen) {
     const [width, height] = scene.size;
-    const stage = byId("picture-overlay").getBoundingClientRect();
-    const window_ = (Math.min(stage.width / width, stage.height / height) || 1) * (window.devicePixelRatio || 1);
     /** @type {(part: number) => [number, number]} */
     const scaled = (part) => [Math.max(1, Math.round(width * part)), Math.max(1, Math.round(height * part))];
     const named = /** @type {[[number, number], string][]} */ ([
-        [scaled(1), ", the scene's"], [scaled(0.5), ""], [scaled(0.25), ""], [scaled(2), ", 2 ×"], [scaled(window_), ", fits the window"], [[...chosen], ""],
+        [scaled(1), ", the scene's"], [scaled(0.5), ""], [scaled(0.25), ""], [scaled(2), ", 2 ×"], [fitted(scene.size), ", fits the window"], [[...chosen], ""],
     ]);
     const sizes = new Map(named.filter(([[x, y]]) => x * y <= MOST_PIXELS).reverse().map(([size, name]) => [size.join("x"), size.join(" × ") + name]));
     return [...sizes].reverse();

@@ -1,4 +1,4 @@
-// The connection to the server: texts and binary messages, answers matched to their questions.
+// The connection to whoever renders: texts and binary messages, answers matched to their questions.
 
 /** @typedef {ReturnType<typeof connect>} Socket */
 
@@ -16,16 +16,34 @@ export function parts(buffer) {
     return { header, payload: buffer.slice(4 + length) };
 }
 
-/** Connects, and connects again when the server comes back. */
-export function connect() {
+/**
+ * What happens on the way to the other end.
+ * @typedef {object} Events
+ * @property {() => void} opened
+ * @property {(data: string | ArrayBuffer) => void} heard
+ * @property {() => void} closed
+ */
+
+/**
+ * The way to the other end: a server, or a worker of this page.
+ * @typedef {object} Transport
+ * @property {(events: Events) => void} open
+ * @property {(text: string) => void} send
+ * @property {() => boolean} isOpen
+ * @property {string} whenLost What the status says while the other end is not there.
+ * @property {string} whenBroken What to do about a scene that cannot be shown.
+ */
+
+/**
+ * Questions and answers over a transport.
+ * @param {Transport} transport
+ */
+export function connect(transport) {
     /** @type {Map<string, ((message: any) => void)[]>} */
     const listeners = new Map();
     /** @type {Map<number, {type: string, resolve: (answer: any) => void, reject: (error: Error) => void}>} */
     const waiting = new Map();
-    /** @type {WebSocket | null} */
-    let socket = null;
     let lastId = 0;
-    let pause = 250;
 
     /** @param {string} type @param {any} message */
     const tell = (type, message) => (listeners.get(type) ?? []).forEach((listener) => listener(message));
@@ -40,16 +58,10 @@ export function connect() {
         return true;
     }
 
-    function open() {
-        const url = new URL("/socket" + location.search, location.href);
-        url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
-        socket = new WebSocket(url);
-        socket.binaryType = "arraybuffer";
-        socket.onopen = () => {
-            pause = 250;
-            tell("open", null);
-        };
-        socket.onmessage = ({ data }) => {
+    const events = {
+        opened: () => tell("open", null),
+        /** @param {string | ArrayBuffer} data */
+        heard(data) {
             if (typeof data !== "string") {
                 const binary = parts(data);
                 if (!settle(binary.header.id ?? -1, binary)) tell(binary.header.kind, binary);
@@ -57,15 +69,13 @@ export function connect() {
             }
             const message = JSON.parse(data);
             if (!settle(message.id ?? -1, message)) tell(message.type, message);
-        };
-        socket.onclose = () => {
-            for (const question of waiting.values()) question.reject(new Unanswered("the connection to the server is lost"));
+        },
+        closed() {
+            for (const question of waiting.values()) question.reject(new Unanswered("the connection is lost"));
             waiting.clear();
             tell("close", null);
-            setTimeout(open, pause);
-            pause = Math.min(2 * pause, 5000);
-        };
-    }
+        },
+    };
 
     /**
      * @param {string} type
@@ -74,17 +84,17 @@ export function connect() {
      */
     function send(type, body) {
         const id = ++lastId;
-        if (isOpen()) socket?.send(JSON.stringify({ type, id, ...body }));
+        if (transport.isOpen()) transport.send(JSON.stringify({ type, id, ...body }));
         return id;
     }
 
-    const isOpen = () => socket?.readyState === WebSocket.OPEN;
-
     return {
-        open,
+        open: () => transport.open(events),
         send,
+        whenLost: transport.whenLost,
+        whenBroken: transport.whenBroken,
         /**
-         * Sends a question. The promise is rejected by the server's error, and as {@link Unanswered} where a later question of
+         * Sends a question. The promise is rejected by the error of the other end, and as {@link Unanswered} where a later question of
          * the same type replaces this one, or the connection is or gets lost.
          * @template {keyof import("./protocol.js").Answers} T
          * @param {T} type
@@ -95,8 +105,8 @@ export function connect() {
             // They keep their places: what still comes for them, an error too, concerns nobody.
             for (const question of waiting.values()) if (question.type === type) question.reject(new Unanswered("a later question has replaced this one"));
             return new Promise((resolve, reject) => {
-                if (isOpen()) waiting.set(send(type, body), { type, resolve, reject });
-                else reject(new Unanswered("there is no connection to the server"));
+                if (transport.isOpen()) waiting.set(send(type, body), { type, resolve, reject });
+                else reject(new Unanswered("there is no connection"));
             });
         },
         /**

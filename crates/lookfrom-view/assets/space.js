@@ -12,7 +12,8 @@ import { observer, sees } from "./observer.js";
 
 /** While the hand moves, pictures are smaller by this factor. */
 const COARSE = 3;
-const MOST_PIXELS = 700_000;
+/** At rest there are several samples for each pixel of the screen, which the browser averages when it draws them smaller. */
+const [SIDE_OF_PIXEL, MOST_PIXELS] = [2, 2_500_000];
 
 /** @param {import("./app.js").App} app */
 export function showSpace(app) {
@@ -44,8 +45,11 @@ export function showSpace(app) {
         if (asked) return void (again = true);
         asked = true;
         again = false;
-        const coarse = isMoving ? COARSE : Math.max(1, Math.sqrt((overlay.clientWidth * overlay.clientHeight) / MOST_PIXELS));
-        const size = [overlay.clientWidth, overlay.clientHeight].map((n) => Math.max(8, Math.round(n / coarse)));
+        const [width, height] = [overlay.clientWidth, overlay.clientHeight];
+        const fine = Math.min(SIDE_OF_PIXEL * (window.devicePixelRatio || 1), Math.sqrt(MOST_PIXELS / (width * height)));
+        const scale = isMoving || !frame ? 1 / COARSE : fine;
+        again = !isMoving && !frame;
+        const size = [width, height].map((n) => Math.max(8, Math.round(n * scale)));
         const timeout = setTimeout(() => (asked = false), 10_000);
         try {
             await show(await app.socket.request("space", { camera, size }));

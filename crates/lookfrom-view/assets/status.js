@@ -1,4 +1,4 @@
-// How far the picture is, whether the server is there, and errors of the scene over the last good picture.
+// How far the picture is, whether the other end is there, and errors of the scene over the last good picture.
 
 import { byId, h, replace } from "./html.js";
 import { count, duration } from "./format.js";
@@ -11,12 +11,14 @@ export function showStatus(app) {
     let announced = -1;
     let isPaused = false;
 
-    app.socket.on("progress", (/** @type {import("./protocol.js").Progress} */ { samples, of, seconds, rays_per_second, done }) => {
+    app.socket.on("progress", (/** @type {import("./protocol.js").Progress} */ { samples, of, seconds, rays_per_second, done, hash }) => {
         progress.max = of;
         progress.value = samples;
         document.body.classList.toggle("is-done", done);
         const rate = rays_per_second > 0 ? ` · ${count(rays_per_second)} rays/s` : "";
-        text.textContent = `${samples} / ${of} samples · ${duration(seconds)}${rate}`;
+        text.textContent = `${samples} / ${of} samples · ${duration(seconds)}${rate}${hash ? ` · ${hash}` : ""}`;
+        text.title = hash ? `${hash} is the hash of this picture: that of lookfrom render --json is the same` : "";
+        text.dataset.hash = hash ?? "";
         // Screen readers hear of each quarter only.
         const quarter = done ? 4 : Math.floor((4 * samples) / Math.max(of, 1));
         if (quarter !== announced && (done || quarter > 0)) app.announce(done ? "The picture is finished" : `${samples} of ${of} samples`);
@@ -38,7 +40,7 @@ export function showStatus(app) {
             h("h2", {}, "The scene cannot be shown"),
             h("p", {}, message),
             excerpt && h("pre", { tabindex: "0" }, excerpt),
-            h("p", { class: "faint" }, document.body.classList.contains("has-picture") ? "Behind is the last good picture. The file is watched: save it again." : "The file is watched: save it again."),
+            h("p", { class: "faint" }, document.body.classList.contains("has-picture") ? `Behind is the last good picture. ${app.socket.whenBroken}` : app.socket.whenBroken),
         );
         failure.hidden = false;
     });
@@ -51,7 +53,7 @@ export function showStatus(app) {
     });
     app.socket.on("close", () => {
         document.body.classList.add("is-offline");
-        text.textContent = "The server is not there; trying again …";
-        app.announce("The connection to the server is lost");
+        text.textContent = app.socket.whenLost;
+        app.announce("The connection is lost");
     });
 }

@@ -1,17 +1,9 @@
 // Light and dark: the system's, unless the switch says otherwise.
 
 import { byId } from "./html.js";
+import { memory } from "./memory.js";
 
 const NEXT = { system: "dark", dark: "light", light: "system" };
-
-/** What the browser remembers for this page: nothing, where a notebook shows it in a frame and the browser keeps other sites' memory shut. */
-function memory() {
-    try {
-        return localStorage;
-    } catch {
-        return null;
-    }
-}
 
 /** @param {() => void} changed Called after each change, since canvases read colours from the style sheet. */
 export function attachTheme(changed) {

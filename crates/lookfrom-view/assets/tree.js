@@ -1,7 +1,7 @@
 // The tree of rays of a sample, with the keys of an ARIA tree.
 
 import { byId, h, replace } from "./html.js";
-import { exact, fileName, luminance, short, swatch } from "./format.js";
+import { fileName, luminance, short, swatch } from "./format.js";
 import { linesOfRays } from "./rays.js";
 
 /** @typedef {import("./protocol.js").Ray} Ray */
@@ -26,7 +26,7 @@ export function showTree(app) {
         function item(ray, level) {
             const below = children.get(ray.address) ?? [];
             const isOpen = below.length > 0 ? !closed.has(ray.address) : null;
-            const row = h("div", { class: "ray" },
+            const row = h("div", { class: "ray", id: `row-${ray.address}` },
                 h("span", { class: `kind ${ray.kind}`, "aria-hidden": "true" }),
                 h("span", { class: "name" }, `${ray.address} ${ray.kind}`),
                 h("span", { class: "met", title: ray.met?.shape }, ends(ray)),
@@ -35,8 +35,7 @@ export function showTree(app) {
             kind.style.height = `${lines.get(ray.address)?.width.toFixed(1)}px`;
             // Rays of a path follow each other: indented, they would leave the panel.
             const group = below.length > 0 && h("ul", { role: "group", class: isTree ? "nested" : "" }, isOpen ? below.map((ray) => item(ray, level + 1)) : null);
-            const label = `Ray ${ray.address}, ${ray.kind}, ${ends(ray)}, contributes ${exact(Number(luminance(ray.subtree.rgb).toPrecision(3)))}`;
-            return h("li", { role: "treeitem", id: `ray-${ray.address}`, "data-address": ray.address, "aria-level": level, "aria-expanded": isOpen === null ? null : String(isOpen), "aria-label": label, tabindex: "-1" }, row, group);
+            return h("li", { role: "treeitem", id: `ray-${ray.address}`, "data-address": ray.address, "aria-level": level, "aria-expanded": isOpen === null ? null : String(isOpen), "aria-labelledby": `row-${ray.address}`, tabindex: "-1" }, row, group);
         }
         mark();
     };

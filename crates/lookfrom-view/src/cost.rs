@@ -31,7 +31,7 @@ pub(crate) struct CostMap {
 }
 
 impl CostMap {
-    /// Measures the costs of a view, on all threads.
+    /// Measures the costs of a view, on all threads that there are.
     ///
     /// # Errors
     /// As [`Session::set_image`].
@@ -48,6 +48,9 @@ impl CostMap {
             .collect();
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let renderer = session.renderer();
+        if threads == 1 {
+            return Ok(Self { width, height, scale, costs: by_rows(&ids, width, renderer) });
+        }
         let costs = std::thread::scope(|scope| {
             let parts = ids.chunks(ids.len().div_ceil(threads).max(1));
             let parts: Vec<_> = parts.map(|part| scope.spawn(|| by_rows(part, width, renderer))).collect();

@@ -4,36 +4,52 @@
 //! of every other front end; the page shows pictures and numbers. Each window of the page has a view, a film and a thread of
 //! its own; all share the `document`: the scene, which is read again when one of its files changes.
 //!
+//! A [`Desk`] is the other end of the same page where there is no server, in a worker of the browser: one window, whose caller brings
+//! the messages, and gives it turns.
+//!
 //! The messages are in `message`. The page is in `assets/`: embedded in release builds, read from disk at each request in
 //! builds with debug assertions.
 
+#[cfg(feature = "server")]
 mod assets;
+#[cfg(feature = "server")]
+mod bundle;
 mod compare;
 mod cost;
+mod desk;
 mod develop;
 mod document;
+#[cfg(feature = "server")]
+mod handout;
 mod heat;
 mod lobe;
 mod mailbox;
 mod message;
+#[cfg(feature = "server")]
 mod patience;
 mod render;
+#[cfg(feature = "server")]
 mod server;
 mod space;
 mod told;
 mod view;
 mod view_render;
+#[cfg(feature = "server")]
 mod window;
 mod words;
 
-use std::net::IpAddr;
 use std::path::PathBuf;
 
 use lookfrom::session::Options;
 
-pub use server::Server;
+pub use desk::Desk;
+#[cfg(feature = "server")]
+pub use handout::handout;
+pub use mailbox::Outgoing;
+#[cfg(feature = "server")]
+pub use server::{Address, Server};
 
-/// The scene that is shown, and the address of its page.
+/// The scene that is shown.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// A scene or model file.
@@ -47,10 +63,4 @@ pub struct Settings {
     /// The words of the command line after `lookfrom render` that give these options: "copy as command line" begins with
     /// them.
     pub typed: Vec<String>,
-    /// The address to listen at.
-    pub host: IpAddr,
-    /// The port; 0 for any that is free.
-    pub port: u16,
-    /// Whether pages of this machine, such as notebooks, may show it in a frame.
-    pub may_be_framed: bool,
 }

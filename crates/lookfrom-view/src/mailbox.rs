@@ -1,4 +1,4 @@
-//! Messages on the way between the socket of a window and its thread. Only the latest counts: a request replaces an earlier
+//! Messages on the way between the page of a window and its thread. Only the latest counts: a request replaces an earlier
 //! one of its type that has not been taken, a picture an earlier one that has not been sent.
 
 use std::collections::VecDeque;
@@ -6,6 +6,7 @@ use std::mem::discriminant;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
+#[cfg(feature = "server")]
 use tokio::sync::Notify;
 
 use crate::message::{Answer, Request};
@@ -22,11 +23,12 @@ pub(crate) enum Task {
     Request(Request),
 }
 
-/// Something for the socket to send.
-#[derive(Debug)]
-pub(crate) enum Outgoing {
+/// A message for the page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outgoing {
+    /// An answer, in JSON.
     Text(String),
-    /// A frame.
+    /// A frame: the length of its header in four bytes, the header in JSON, and what belongs to it.
     Binary(Vec<u8>),
 }
 
@@ -39,6 +41,7 @@ pub(crate) struct Mailbox {
     has_tasks: AtomicBool,
     closed: AtomicBool,
     outbox: Mutex<Outbox>,
+    #[cfg(feature = "server")]
     ready: Notify,
 }
 
@@ -78,6 +81,7 @@ impl Mailbox {
     }
 
     /// Ends the window's thread.
+    #[cfg(feature = "server")]
     pub(crate) fn close(&self) {
         let _inbox = locked(&self.inbox);
         self.closed.store(true, Ordering::Release);
@@ -101,25 +105,31 @@ impl Mailbox {
         if outbox.queue.len() < MOST_TEXTS {
             outbox.queue.push_back(message);
         }
+        #[cfg(feature = "server")]
         self.ready.notify_one();
     }
 
     /// Sends a picture, in place of an unsent one.
     pub(crate) fn show(&self, frame: Vec<u8>) {
         locked(&self.outbox).picture = Some(frame);
+        #[cfg(feature = "server")]
         self.ready.notify_one();
     }
 
+    /// The next message to send, if there is one.
+    pub(crate) fn outgoing(&self) -> Option<Outgoing> {
+        let mut outbox = locked(&self.outbox);
+        outbox.queue.pop_front().or_else(|| outbox.picture.take().map(Outgoing::Binary))
+    }
+
     /// The next message to send; `None` once the window is closed.
+    #[cfg(feature = "server")]
     pub(crate) async fn next(&self) -> Option<Outgoing> {
         loop {
             if self.is_closed() {
                 return None;
             }
-            let message = {
-                let mut outbox = locked(&self.outbox);
-                outbox.queue.pop_front().or_else(|| outbox.picture.take().map(Outgoing::Binary))
-            };
+            let message = self.outgoing();
             if message.is_some() {
                 return message;
             }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::excerpt::Excerpts;
-use lookfrom_scene::{Disk, Error, json};
+use lookfrom_scene::{Error, Files, json};
 
 /// The longest message from a page, in bytes.
 pub(crate) const LONGEST: usize = 1 << 16;
@@ -108,6 +108,8 @@ pub(crate) enum Answer {
     Error {
         id: Option<u64>,
         message: String,
+        /// Where it is in a text file.
+        place: Option<PlaceAnswer>,
         /// The line of the file that the error points at, with carets.
         excerpt: Option<String>,
     },
@@ -118,6 +120,8 @@ pub(crate) enum Answer {
         seconds: f64,
         rays_per_second: f64,
         done: bool,
+        /// Of a finished picture, [`Film::hash`](lookfrom::film::Film::hash).
+        hash: Option<String>,
     },
     Pixel {
         id: u64,
@@ -146,12 +150,22 @@ pub(crate) enum Answer {
     },
 }
 
+/// A place in a text file; line and column are counted from 1.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct PlaceAnswer {
+    pub(crate) file: String,
+    pub(crate) line: u32,
+    pub(crate) column: u32,
+}
+
 /// A scene, and the settings it has by itself.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SceneAnswer {
     pub(crate) generation: u64,
     pub(crate) name: String,
     pub(crate) size: [u32; 2],
+    /// Whether the options say the size.
+    pub(crate) is_sized: bool,
     pub(crate) camera: CameraAnswer,
     pub(crate) bounds: BoundsAnswer,
     pub(crate) integrator: &'static str,
@@ -266,7 +280,7 @@ impl Request {
     /// # Errors
     /// The answer for a text that is none.
     pub(crate) fn of_text(text: &str) -> Result<Self, Answer> {
-        let refused = |id, message: String| Answer::Error { id, message, excerpt: None };
+        let refused = Answer::refusal;
         if text.len() > LONGEST {
             let message = format!("a message of {} bytes; at most {LONGEST} are possible", text.len());
             return Err(refused(None, message));
@@ -299,16 +313,26 @@ impl Answer {
         json::line(self)
     }
 
-    /// An error of the library, with the line that it points at.
-    pub(crate) fn of_error(id: Option<u64>, error: &Error) -> Self {
-        let excerpt = Excerpts::new(&Disk).of(&error.at).map(|excerpt| excerpt.to_string());
+    /// An error that is in no file.
+    pub(crate) fn refusal(id: Option<u64>, message: String) -> Self {
+        Self::Error { id, message, place: None, excerpt: None }
+    }
+
+    /// An error of the library, with the line of one of these files that it points at.
+    pub(crate) fn of_error(id: Option<u64>, error: &Error, files: &dyn Files) -> Self {
+        let excerpt = Excerpts::new(files).of(&error.at).map(|excerpt| excerpt.to_string());
         // What the page itself asked for has no place in a file.
         let message = match (error.at.file.is_empty(), &error.hint) {
             (false, _) => error.to_string(),
             (true, None) => error.message.clone(),
             (true, Some(hint)) => format!("{}\n  help: {hint}", error.message),
         };
-        Self::Error { id, message, excerpt }
+        let place = (error.at.line > 0).then(|| PlaceAnswer {
+            file: error.at.file.to_string(),
+            line: error.at.line,
+            column: error.at.column,
+        });
+        Self::Error { id, message, place, excerpt }
     }
 }
 

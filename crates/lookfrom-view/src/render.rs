@@ -1,13 +1,16 @@
-//! The thread of a window: renders its view, coarse at first, then pass by pass, and answers its page meanwhile.
+//! The work of a window: renders its view, coarse at first, then pass by pass, and answers its page meanwhile.
 //!
-//! A message interrupts a pass at the next tile; it is answered, and the pass goes on with the tiles that it lacks. Only
+//! A message interrupts a pass at the next tile; it is answered, and the pass goes on with the tiles that it lacks. Where messages
+//! arrive only between turns, a pass interrupts itself after a slice of time. Only
 //! coarse pictures are not interrupted: they are chosen to take no longer than a frame, and a hand that moves the camera
 //! would never see one.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::Duration;
 
+use lookfrom::core::clock::Stopwatch;
+use lookfrom::film::Film;
 use lookfrom::inspect;
 use lookfrom::session::{Format, Session};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
@@ -26,32 +29,20 @@ use crate::{lobe, space, words};
 const MOST_INSPECTED: u32 = 4096;
 
 /// Runs until the window is closed.
-pub(crate) fn run(mailbox: &Mailbox, document: &Document) {
-    let mut window = Window {
-        mailbox,
-        document,
-        loaded: None,
-        variation: None,
-        request: None,
-        render: None,
-        is_paused: false,
-    };
-    while let Some(tasks) = mailbox.take(!window.has_work()) {
-        for task in tasks {
-            let id = match &task {
-                Task::Request(request) => request.id(),
-                Task::SceneChanged => None,
-            };
-            window.guarded(id, |window| window.answer(task));
-        }
-        window.guarded(None, Window::step);
+#[cfg(feature = "server")]
+pub(crate) fn run(mailbox: Arc<Mailbox>, document: Arc<Document>) {
+    let mut window = Window::new(mailbox, document, None);
+    while let Some(tasks) = window.mailbox.take(!window.has_work()) {
+        window.turn(tasks);
     }
 }
 
 /// A window: what it shows.
-struct Window<'a> {
-    mailbox: &'a Mailbox,
-    document: &'a Document,
+pub(crate) struct Window {
+    mailbox: Arc<Mailbox>,
+    pub(crate) document: Arc<Document>,
+    /// The longest time of a pass between two turns; `None` where messages interrupt it.
+    slice: Option<Duration>,
     loaded: Option<Arc<Loaded>>,
     /// The scene as this window alone wants it.
     variation: Option<(Variation, Session)>,
@@ -60,7 +51,33 @@ struct Window<'a> {
     is_paused: bool,
 }
 
-impl Window<'_> {
+impl Window {
+    /// A window that shows nothing yet.
+    pub(crate) fn new(mailbox: Arc<Mailbox>, document: Arc<Document>, slice: Option<Duration>) -> Self {
+        Self {
+            mailbox,
+            document,
+            slice,
+            loaded: None,
+            variation: None,
+            request: None,
+            render: None,
+            is_paused: false,
+        }
+    }
+
+    /// Does these tasks, then renders a little more.
+    pub(crate) fn turn(&mut self, tasks: Vec<Task>) {
+        for task in tasks {
+            let id = match &task {
+                Task::Request(request) => request.id(),
+                Task::SceneChanged => None,
+            };
+            self.guarded(id, |window| window.answer(task));
+        }
+        self.guarded(None, Self::step);
+    }
+
     /// Does something; its failure becomes an answer, a panic too.
     fn guarded(&mut self, id: Option<u64>, act: impl FnOnce(&mut Self) -> Result<()>) {
         let done = catch_unwind(AssertUnwindSafe(|| act(self))).unwrap_or_else(|_| Err(panicked()));
@@ -70,12 +87,12 @@ impl Window<'_> {
             {
                 render.stage = Stage::Done;
             }
-            self.mailbox.say(&Answer::of_error(id, &error));
+            self.mailbox.say(&Answer::of_error(id, &error, &**self.document.files()));
         }
     }
 
     /// Whether there is something to render. A pause holds up passes, not the first sight of another view.
-    fn has_work(&self) -> bool {
+    pub(crate) fn has_work(&self) -> bool {
         let stage = self.render.as_ref().map_or(Stage::Done, |render| render.stage);
         stage != Stage::Done && !(self.is_paused && stage == Stage::Full)
     }
@@ -151,7 +168,7 @@ impl Window<'_> {
             if !request.moving && render.stage == Stage::Done && render.film.is_none() {
                 render.stage = render.after_coarse();
             }
-            render.denoised_until = None;
+            render.denoised = None;
             self.request = Some(request);
             return self.show();
         }
@@ -176,7 +193,7 @@ impl Window<'_> {
         {
             return Ok(session.clone());
         }
-        let session = variation.open(loaded)?;
+        let session = variation.open(loaded, self.document.files())?;
         self.variation = Some((variation, session.clone()));
         Ok(session)
     }
@@ -188,8 +205,8 @@ impl Window<'_> {
         }
         let (Some(render), Some(request)) = (&mut self.render, &self.request) else { return Ok(()) };
         let has_more = match render.stage {
-            Stage::Coarse(scale) => render.render_coarse(scale, request.moving, self.mailbox)?,
-            Stage::Full => render.render_pass(self.mailbox)?,
+            Stage::Coarse(scale) => render.render_coarse(scale, request.moving, &self.mailbox)?,
+            Stage::Full => render.render_pass(&self.mailbox, self.slice)?,
             Stage::Done => false,
         };
         if has_more { self.show() } else { Ok(()) }
@@ -211,10 +228,11 @@ impl Window<'_> {
             seconds,
             rays_per_second: render.rays as f64 / seconds.max(1e-9),
             done: is_done,
+            hash: render.film.as_ref().filter(|_| is_done).map(Film::hash),
         });
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let denoises = request.denoise && render.samples > 0;
-        if denoises && !is_done && render.denoised_until.is_some_and(|until| started < until) {
+        if denoises && !is_done && render.denoised.is_some_and(|(last, rest)| last.elapsed() < rest) {
             return Ok(());
         }
         if let Some(counted) = develop::counted(request)? {
@@ -228,7 +246,7 @@ impl Window<'_> {
         let shown = Shown { session, film, is_coarse: scale > 1, loaded, request };
         let pictures = shown.pictures()?;
         if denoises {
-            render.denoised_until = Some(Instant::now() + 3 * started.elapsed());
+            render.denoised = Some((Stopwatch::start(), 3 * started.elapsed()));
         }
         let header = Header::Picture {
             view: request.id,

@@ -16,6 +16,7 @@ use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use lookfrom_scene::Disk;
 use serde::Deserialize;
 
 use crate::Settings;
@@ -40,6 +41,17 @@ const POLICY: &str =
 
 /// Who may show the page in a frame where that is allowed: pages of this machine, and those of notebooks in VS Code.
 const FRAMES: &str = "http://localhost:* http://127.0.0.1:* vscode-webview:";
+
+/// Where a page is served.
+#[derive(Clone, Copy, Debug)]
+pub struct Address {
+    /// The address to listen at.
+    pub host: IpAddr,
+    /// The port; 0 for any that is free.
+    pub port: u16,
+    /// Whether pages of this machine, such as notebooks, may show it in a frame.
+    pub may_be_framed: bool,
+}
 
 /// A server of one scene, bound to its address.
 #[derive(Debug)]
@@ -66,16 +78,16 @@ impl Server {
     ///
     /// # Errors
     /// Where the address is in use or not this machine's, or where the system has no entropy for a token.
-    pub fn bind(settings: Settings) -> io::Result<Self> {
-        let listener = TcpListener::bind((settings.host, settings.port))?;
+    pub fn bind(settings: Settings, at: Address) -> io::Result<Self> {
+        let listener = TcpListener::bind((at.host, at.port))?;
         let address = listener.local_addr()?;
         let mut bits = [0; 16];
         getrandom::fill(&mut bits).map_err(io::Error::other)?;
         let token = bits.iter().map(|byte| format!("{byte:02x}")).collect();
-        let ancestors = if settings.may_be_framed { FRAMES } else { "'none'" };
+        let ancestors = if at.may_be_framed { FRAMES } else { "'none'" };
         let policy = HeaderValue::try_from(format!("{POLICY}{ancestors}")).map_err(io::Error::other)?;
-        let (host, windows) = (settings.host, Arc::default());
-        let document = Arc::new(Document::new(settings));
+        let (host, windows) = (at.host, Arc::default());
+        let document = Arc::new(Document::new(settings, Arc::new(Disk)));
         let state = Arc::new(ServerState { token, policy, host, document, windows });
         Ok(Self { listener, address, state, patience: patience::PATIENCE })
     }

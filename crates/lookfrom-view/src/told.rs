@@ -25,6 +25,7 @@ impl Loaded {
             generation: self.generation,
             name: session.name().to_owned(),
             size: [image.width, image.height],
+            is_sized: self.options.width.is_some() || self.options.height.is_some(),
             camera: camera(session.camera(), info.bounds.center()),
             bounds: BoundsAnswer { min: info.bounds.min.into(), max: info.bounds.max.into() },
             integrator: settings.integrator.word(),

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use lookfrom::session::{MOST_SAMPLES, Options, Session};
 use lookfrom_scene::camera::{Camera, Look, Projection};
+use lookfrom_scene::files::SharedFiles;
 use lookfrom_scene::settings::{ImageSettings, Integrator, Layers, Tonemap};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
@@ -116,11 +117,11 @@ impl ViewRequest {
 }
 
 impl Variation {
-    /// Reads the scene in this variation.
+    /// Reads the scene in this variation, from its files.
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub(crate) fn open(&self, loaded: &Loaded) -> Result<Session> {
+    pub(crate) fn open(&self, loaded: &Loaded, files: &SharedFiles) -> Result<Session> {
         let mut options: Options = loaded.options.clone();
         if let Some(degrees) = self.rotate_environment {
             options.rotate_environment = Some(finite(degrees, "rotate_environment")?);
@@ -137,7 +138,7 @@ impl Variation {
         if self.has_turntable {
             options.turn = options.turn.or(Some(0.0));
         }
-        Session::open(loaded.session.name(), &options)
+        Session::open_in(loaded.session.name(), files, &options)
     }
 }
 

@@ -1,9 +1,11 @@
 //! A view and its films: a coarse picture, then the film, pass by pass.
 
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
+use lookfrom::core::clock::Stopwatch;
 use lookfrom::film::Film;
-use lookfrom::render::{Progress, SampleId, StopCriteria, StopReason};
+use lookfrom::render::{Progress, SampleId, StopCriteria, StopReason, TileDone};
 use lookfrom::session::{MOST_SAMPLES, Session};
 use lookfrom_scene::Result;
 use lookfrom_scene::budget::Reservation;
@@ -42,8 +44,10 @@ pub(crate) struct ViewRender {
     pub(crate) spent: Duration,
     /// Seconds for one sample of one pixel, if known.
     pub(crate) pace: Option<f64>,
-    /// When a denoised picture may be made again: it takes time that the render then has not.
-    pub(crate) denoised_until: Option<Instant>,
+    /// The time of the next pass so far, of which messages may have interrupted it.
+    spent_on_pass: Duration,
+    /// When the last denoised picture was made, and how long it may not be made again: it takes time that the render then has not.
+    pub(crate) denoised: Option<(Stopwatch, Duration)>,
     pub(crate) stage: Stage,
     /// The memory of the film and its pictures.
     _memory: Reservation,
@@ -80,7 +84,8 @@ impl ViewRender {
             rays: 0,
             spent: Duration::ZERO,
             pace,
-            denoised_until: None,
+            spent_on_pass: Duration::ZERO,
+            denoised: None,
             stage: Stage::Coarse(scale),
             _memory: memory,
         })
@@ -114,13 +119,13 @@ impl ViewRender {
         let memory = session.room_for_picture()?;
         let film = Film::for_image(session.image())?;
         let pixels = film.width() as f64 * film.height() as f64;
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let rendered = session.renderer().render_onto(
             film,
             0,
             &StopCriteria::default(),
             None,
-            &Watch { mailbox, is_interruptible: false },
+            &Watch::new(mailbox, false, None),
         )?;
         self.pace = Some(started.elapsed().as_secs_f64() / pixels);
         self.coarse = Some(Coarse { _memory: memory, scale, session, film: rendered.film });
@@ -138,8 +143,8 @@ impl ViewRender {
         }
     }
 
-    /// Adds samples to the film. Whether there is a whole pass more.
-    pub(crate) fn render_pass(&mut self, mailbox: &Mailbox) -> Result<bool> {
+    /// Adds samples to the film, for at most as long as a slice, where there is one. Whether there is a whole pass more.
+    pub(crate) fn render_pass(&mut self, mailbox: &Mailbox, slice: Option<Duration>) -> Result<bool> {
         let of = self.session.settings().samples;
         let end = of.min(self.samples.saturating_add(self.pass));
         let film = match self.film.take() {
@@ -148,18 +153,19 @@ impl ViewRender {
         };
         let settings = RenderSettings { samples: end, ..self.session.settings().clone() };
         let renderer = self.session.renderer().with_settings(settings)?;
-        let started = Instant::now();
-        let watch = Watch { mailbox, is_interruptible: true };
+        let started = Stopwatch::start();
+        let watch = Watch::new(mailbox, true, slice);
         let rendered = renderer.render_onto(film, 0, &StopCriteria::default(), None, &watch)?;
         let elapsed = started.elapsed();
         self.film = Some(rendered.film);
         self.rays += rendered.rays.total();
         self.spent += elapsed;
+        self.spent_on_pass += elapsed;
         if rendered.reason == StopReason::Cancelled {
             return Ok(false);
         }
         self.samples = end;
-        if elapsed < PASS / 2 {
+        if std::mem::take(&mut self.spent_on_pass) < PASS / 2 {
             self.pass = self.pass.saturating_mul(2);
         }
         if end == of {
@@ -198,14 +204,38 @@ fn scale_of(image: &ImageSettings, pace: f64) -> u32 {
     scale
 }
 
-/// Ends a render when its window is closed, and a pass when there is a message.
+/// Ends a render when its window is closed, and a pass when there is a message, or its slice of time is over.
 struct Watch<'a> {
     mailbox: &'a Mailbox,
     is_interruptible: bool,
+    started: Stopwatch,
+    slice: Option<Duration>,
+    /// Whether the slice is over. A tile that has begun is finished: else a slice could be too short for any.
+    is_over: AtomicBool,
+}
+
+impl<'a> Watch<'a> {
+    fn new(mailbox: &'a Mailbox, is_interruptible: bool, slice: Option<Duration>) -> Self {
+        Self {
+            mailbox,
+            is_interruptible,
+            started: Stopwatch::start(),
+            slice,
+            is_over: AtomicBool::new(false),
+        }
+    }
 }
 
 impl Progress for Watch<'_> {
+    fn tile(&self, _: TileDone) {
+        if self.slice.is_some_and(|slice| self.started.elapsed() >= slice) {
+            self.is_over.store(true, Ordering::Relaxed);
+        }
+    }
+
     fn cancelled(&self) -> bool {
-        self.mailbox.is_closed() || self.is_interruptible && self.mailbox.has_tasks()
+        self.mailbox.is_closed()
+            || self.is_interruptible && self.mailbox.has_tasks()
+            || self.is_over.load(Ordering::Relaxed)
     }
 }

@@ -24,7 +24,7 @@ pub(crate) async fn run(socket: WebSocket, document: Arc<Document>, counted: Cou
         std::thread::Builder::new().name("window".to_owned()).spawn(move || {
             let _counted = counted;
             let _closing = Closing(mailbox.clone());
-            render::run(&mailbox, &document);
+            render::run(mailbox, document);
         })
     };
     if thread.is_err() {
@@ -51,11 +51,10 @@ pub(crate) async fn run(socket: WebSocket, document: Arc<Document>, counted: Cou
                     Ok(request) => mailbox.put(Task::Request(request)),
                     Err(answer) => mailbox.say(&answer),
                 },
-                Message::Binary(_) => mailbox.say(&Answer::Error {
-                    id: None,
-                    message: "a binary message; expected a text".to_owned(),
-                    excerpt: None,
-                }),
+                Message::Binary(_) => {
+                    let message = "a binary message; expected a text".to_owned();
+                    mailbox.say(&Answer::refusal(None, message));
+                }
                 Message::Close(_) => return,
                 Message::Ping(_) | Message::Pong(_) => {}
             }

@@ -1,45 +1,155 @@
 //! A view in words: as tables of a scene file, and as a command line.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use glam::DVec3;
 use lookfrom::session::Session;
 use lookfrom_scene::camera::{Camera, Look, Projection, View};
+use lookfrom_scene::settings::{Filter, RenderSettings};
 
 use crate::message::ViewRequest;
 
-/// The camera and the settings of a view as TOML.
+/// A view as a scene file, to be saved beside the scene's: it imports the scene, and has the camera and the settings of the view. A
+/// scene of pbrt cannot be imported; of that these are all tables but its contents.
 pub(crate) fn toml(session: &Session, request: &ViewRequest) -> String {
-    let (image, settings) = (session.image(), session.settings());
-    let mut text = String::from("[camera]\n");
+    let (image, settings, camera) = (session.image(), session.settings(), session.camera());
+    let file = Path::new(session.name()).file_name().unwrap_or_default().to_string_lossy();
+    let mut text = match has_format_of_pbrt(&file) {
+        true => format!(
+            "# The contents of {} are to be added: pbrt's scenes cannot be imported.\n\n",
+            one_line(&file)
+        ),
+        // Strings of JSON are strings of TOML.
+        false => format!(
+            "# A view of {}, to be saved in its folder.\nimport = {}\n\n",
+            one_line(&file),
+            serde_json::Value::from(file.as_ref())
+        ),
+    };
+    let line = |text: &mut String, key: &str, value: &str| {
+        let _ = writeln!(text, "{key} = {value}");
+    };
     let middle = session.info().bounds.center();
-    let look = session.camera().look(middle);
+    let look = camera.look(middle);
     if look.is_none() {
         // A matrix that mirrors or shears, as that of many scenes of pbrt.
         text.push_str(
             "# The scene's own picture is mirrored or sheared, which the keys of a camera cannot say.\n",
         );
     }
-    if let Some(look) = look.or_else(|| nearest_look(session.camera(), middle)) {
-        for (name, vector) in [("lookfrom", look.lookfrom), ("lookat", look.lookat), ("up", look.up)] {
-            let _ = writeln!(text, "{name} = [{}]", joined(vector.to_array(), ", "));
+    if let Some(look) = look.or_else(|| nearest_look(camera, middle)) {
+        text.push_str("[camera]\n");
+        for (key, vector) in [("lookfrom", look.lookfrom), ("lookat", look.lookat), ("up", look.up)] {
+            line(&mut text, key, &list(&vector.to_array()));
+        }
+        for (key, value) in lens_and_window(camera) {
+            line(&mut text, key, &value);
+        }
+        if camera.medium.is_some() {
+            text.push_str("# `medium` of the scene's own camera is to be added.\n");
         }
     }
-    if let Some((name, value)) = projection(session.camera()) {
-        let _ = writeln!(text, "{name} = {value}");
-    }
     let _ = write!(text, "\n[image]\nwidth = {}\nheight = {}\n", image.width, image.height);
-    let _ = write!(text, "exposure = {}\ntonemap = {:?}\n", request.exposure, tonemap(session, request));
-    let _ = write!(
-        text,
-        "denoise = {}\n\n[render]\nintegrator = {:?}\nsamples = {}\ndepth = {}\nmin_contribution = {}\n",
-        request.denoise,
-        settings.integrator.word(),
-        settings.samples,
-        settings.depth,
-        settings.min_contribution
-    );
+    line(&mut text, "exposure", &number(request.exposure.into()));
+    line(&mut text, "tonemap", &format!("{:?}", tonemap(session, request)));
+    line(&mut text, "filter", &filter(image.filter));
+    line(&mut text, "denoise", &request.denoise.to_string());
+    text.push_str("\n[render]\n");
+    for (key, value) in rendering(settings) {
+        line(&mut text, key, &value);
+    }
     text
+}
+
+/// Keys of `[camera]` besides position and orientation.
+fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
+    let mut keys = match camera.projection {
+        Projection::Perspective { fov } => vec![("fov", number(fov))],
+        Projection::Orthographic { height } => {
+            vec![("projection", "\"orthographic\"".to_owned()), ("height", number(height))]
+        }
+        Projection::Equirectangular | Projection::EquirectangularPbrt => {
+            vec![("projection", "\"equirectangular\"".to_owned())]
+        }
+        Projection::Octahedral => vec![("projection", "\"octahedral\"".to_owned())],
+    };
+    if matches!(camera.projection, Projection::Perspective { .. } | Projection::Orthographic { .. }) {
+        if let Some(lens) = &camera.lens {
+            keys.push(("aperture", number(lens.radius)));
+            keys.push(("focus_distance", number(lens.focus_distance)));
+        }
+        if let Some(window) = &camera.window {
+            keys.push(("window", format!("{{ x = {}, y = {} }}", list(&window.x), list(&window.y))));
+        }
+    }
+    keys.push(("distance", number(camera.distance)));
+    keys
+}
+
+fn filter(filter: Filter) -> String {
+    let (word, numbers) = match filter {
+        Filter::Box { radius } => ("box", vec![("radius", radius)]),
+        Filter::Triangle { radius } => ("triangle", vec![("radius", radius)]),
+        Filter::Gaussian { radius, sigma } => ("gaussian", vec![("radius", radius), ("sigma", sigma)]),
+        Filter::Mitchell { radius, b, c } => ("mitchell", vec![("radius", radius), ("b", b), ("c", c)]),
+        Filter::BlackmanHarris { radius } => ("blackman_harris", vec![("radius", radius)]),
+    };
+    let numbers: String = numbers.into_iter().map(|(key, value)| format!(", {key} = {value}")).collect();
+    format!("{{ type = \"{word}\"{numbers} }}")
+}
+
+/// Keys of `[render]`; those that only few scenes have, where they are not the default.
+fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
+    let default = RenderSettings::default();
+    let word = |word: &str| format!("{word:?}");
+    let mut keys = vec![
+        ("integrator", word(settings.integrator.word())),
+        ("samples", settings.samples.to_string()),
+        ("depth", settings.depth.to_string()),
+        ("min_contribution", settings.min_contribution.to_string()),
+    ];
+    let rare = [
+        ("sampler", settings.sampler != default.sampler, word(settings.sampler.word())),
+        ("seed", settings.seed != default.seed, settings.seed.to_string()),
+        ("color", settings.color != default.color, word(settings.color.word())),
+        (
+            "light_sampler",
+            settings.light_sampler != default.light_sampler,
+            word(settings.light_sampler.word()),
+        ),
+        ("regularize", settings.regularize, "true".to_owned()),
+        ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
+        ("open_fronts", settings.open_fronts, "true".to_owned()),
+        (
+            "occlusion_distance",
+            settings.occlusion_distance.is_finite(),
+            number(settings.occlusion_distance.into()),
+        ),
+    ];
+    keys.extend(rare.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)));
+    keys
+}
+
+fn has_format_of_pbrt(file: &str) -> bool {
+    let name = file.to_ascii_lowercase();
+    name.ends_with(".pbrt") || name.ends_with(".pbrt.gz")
+}
+
+/// A name within a comment.
+fn one_line(name: &str) -> String {
+    name.replace(char::is_control, " ")
+}
+
+/// A number of TOML: without a point or an exponent it would be an integer of 64 bits.
+fn number(number: f64) -> String {
+    // A negative zero is told as 0.
+    let number = number + 0.0;
+    if number.abs() < 1e15 { number.to_string() } else { format!("{number:?}") }
+}
+
+fn list(numbers: &[f64]) -> String {
+    format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "))
 }
 
 /// The command that renders the view of a scene; `typed` are the options that its session was opened with.

@@ -355,14 +355,50 @@ fn words_render_the_same_view() {
     let words = page.text("words");
     let command = words["command"].as_str().expect("a text");
     assert!(command.contains("--lookfrom=5,0.5,0 ") && command.contains("--width=64"), "{command}");
-    // The tables replace those of the scene.
-    let rest = SCENE.split_once("[[sphere]]").expect("the scene has a sphere").1;
-    let text = format!("{}\n[[sphere]]{rest}", words["toml"].as_str().expect("a text"));
-    let copy = served.scene.with_file_name("copy.toml");
-    std::fs::write(&copy, text).expect("a temporary file");
-    let session = Session::open(&copy, &Options::default()).expect("a scene");
+    let session = beside(&served, words["toml"].as_str().expect("a text"));
     assert_eq!(session.camera().view.lookfrom().to_array(), [5.0, 0.5, 0.0]);
     assert_eq!((session.image().width, session.settings().samples), (64, 4));
+}
+
+/// The scene of a text that is saved in the scene's folder.
+fn beside(served: &Served, text: &str) -> Session {
+    let copy = served.scene.with_file_name("copy.toml");
+    std::fs::write(&copy, text).expect("a temporary file");
+    Session::open(&copy, &Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Cameras, filters and settings of every kind: the text is a scene, and its picture has the same bits.
+#[test]
+fn words_are_a_scene_with_the_same_picture() {
+    let own = "[camera]\nlookfrom = [0, 1, 5]\nlookat = [0, 0, 0]\n";
+    for (number, camera) in [
+        "projection = \"orthographic\"\nheight = 3",
+        "projection = \"equirectangular\"",
+        "projection = \"octahedral\"",
+        "fov = 30\naperture = 0.3\nfocus_distance = 2\ndistance = 2.5",
+        "window = { x = [0, 1.5], y = [-0.5, 0.5] }",
+        "up = [0, 1e20, 0]",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let scene = SCENE
+            .replace(own, &format!("{own}{camera}\n"))
+            .replace("height = 48\n", "height = 48\nfilter = { type = \"gaussian\", radius = 2 }\n")
+            .replace(
+                "samples = 4\n",
+                "samples = 2\nseed = 3\nsampler = \"independent\"\ntransparent_shadows = false\n",
+            );
+        let served = Served::new(&format!("words-{number}"), &scene);
+        let mut page = served.open();
+        page.say(&view(1));
+        page.finished(1);
+        page.say(&json!({ "type": "words", "id": 2 }));
+        let words = page.text("words");
+        let copy = beside(&served, words["toml"].as_str().expect("a text"));
+        let expected = session(&served).render(&()).expect("a picture");
+        assert_eq!(copy.render(&()).expect("a picture").picture.pixels, expected.picture.pixels, "{words}");
+    }
 }
 
 #[test]

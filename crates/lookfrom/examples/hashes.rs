@@ -22,15 +22,9 @@ fn film(scene: &Path) -> Result<Film, Box<dyn Error>> {
     Ok(Renderer::new(Arc::new(world), view, settings)?.render(Some(1), &())?.film)
 }
 
-/// FNV-1a of the bits of all pixels.
-fn hash(film: &Film) -> u64 {
-    let bytes = film.picture().pixels.into_iter().flatten().flat_map(f32::to_le_bytes);
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     for scene in std::env::args().skip(1) {
-        println!("{:016x} {scene}", hash(&film(Path::new(&scene))?));
+        println!("{} {scene}", film(Path::new(&scene))?.hash());
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Foundations: spectra and colour, sampling, noise, vectors in lanes.
 
 pub(crate) mod accumulator;
-pub(crate) mod clock;
+pub mod clock;
 pub mod color;
 pub mod distribution;
 pub(crate) mod elementary;

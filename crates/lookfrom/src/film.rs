@@ -44,6 +44,7 @@ use crate::aov::{AovSums, LayerSums};
 pub use crate::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 pub use crate::core::fixed_point::BRIGHTEST;
 use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64};
+use crate::core::hash;
 pub use crate::core::sampler::SampleId;
 
 /// Maximum number of pixels of a picture: 2³⁰.
@@ -389,6 +390,12 @@ impl Film {
     /// The means of all pixels, black outside of [`Film::area`].
     pub fn picture(&self) -> Picture {
         self.picture_of(PixelBounds { x0: 0, y0: 0, x1: self.width, y1: self.height })
+    }
+
+    /// A hash of the means of all pixels, in 16 hexadecimal digits: equal pictures of different machines have the same.
+    pub fn hash(&self) -> String {
+        let bytes = self.picture().pixels.into_iter().flatten().flat_map(f32::to_le_bytes);
+        format!("{:016x}", hash::of_bytes(bytes))
     }
 
     /// The means of the pixels of a rectangle, black outside of [`Film::area`]: a picture of its size.

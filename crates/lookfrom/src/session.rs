@@ -43,6 +43,7 @@ use lookfrom_scene::camera::Camera;
 use lookfrom_scene::contents::Contents;
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::digest::Digested;
+use lookfrom_scene::files::SharedFiles;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{Allocation, ImageSettings, Layers, RenderSettings};
 use lookfrom_scene::studio::Turntable;
@@ -156,18 +157,34 @@ impl Session {
     /// # Errors
     /// Those of the file's reader and of [`World::compile`], and `Request` where the options do not suit the scene.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
-        let path = path.as_ref();
-        Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &Disk, options)
+        Self::open_in(path, &(Arc::new(Disk) as SharedFiles), options)
     }
 
-    /// As [`Session::open`]; every file that is read joins `inputs`.
+    /// A session of a scene or model file among these files, which it keeps, to rebuild its world for cameras far away
+    /// ([`Session::set_camera`]).
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub fn open_on_record(path: impl AsRef<Path>, options: &Options, inputs: &Inputs) -> Result<Self> {
+    pub fn open_in(path: impl AsRef<Path>, files: &SharedFiles, options: &Options) -> Result<Self> {
         let path = path.as_ref();
-        let files = inputs.record(&Disk, path.display().to_string());
-        Self::read_from(Source::File(path.to_owned(), Arc::new(options.clone())), path, &files, options)
+        let source = Source::Files(path.to_owned(), files.clone(), Arc::new(options.clone()));
+        Self::read_from(source, path, &**files, options)
+    }
+
+    /// As [`Session::open_in`]; every file that is read joins `inputs`.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_on_record(
+        path: impl AsRef<Path>,
+        files: &SharedFiles,
+        options: &Options,
+        inputs: &Inputs,
+    ) -> Result<Self> {
+        let path = path.as_ref();
+        let recorded = inputs.record(&**files, path.display().to_string());
+        let source = Source::Files(path.to_owned(), files.clone(), Arc::new(options.clone()));
+        Self::read_from(source, path, &recorded, options)
     }
 
     /// A session of a scene or model file in memory, which is self-contained. The extension of `name` determines its
@@ -177,9 +194,8 @@ impl Session {
     /// As [`Session::open`].
     pub fn from_bytes(name: &str, bytes: Vec<u8>, options: &Options) -> Result<Self> {
         let path = PathBuf::from(name);
-        let files = Arc::new(Memory([(path.clone(), bytes)].into()));
-        let source = Source::Bytes(path.clone(), files.clone(), Arc::new(options.clone()));
-        Self::read_from(source, &path, &*files, options)
+        let files = Memory([(path.clone(), bytes)].into());
+        Self::open_in(path, &(Arc::new(files) as SharedFiles), options)
     }
 
     /// A session of a scene or model file, read through `files` with all files that it refers to.

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-use lookfrom_view::{Server, Settings};
+use lookfrom_view::{Address, Server, Settings};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
@@ -32,12 +32,10 @@ impl Page {
             environment: asked.environment,
             reference: None,
             typed: asked.typed,
-            host: IpAddr::V4(Ipv4Addr::LOCALHOST),
-            port,
-            may_be_framed: true,
         };
+        let address = Address { host: IpAddr::V4(Ipv4Addr::LOCALHOST), port, may_be_framed: true };
         let refused = |error: std::io::Error| PyOSError::new_err(format!("no page at port {port}: {error}"));
-        let server = Server::bind(settings).map_err(refused)?;
+        let server = Server::bind(settings, address).map_err(refused)?;
         let (url, is_closed) = (server.url(), Arc::new(AtomicBool::new(false)));
         let asked_to_close = is_closed.clone();
         let thread = std::thread::Builder::new().name("page".to_owned()).spawn(move || {

@@ -1,12 +1,27 @@
 // Without a mouse, on a small screen, in both themes.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 import { join } from "node:path";
 import { PATIENCE, SCENES, inspect, launch, open, placeOf, screenshot, serve } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
+/** The checks of accessibility of Deque's axe. */
+const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 let browser, server;
+
+/**
+ * What axe finds wrong, as its rules and where. A branch of a tree is named by its own row, as the ARIA authoring practices ask; axe
+ * compares the name with the text of all items below, too.
+ */
+async function violations(page) {
+    await page.evaluate(AXE);
+    const { violations } = await page.evaluate(() => window.axe.run());
+    const isBranch = (id, html) => id === "label-content-name-mismatch" && /^<li role="treeitem"[^>]*aria-expanded/.test(html);
+    return violations.flatMap(({ id, nodes }) => nodes.filter(({ html }) => !isBranch(id, html)).map(({ target, failureSummary }) => `${id}: ${target.join(" ")} ${failureSummary}`));
+}
 
 before(async () => {
     browser = await launch();
@@ -30,6 +45,7 @@ test("keys alone lead from the picture to a ray's equations", async () => {
     await page.waitForFunction(() => /pixel=80,60/.test(location.hash));
     await page.keyboard.press("Control+Shift+ArrowRight");
     await page.waitForFunction(() => /pixel=90,60/.test(location.hash));
+    await page.locator("#tree li").first().waitFor();
     for (let i = 0; !(await isAt('#tree [role="treeitem"]')); i++) {
         assert.ok(i < 80, "Tab never reaches the tree");
         await page.keyboard.press("Tab");
@@ -77,6 +93,48 @@ test("fingers: a tap selects a pixel, two come nearer", async () => {
     await context.close();
 });
 
+test("the panel is widened by dragging its edge and by keys", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    const width = () => page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().width);
+    const own = await width();
+    const edge = await page.locator("#divider").boundingBox();
+    await page.mouse.move(edge.x + 2, 400);
+    await page.mouse.down();
+    await page.mouse.move(edge.x - 98, 400, { steps: 4 });
+    await page.mouse.up();
+    assert.ok(Math.abs((await width()) - own - 100) < 6, `${own} became ${await width()}`);
+    await page.locator("#divider").focus();
+    await page.keyboard.press("Home");
+    assert.equal(await width(), 320);
+    await page.keyboard.press("ArrowLeft");
+    assert.equal(await width(), 344);
+    await page.reload();
+    await page.locator("body.has-picture").waitFor();
+    assert.equal(await width(), 344, "it is kept");
+    await page.locator("#divider").dblclick();
+    assert.equal(await width(), own);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("a picture has a pixel for each of the window, unless someone says its size", async () => {
+    const free = await serve(join(SCENES, "notes-exercise.toml"), ["--samples", "1"]);
+    const { page, context, errors } = await open(browser, free.url, { viewport: { width: 1100, height: 700 } });
+    const size = () => page.locator("#picture").evaluate((canvas) => [canvas.width, Math.round(canvas.getBoundingClientRect().width)]);
+    const [own, shown] = await size();
+    assert.equal(own, shown);
+    await page.setViewportSize({ width: 1300, height: 800 });
+    await page.waitForFunction((own) => document.getElementById("picture").width > own, own);
+    const [larger, wide] = await size();
+    assert.equal(larger, wide);
+    assert.deepEqual(errors, []);
+    await context.close();
+    await free.stop();
+    const told = await open(browser, server.url);
+    assert.equal(await told.page.locator("#picture").evaluate((canvas) => canvas.width), 160);
+    await told.context.close();
+});
+
 for (const [width, height, colorScheme] of [[360, 740, "light"], [360, 740, "dark"], [800, 900, "light"], [1280, 800, "dark"]]) {
     test(`${width} pixels, ${colorScheme}: nothing is cut off, and text is legible`, async () => {
         const { page, context, errors } = await open(browser, server.url, { viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
@@ -86,13 +144,21 @@ for (const [width, height, colorScheme] of [[360, 740, "light"], [360, 740, "dar
         await screenshot(page, `why-${width}-${colorScheme}`);
         assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "the page scrolls sideways");
         assert.deepEqual(await page.evaluate(faint), []);
-        for (let lesson = 0; lesson < 7; lesson++) {
+        assert.deepEqual(await violations(page), []);
+        for (let lesson = 0; lesson < 9; lesson++) {
             await page.getByRole("tab", { name: "Notes, alive" }).click();
             await page.getByLabel("Lesson").selectOption(String(lesson));
             await page.waitForTimeout(100);
             await screenshot(page, `lesson-${lesson + 1}-${width}-${colorScheme}`);
             assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `lesson ${lesson + 1} scrolls sideways`);
+            assert.deepEqual(await violations(page), [], `lesson ${lesson + 1}`);
         }
+        await page.getByRole("tab", { name: "View" }).click();
+        await screenshot(page, `view-${width}-${colorScheme}`);
+        assert.deepEqual(await violations(page), [], "view");
+        const outside = await page.evaluate(() =>
+            [...document.querySelectorAll("button, input, select, summary")].filter((control) => control.checkVisibility() && !control.closest(".skip") && (control.getBoundingClientRect().right > innerWidth + 1 || control.getBoundingClientRect().left < 0)).map((control) => control.outerHTML));
+        assert.deepEqual(outside, [], "controls outside of the window");
         assert.deepEqual(errors, []);
         await context.close();
     }, { timeout: 4 * PATIENCE });

@@ -43,7 +43,7 @@ await at("why", join(SCENES, "cornell.toml"), ["--size", "400x400", "--samples",
 await at("exercise", join(SCENES, "notes-exercise.toml"), ["--size", "400x400"], [1280, 640, "light"], async (page, keep) => {
     await inspect(page, 275, 200);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
-    await page.getByLabel("Lesson").selectOption("1");
+    await page.getByLabel("Lesson").selectOption("2");
     await settle(page);
     await keep("exercise");
 });

@@ -77,7 +77,7 @@ test("a click shows the numbers of `lookfrom inspect --json`", async () => {
     assert.doesNotMatch((await page.locator("#equations").textContent()) ?? "", /\[object/);
 
     await page.getByRole("tab", { name: "Notes, alive" }).click();
-    await page.getByLabel("Lesson").selectOption({ label: "6. The tree, and its sum" });
+    await page.getByLabel("Lesson").selectOption({ label: "8. The tree, and its sum" });
     assert.equal(await page.locator("#adds-up").textContent(), "It adds up, bit for bit.");
     const sums = await page.locator("#sum tfoot tr").evaluateAll((rows) => rows.map((row) => [...row.querySelectorAll("td")].map((cell) => Number(cell.textContent))));
     assert.deepEqual(sums, [said.radiance.lanes, said.radiance.lanes, said.film]);
@@ -103,7 +103,7 @@ test("a pixel: its mean and all of its samples, and from a contribution to its r
     const largest = said.contributions[0];
     await page.locator("#pixel-summary .contributions button").first().click();
     await until("the contribution's ray is in the link", async () => page.url().endsWith(`sample=${largest.sample}&ray=${largest.address}`));
-    assert.match((await page.locator('#tree [aria-selected="true"]').getAttribute("aria-label")) ?? "", new RegExp(`^Ray ${largest.address},`));
+    assert.match((await page.locator('#tree [aria-selected="true"] > .ray .name').textContent()) ?? "", new RegExp(`^${largest.address} `));
     assert.deepEqual(errors, []);
     await context.close();
 });
@@ -112,7 +112,7 @@ test("the exercise of the notes: M_vw = I", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await inspect(page, 50, 90);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
-    await page.getByLabel("Lesson").selectOption({ label: "2. The exercise: M_vw = I" });
+    await page.getByLabel("Lesson").selectOption({ label: "3. The exercise: M_vw = I" });
     assert.match((await page.locator("#exercise-verdict").textContent()) ?? "", /^M_vw = I/);
     await page.locator("#picture-overlay").focus();
     await page.keyboard.press("ArrowLeft");
@@ -126,7 +126,7 @@ test("the exercise of the notes: M_vw = I", async () => {
 test("the lesson on fog: its exercise checks itself", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
-    await page.getByLabel("Lesson").selectOption({ label: "7. Light through fog" });
+    await page.getByLabel("Lesson").selectOption({ label: "9. Beyond the notes: light through fog" });
     const verdict = page.locator("#medium-verdict");
     assert.match((await verdict.textContent()) ?? "", /too long/);
     const way = page.getByRole("slider", { name: "Length of the way through the medium" });
@@ -136,6 +136,40 @@ test("the lesson on fog: its exercise checks itself", async () => {
     assert.match((await verdict.textContent()) ?? "", /ln2|ln 2/);
     for (let step = 0; step < 4; step++) await page.keyboard.press("ArrowLeft");
     assert.match((await verdict.textContent()) ?? "", /too short/);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("an exercise checks what is typed against the program's numbers", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await inspect(page, 50, 90);
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    const verdict = page.locator(".exercise .verdict");
+    await page.getByLabel("rays", { exact: true }).fill("15");
+    await page.getByRole("textbox", { name: "shadow rays" }).fill("31");
+    await page.getByRole("button", { name: "Check" }).click();
+    assert.equal(await verdict.textContent(), "Not yet: shadow rays.");
+    await page.getByRole("textbox", { name: "shadow rays" }).fill("60/2");
+    await page.getByRole("button", { name: "Check" }).click();
+    assert.match((await verdict.textContent()) ?? "", /^Right/);
+    // The exam: the axes of this camera, which looks along z.
+    await page.getByLabel("Lesson").selectOption({ label: "3. The exercise: M_vw = I" });
+    for (const [axis, numbers] of [["u", [1, 0, 0]], ["v", [0, 1, 0]], ["w", [0, 0, 1]]]) {
+        for (const [i, number] of numbers.entries()) await page.getByLabel(`${axis} ${"xyz"[i]}`, { exact: true }).fill(String(number));
+    }
+    await page.getByRole("button", { name: "Check" }).click();
+    assert.match((await verdict.textContent()) ?? "", /^Right/);
+    // Each step that asks something knows its answer as a number.
+    for (let lesson = 0; lesson < 8; lesson++) {
+        await page.getByLabel("Lesson").selectOption(String(lesson));
+        await page.getByRole("button", { name: "Show the program's" }).click();
+        assert.doesNotMatch((await verdict.textContent()) ?? "", /NaN|undefined|Infinity/);
+    }
+    await page.emulateMedia({ media: "print" });
+    await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+    assert.equal(await page.locator(".lesson > section").count(), 9);
+    assert.ok(await page.locator("header").isHidden());
+    await screenshot(page, "print");
     assert.deepEqual(errors, []);
     await context.close();
 });

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use futures_util::{SinkExt, StreamExt};
 use lookfrom::session::Options;
-use lookfrom_view::{Server, Settings};
+use lookfrom_view::{Address, Server, Settings};
 use serde_json::{Value, json};
 use tokio::net::TcpStream as AsyncStream;
 use tokio::runtime::Runtime;
@@ -94,17 +94,10 @@ impl Served {
     }
 
     fn start(scene: PathBuf, options: Options, reference: Option<PathBuf>, patience: Duration) -> Self {
-        let settings = Settings {
-            scene: scene.clone(),
-            options,
-            environment: None,
-            reference,
-            typed: Vec::new(),
-            host: Ipv4Addr::LOCALHOST.into(),
-            port: 0,
-            may_be_framed: false,
-        };
-        let server = Server::bind(settings).expect("a free port").with_patience(patience);
+        let settings =
+            Settings { scene: scene.clone(), options, environment: None, reference, typed: Vec::new() };
+        let address = Address { host: Ipv4Addr::LOCALHOST.into(), port: 0, may_be_framed: false };
+        let server = Server::bind(settings, address).expect("a free port").with_patience(patience);
         let (url, windows) = (server.url(), server.windows());
         let stopped = Arc::new(AtomicBool::new(false));
         let thread = {

@@ -34,9 +34,22 @@ pub(crate) fn pair(a: u64, b: u64) -> u64 {
     mix(mix(a.wrapping_add(GOLDEN)) ^ b)
 }
 
+/// FNV-1a of bytes, 64 bits wide (Fowler, Noll & Vo 1991): to tell contents apart, not for secrets.
+pub(crate) fn of_bytes(bytes: impl IntoIterator<Item = u8>) -> u64 {
+    let step = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    bytes.into_iter().fold(0xcbf2_9ce4_8422_2325, step)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_have_the_published_hashes() {
+        assert_eq!(of_bytes([]), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(of_bytes(*b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(of_bytes(*b"foobar"), 0x8594_4171_f739_67e8);
+    }
 
     #[test]
     fn every_input_bit_reaches_every_output_bit() {

@@ -12,7 +12,7 @@ use crate::film::{Film, Picture};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StopCriteria {
     /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
-    /// reached on wasm32-unknown-unknown, which has no clock.
+    /// reached on wasm32-unknown-unknown, where nobody gave a clock ([`crate::core::clock`]).
     pub time: Option<Duration>,
     /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when no
     /// other tile is left. Not with samples that are allocated adaptively.

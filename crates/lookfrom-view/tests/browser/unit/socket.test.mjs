@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { Unanswered, connect } from "../../../assets/socket.js";
+import { webSocket } from "../../../assets/web-socket.js";
 
 /** The connection that was made last. */
 let server;
@@ -31,7 +32,7 @@ let socket;
 beforeEach(() => {
     globalThis.WebSocket = FakeWebSocket;
     globalThis.location = { href: "http://localhost/", search: "" };
-    socket = connect();
+    socket = connect(webSocket());
     socket.open();
     server.onopen();
 });

@@ -161,7 +161,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "view",
             "develop lobe space view_render",
             "render told",
-            "window",
+            "desk window",
             "server",
         ],
         exceptions: &[],

@@ -1,0 +1,69 @@
+//! The other end of a page without a server: one window, on the thread of its caller.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use lookfrom_scene::Inputs;
+use lookfrom_scene::files::SharedFiles;
+
+use crate::Settings;
+use crate::document::Document;
+use crate::mailbox::{Mailbox, Outgoing, Task};
+use crate::message::Request;
+use crate::render::Window;
+
+/// A window whose caller brings the messages of the page, takes away the answers, and gives it turns.
+pub struct Desk {
+    mailbox: Arc<Mailbox>,
+    slice: Duration,
+    window: Option<Window>,
+    /// Number of scenes so far.
+    generation: u64,
+}
+
+impl Desk {
+    /// Without a scene. A turn renders for about as long as a slice.
+    pub fn new(slice: Duration) -> Self {
+        Self { mailbox: Arc::default(), slice, window: None, generation: 0 }
+    }
+
+    /// Reads a scene among these files, of which the page is told at the next turn: by the scene, or by what is wrong with it. A scene of
+    /// the same name is shown in the same view, and the last good one stays until it can be read.
+    pub fn open(&mut self, settings: Settings, files: SharedFiles) {
+        let name = settings.scene.clone();
+        let document = Arc::new(Document::new(settings, files));
+        self.generation += 1;
+        document.read(self.generation, &Inputs::default());
+        match &mut self.window {
+            Some(window) if window.document.settings().scene == name => window.document = document,
+            _ => self.window = Some(Window::new(self.mailbox.clone(), document, Some(self.slice))),
+        }
+        self.mailbox.put(Task::SceneChanged);
+    }
+
+    /// The name of the scene that was opened last.
+    pub fn scene(&self) -> Option<&Path> {
+        self.window.as_ref().map(|window| window.document.settings().scene.as_path())
+    }
+
+    /// Takes a message of the page, which is answered at the next turn.
+    pub fn hear(&self, text: &str) {
+        match Request::of_text(text) {
+            Ok(request) => self.mailbox.put(Task::Request(request)),
+            Err(answer) => self.mailbox.say(&answer),
+        }
+    }
+
+    /// Answers what was heard, and renders for a slice of time. Returns whether there is more to render.
+    pub fn turn(&mut self) -> bool {
+        let Some(window) = &mut self.window else { return false };
+        window.turn(self.mailbox.take(false).unwrap_or_default());
+        window.has_work()
+    }
+
+    /// The next message for the page, if there is one.
+    pub fn say(&self) -> Option<Outgoing> {
+        self.mailbox.outgoing()
+    }
+}
