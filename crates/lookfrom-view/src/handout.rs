@@ -6,6 +6,8 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Duration;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use lookfrom_scene::Result;
 use lookfrom_scene::files::SharedFiles;
 use serde_json::{Value, json};
@@ -65,7 +67,7 @@ pub fn handout(
         r#"{{"pixel":[{x},{y}],"sample":{},"scene":{scene},"progress":{},"picture":{header},"png":"{}","words":{words},"report":{report},"value":{value},"samples":{{{}}},"source":{}}}"#,
         held.first().copied().unwrap_or_default(),
         asker.progress,
-        bundle::base64(&png),
+        STANDARD.encode(&png),
         samples.join(","),
         Value::from(source)
     );
