@@ -147,6 +147,7 @@ pub(crate) fn size(typed: &str) -> Result<[u32; 2], String> {
 }
 
 /// `X,Y`: column and row of a pixel.
+#[cfg(feature = "view")]
 pub(crate) fn pixel(typed: &str) -> Result<[u32; 2], String> {
     separated(typed, "column and row of a pixel, such as 120,240")
 }

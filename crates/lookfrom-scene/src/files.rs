@@ -143,14 +143,22 @@ impl Files for Disk {
     }
 
     fn identities(&self, path: &Path) -> Vec<FileId> {
-        let mut identities = vec![FileId::Path(resolved(path))];
-        #[cfg(unix)]
-        if let Ok(metadata) = std::fs::metadata(path) {
-            use std::os::unix::fs::MetadataExt;
-            identities.push(FileId::Number { device: metadata.dev(), file: metadata.ino() });
-        }
-        identities
+        std::iter::once(FileId::Path(resolved(path))).chain(number(path)).collect()
     }
+}
+
+/// The number that the file system has for a file.
+#[cfg(unix)]
+fn number(path: &Path) -> Option<FileId> {
+    use std::os::unix::fs::MetadataExt;
+    let metadata = std::fs::metadata(path).ok()?;
+    Some(FileId::Number { device: metadata.dev(), file: metadata.ino() })
+}
+
+/// None: file systems of this kind have no numbers that are always there.
+#[cfg(not(unix))]
+fn number(_: &Path) -> Option<FileId> {
+    None
 }
 
 /// The absolute path without links, as far as the path exists.
