@@ -178,6 +178,7 @@ fn the_summary_has_its_keys() {
             "dropped_samples",
             "ended_by",
             "fireflies",
+            "hash",
             "height",
             "instances",
             "integrator",
