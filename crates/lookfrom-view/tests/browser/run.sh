@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 skip() { printf 'skipped: %s\n' "$1"; exit 0; }
 command -v node > /dev/null && command -v npm > /dev/null || skip "node is not installed"
 [[ -x $binary ]] || skip "there is no $binary"
-[[ -d node_modules/playwright-core && -d node_modules/typescript ]] || npm ci --no-audit --no-fund --silent --fetch-retries 1 --fetch-timeout 20000 2> /dev/null \
+[[ -d node_modules/axe-core && -d node_modules/playwright-core && -d node_modules/typescript ]] || npm ci --no-audit --no-fund --silent --fetch-retries 1 --fetch-timeout 20000 2> /dev/null \
     || skip "npm's packages for the browser cannot be had"
 
 npx tsc --project tsconfig.json
