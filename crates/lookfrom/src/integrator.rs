@@ -342,6 +342,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
 
     /// Sets the layers of transmittance of a path that comes straight from the camera, by its throughput at the end of a way; black where it
     /// does not arrive there.
+    #[inline]
     fn set_transmittance(&mut self, world: &World, path: &Path<S>, passed: Spectrum) {
         if let Some(light_paths) = self.light_paths
             && path.depth == 0
