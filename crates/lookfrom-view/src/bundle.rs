@@ -101,7 +101,7 @@ fn text(name: &str) -> Result<String> {
     String::from_utf8(bytes.into_owned()).map_err(|_| missing())
 }
 
-/// What a content security policy names a script or a style by: the digest of its text.
+/// The source expression of a script or a style in a content security policy: the digest of its text (CSP level 3, section 2.3.1).
 fn source(text: &str) -> String {
     let digits = digest(text.as_bytes());
     let bytes: Vec<u8> = (0..digits.len() / 2)

@@ -73,7 +73,7 @@ impl Document {
         &self.settings
     }
 
-    /// Where its scene is read from.
+    /// The files that its scene is read from.
     pub(crate) fn files(&self) -> &SharedFiles {
         &self.files
     }

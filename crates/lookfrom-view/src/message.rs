@@ -108,7 +108,7 @@ pub(crate) enum Answer {
     Error {
         id: Option<u64>,
         message: String,
-        /// Where it is in a text file.
+        /// Its location in a text file.
         place: Option<PlaceAnswer>,
         /// The line of the file that the error points at, with carets.
         excerpt: Option<String>,

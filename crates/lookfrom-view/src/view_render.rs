@@ -46,7 +46,7 @@ pub(crate) struct ViewRender {
     pub(crate) pace: Option<f64>,
     /// The time of the next pass so far, of which messages may have interrupted it.
     spent_on_pass: Duration,
-    /// When the last denoised picture was made, and how long it may not be made again: it takes time that the render then has not.
+    /// Stopwatch of the last denoised picture, and the shortest time from it to the next: denoising takes time from the render.
     pub(crate) denoised: Option<(Stopwatch, Duration)>,
     pub(crate) stage: Stage,
     /// The memory of the film and its pictures.

@@ -9,6 +9,7 @@ mod permutation;
 
 use crate::core::hash::mix;
 use glam::Vec3;
+use lookfrom_simd::Real;
 
 /// Further octaves are omitted: together they contribute less than 2⁻²³.
 const MOST_OCTAVES: u32 = 24;
@@ -117,11 +118,13 @@ fn gradient(column: u64, z: i32, octave: u32) -> Vec3 {
 }
 
 /// The fade from 0 to 1 with zero first and second derivatives at both ends: 6t⁵ − 15t⁴ + 10t³.
-fn fade(t: f32) -> f32 {
+#[inline(always)]
+fn fade<R: Real>(t: R) -> R {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-fn mix_linearly(a: f32, b: f32, share: f32) -> f32 {
+#[inline(always)]
+fn mix_linearly<R: Real>(a: R, b: R, share: R) -> R {
     a + share * (b - a)
 }
 

@@ -85,6 +85,13 @@ impl<R: Real> Spectrum<R> {
         )
     }
 
+    /// The sum of the lanes.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> R {
+        let [a, b, c, d] = self.0;
+        a + b + c + d
+    }
+
     /// The largest lane.
     #[inline(always)]
     pub fn max_lane(self) -> R {

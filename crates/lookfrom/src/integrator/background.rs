@@ -71,6 +71,5 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
 
 /// What has passed media, by the throughput of a path from the camera: the mean of its lanes.
 fn passed(beta: Spectrum, mode: &SpectralMode) -> f32 {
-    let sum = |of: Spectrum| of.0.into_iter().sum::<f32>();
-    sum(beta) / sum(mode.one())
+    beta.sum() / mode.one().sum()
 }

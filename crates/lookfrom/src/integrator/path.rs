@@ -269,7 +269,7 @@ impl PathTracer {
         if !hit.is_hit() {
             return self.escape(world, (&[&path; LANES], 1), output);
         }
-        if world.has_media && waiting.takes_at_interface(world, &path, hit) {
+        if waiting.takes_at_interface(world, &path, hit) {
             return;
         }
         let surface = world.surface(&path.ray, hit);

@@ -1,4 +1,4 @@
-//! What of a camera ray's way a medium covers, for the features of the denoiser: as a surface of a fractional alpha would.
+//! Cover of a camera ray's way by a medium, for the features of the denoiser: that of a surface of a fractional alpha.
 //!
 //! Features should have no noise that light does not have. So optical depths are not estimated by random collisions: a medium that varies
 //! is looked up at points at equal optical depths of its majorant, the first of them anywhere (systematic sampling).
@@ -16,7 +16,7 @@ use crate::shading::texture::{SpectralMode, Textures};
 pub(crate) struct Cover {
     /// The part of the light behind that it scatters or absorbs, in the mean of R, G and B: 0 … 1.
     pub(crate) part: f32,
-    /// What of that is scattered, in linear Rec. 709; white where it emits.
+    /// The albedo of that part, in linear Rec. 709; white where the medium emits.
     pub(crate) albedo: Vec3,
     /// The distance before which half of the part is covered.
     pub(crate) distance: f32,
@@ -29,7 +29,7 @@ const STEP: f32 = 0.25;
 const DEEPEST: f32 = 8.0;
 
 impl Medium {
-    /// What it covers of a way; `None` where it only absorbs.
+    /// The cover of a way; `None` in a medium that only absorbs.
     pub(crate) fn cover(&self, textures: &Textures, way: &Way) -> Option<Cover> {
         if self.scattering.is_none() && self.emission.is_none() {
             return None;

@@ -34,9 +34,9 @@ pub(crate) struct TrackedRay<'a> {
 /// What is asked of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Estimate {
-    /// Where the medium scatters them, and the light that it emits on the way.
+    /// The distance at which the medium scatters a ray, and the light that it emits on the way.
     Flight,
-    /// How much of them passes.
+    /// The transmittance over the way.
     Transmittance,
 }
 

@@ -1,4 +1,4 @@
-//! What pictures have of media besides light: alpha, layers and the features of the denoiser.
+//! Media in alpha, in layers and in the features of the denoiser.
 
 use crate::support::{Compiled, scene};
 use lookfrom::film::Film;

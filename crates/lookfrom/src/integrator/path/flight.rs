@@ -47,7 +47,7 @@ impl<R: Real> Flight<R> {
     #[inline(always)]
     pub(super) fn sample(medium: &Coefficients<R>, beta: Spectrum<R>, limit: R, [which, u]: [R; 2]) -> Self {
         let (extinction, scattering) = (medium.extinction(), medium.scattering);
-        let choice = beta / sum(beta);
+        let choice = beta / beta.sum();
         let (lane, sigma) = chosen(choice, extinction, which);
         let zero = limit.like(0.0);
         let distance = R::select(sigma.gt(zero), -ln(-u + 1.0) / sigma, limit.like(f32::INFINITY));
@@ -58,7 +58,7 @@ impl<R: Real> Flight<R> {
             |sigma| R::select(sigma.gt(zero), exp(-sigma * length), sigma.like(1.0)),
         );
         let part = Spectrum::select(is_scattered, extinction * transmittance, transmittance);
-        let density = sum(choice * part);
+        let density = (choice * part).sum();
         let kept = Spectrum::select(is_scattered, scattering * transmittance, transmittance);
         let after = beta * kept / density;
         Self {
@@ -100,12 +100,6 @@ fn chosen<R: Real>(choice: Spectrum<R>, extinction: Spectrum<R>, which: R) -> (R
         is_past = is_past & !left.lt(zero);
     }
     (lane, sigma)
-}
-
-/// The sum of the lanes of a spectrum.
-#[inline(always)]
-fn sum<R: Real>(Spectrum([a, b, c, d]): Spectrum<R>) -> R {
-    a + b + c + d
 }
 
 /// A path that flies through a homogeneous medium.

@@ -7,7 +7,7 @@ use super::bare_hits::{self, BareHits};
 use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, are_shaded_together, by_lane, gather_rays, scatter, shade_together};
 use crate::primitive::MaterialBinding;
-use crate::shading::interior_stack::{InteriorStack, MediumInterface};
+use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
 /// Rays that go straight on through interfaces, by their places in a list.
@@ -78,15 +78,8 @@ fn interior_behind(
     (front, is_outside): (bool, bool),
 ) -> InteriorStack {
     let Some(MaterialBinding { material, medium_interface, .. }) = binding(world, hit) else { return before };
-    if let Some(index) = medium_interface {
-        let MediumInterface { inside, outside } = world.medium_interfaces[*index as usize];
-        return if is_outside { outside } else { inside };
-    }
-    match (world.materials[*material as usize].is_body(), front) {
-        (true, true) => before.entered(*material),
-        (true, false) => before.left(*material),
-        (false, _) => before,
-    }
+    let interface = medium_interface.map(|index| world.medium_interfaces[index as usize]);
+    before.beside(&world.materials, (*material, interface), || is_outside, (true, front))
 }
 
 fn binding<'a>(world: &'a World, hit: &Hit) -> Option<&'a MaterialBinding> {

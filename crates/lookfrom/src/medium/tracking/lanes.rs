@@ -218,7 +218,7 @@ impl<'a> Tracker<'a, '_> {
             false => Spectrum::splat(zero),
         };
         let probability = match self.scatters {
-            true => Float::min(sum(extinction * beta) / sum(beta) / majorant, t.like(1.0)),
+            true => Float::min((extinction * beta).sum() / beta.sum() / majorant, t.like(1.0)),
             false => zero,
         };
         let are_real = lanes & choice.lt(probability);
@@ -275,12 +275,6 @@ fn three<W: Width>(_: W, state: Bits64<W>) -> [W::Real; 3] {
 #[inline(always)]
 fn number<R: Real>(bits: R::Bits64) -> R {
     R::from_integer(R::low_half(bits))
-}
-
-/// The sum of the lanes of a spectrum.
-#[inline(always)]
-fn sum<R: Real>(Spectrum([a, b, c, d]): Spectrum<R>) -> R {
-    a + b + c + d
 }
 
 impl Coefficients<[f32; LANES]> {

@@ -23,13 +23,26 @@ impl InteriorStack {
         direction: Vec3,
         crosses: bool,
     ) -> Self {
-        if let Some(MediumInterface { inside, outside }) = surface.medium_interface {
-            let is_outside = surface.is_outside(direction);
-            return if is_outside { outside } else { inside };
+        let of_surface = (surface.material, surface.medium_interface);
+        self.beside(materials, of_surface, || surface.is_outside(direction), (crosses, surface.front))
+    }
+
+    /// [`InteriorStack::leaving`] by the material and the media that a surface declares, whether the ray leaves to its outside, whether it
+    /// passes through, and whether it had met the outside.
+    #[inline]
+    pub(crate) fn beside(
+        self,
+        materials: &[Material],
+        (material, interface): (u32, Option<MediumInterface>),
+        is_outside: impl FnOnce() -> bool,
+        (crosses, front): (bool, bool),
+    ) -> Self {
+        if let Some(MediumInterface { inside, outside }) = interface {
+            return if is_outside() { outside } else { inside };
         }
-        match (crosses && materials[surface.material as usize].is_body(), surface.front) {
-            (true, true) => self.entered(surface.material),
-            (true, false) => self.left(surface.material),
+        match (crosses && materials[material as usize].is_body(), front) {
+            (true, true) => self.entered(material),
+            (true, false) => self.left(material),
             (false, _) => self,
         }
     }

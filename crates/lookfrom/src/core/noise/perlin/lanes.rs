@@ -3,6 +3,7 @@
 use lookfrom_simd::{Bits, Float, Real};
 
 use super::super::permutation::PERMUTATION;
+use super::super::{fade, mix_linearly};
 use super::LACUNARITY;
 use crate::core::vector::Vector;
 
@@ -57,7 +58,7 @@ pub(super) fn noises<R: Real>(p: Vector<R>) -> R {
     let x = [place.x, beyond.x];
     let first = edges([left[0], right[0]], z, (x, high[0], low), u);
     let second = edges([left[1], right[1]], z, (x, high[1], low), u);
-    let noise = mix(mix(first[0], second[0], v), mix(first[1], second[1], v), w);
+    let noise = mix_linearly(mix_linearly(first[0], second[0], v), mix_linearly(first[1], second[1], v), w);
     let is_finite = p.x.is_finite() & p.y.is_finite() & p.z.is_finite();
     Float::select(is_finite, noise, noise.like(0.0))
 }
@@ -72,8 +73,8 @@ fn edges<R: Real>(
 ) -> [R; 2] {
     let [left, right] = [pair::<R>(rows[0].wrapping_add(z)), pair::<R>(rows[1].wrapping_add(z))];
     [
-        mix(ramp(left[0], [near, y, low]), ramp(right[0], [far, y, low]), u),
-        mix(ramp(left[1], [near, y, high]), ramp(right[1], [far, y, high]), u),
+        mix_linearly(ramp(left[0], [near, y, low]), ramp(right[0], [far, y, low]), u),
+        mix_linearly(ramp(left[1], [near, y, high]), ramp(right[1], [far, y, high]), u),
     ]
 }
 
@@ -107,14 +108,4 @@ fn pair<R: Real>(index: R::Bits) -> [R::Bits; 2] {
 #[inline(always)]
 fn modulo_256<R: Real>(whole: R) -> R::Bits {
     (whole - (whole * (1.0 / 256.0)).floor() * 256.0).to_integer()
-}
-
-#[inline(always)]
-fn fade<R: Real>(t: R) -> R {
-    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
-}
-
-#[inline(always)]
-fn mix<R: Real>(a: R, b: R, share: R) -> R {
-    a + share * (b - a)
 }
