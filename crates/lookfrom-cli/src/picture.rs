@@ -104,6 +104,9 @@ pub(crate) fn render(
     if arguments.json || !arguments.quiet {
         summary.find_fireflies(session, &finished);
     }
+    if arguments.json {
+        summary.hash = Some(finished.rendered.film.hash());
+    }
     summary.measured(render_time, report::seconds(started.elapsed()));
     Ok(summary)
 }

@@ -35,8 +35,8 @@ pub(crate) struct Summary {
     pub(crate) relative_error: Option<f64>,
     pub(crate) integrator: &'static str,
     pub(crate) denoised: bool,
-    /// A hash of the light of all pixels, before development.
-    pub(crate) hash: String,
+    /// A hash of the light of all pixels, before development. `None` until it is asked for.
+    pub(crate) hash: Option<String>,
     pub(crate) seconds: Seconds,
     pub(crate) rays: RayCounts,
     pub(crate) mrays_per_s: f64,
@@ -119,7 +119,7 @@ impl Summary {
             relative_error: rendered.error.is_finite().then_some(rendered.error),
             integrator: session.renderer().integrator(),
             denoised: finished.denoised,
-            hash: film.hash(),
+            hash: None,
             seconds: Seconds {
                 read: seconds(info.read),
                 build: seconds(info.build),
@@ -341,7 +341,7 @@ mod tests {
             relative_error: None,
             integrator: "whitted",
             denoised: false,
-            hash: "0123456789abcdef".into(),
+            hash: Some("0123456789abcdef".into()),
             seconds: Seconds { read: 0.0, build: 0.0, render: 2.5, develop: 0.0, write: 0.0 },
             rays: Rays { camera: 1000, secondary: 20, shadow: 3 }.into(),
             mrays_per_s: 1.5,
