@@ -284,7 +284,8 @@ pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
             | Filter::Triangle { radius }
             | Filter::Gaussian { radius, .. }
             | Filter::Mitchell { radius, .. }
-            | Filter::BlackmanHarris { radius } => *radius = typed,
+            | Filter::BlackmanHarris { radius }
+            | Filter::Sinc { radius, .. } => *radius = typed,
         }
     }
     Ok(filter)

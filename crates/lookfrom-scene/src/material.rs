@@ -1,9 +1,11 @@
 //! Materials: reflectance, transmission and emission of surfaces, and the values that textures may vary.
 
+mod hair;
 mod subsurface;
 
 use glam::Vec3;
 
+pub use hair::{Hair, Pigment};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
 
 use crate::error::Location;
@@ -75,6 +77,7 @@ impl Material {
                 MaterialKind::Principled(look) => {
                     look.clearcoat_normal.is_some() || look.anisotropy.is_some()
                 }
+                MaterialKind::Hair(_) => true,
                 _ => false,
             }
     }
@@ -164,6 +167,8 @@ pub enum MaterialKind {
     },
     /// Light is scattered below a dielectric surface: skin, wax, marble, milk.
     Subsurface(Box<Subsurface>),
+    /// Fibres of hair or fur.
+    Hair(Box<Hair>),
     /// A stochastic mix: one of two materials is chosen at random at each intersection.
     Mix {
         /// The two materials; neither may contain this one, directly or indirectly.
@@ -221,6 +226,7 @@ impl MaterialKind {
                 vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
             }
             Self::Subsurface(below) => below.medium.colors().into(),
+            Self::Hair(hair) => hair.pigment.colors(),
             Self::Unlit { color } => vec![*color],
             Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
@@ -266,6 +272,10 @@ impl MaterialKind {
             Self::Subsurface(below) => match below.medium {
                 SubsurfaceMedium::Reflectance { reflectance, .. } => vec![("reflectance", reflectance)],
                 SubsurfaceMedium::Coefficients { .. } => Vec::new(),
+            },
+            Self::Hair(hair) => match hair.pigment {
+                Pigment::Reflectance(reflectance) => vec![("reflectance", reflectance)],
+                Pigment::Absorption(_) | Pigment::Melanin { .. } => Vec::new(),
             },
             Self::Conductor { metal: Metal::Indices { .. }, .. }
             | Self::Dielectric { .. }

@@ -9,6 +9,7 @@ mod curve;
 mod directive;
 mod file;
 mod film;
+mod hair;
 mod integrator;
 mod lexer;
 mod light;

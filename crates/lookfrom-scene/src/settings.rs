@@ -207,6 +207,13 @@ pub enum Filter {
         /// Radius: > 0.
         radius: f32,
     },
+    /// A sinc, under the central lobe of a wider one (Lanczos): sharp, with ringing.
+    Sinc {
+        /// Radius: > 0.
+        radius: f32,
+        /// Half the width of the wider one: > 0.
+        tau: f32,
+    },
 }
 
 impl Filter {
@@ -217,6 +224,7 @@ impl Filter {
         ("gaussian", Self::Gaussian { radius: 1.5, sigma: 0.5 }),
         ("mitchell", Self::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 }),
         ("blackman_harris", Self::BlackmanHarris { radius: 1.5 }),
+        ("sinc", Self::Sinc { radius: 4.0, tau: 3.0 }),
     ];
 }
 
@@ -229,6 +237,7 @@ impl std::fmt::Display for Filter {
             Self::Gaussian { radius, sigma } => write!(f, "gaussian:{radius} sigma {sigma}"),
             Self::Mitchell { radius, b, c } => write!(f, "mitchell:{radius} b {b} c {c}"),
             Self::BlackmanHarris { radius } => write!(f, "blackman_harris:{radius}"),
+            Self::Sinc { radius, tau } => write!(f, "sinc:{radius} tau {tau}"),
         }
     }
 }

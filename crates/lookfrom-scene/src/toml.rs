@@ -15,6 +15,7 @@ mod document;
 mod evaluate;
 mod expression;
 mod function;
+mod hair;
 mod heightfield;
 mod import;
 mod keyframes;

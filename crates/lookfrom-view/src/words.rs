@@ -94,6 +94,7 @@ fn filter(filter: Filter) -> String {
         Filter::Gaussian { radius, sigma } => ("gaussian", vec![("radius", radius), ("sigma", sigma)]),
         Filter::Mitchell { radius, b, c } => ("mitchell", vec![("radius", radius), ("b", b), ("c", c)]),
         Filter::BlackmanHarris { radius } => ("blackman_harris", vec![("radius", radius)]),
+        Filter::Sinc { radius, tau } => ("sinc", vec![("radius", radius), ("tau", tau)]),
     };
     let numbers: String = numbers.into_iter().map(|(key, value)| format!(", {key} = {value}")).collect();
     format!("{{ type = \"{word}\"{numbers} }}")

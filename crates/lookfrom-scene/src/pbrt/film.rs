@@ -112,12 +112,7 @@ impl Reader<'_, '_> {
                 b: parameters.float("B", 1.0 / 3.0)?,
                 c: parameters.float("C", 1.0 / 3.0)?,
             },
-            _ => {
-                parameters.ignore(&["tau"]);
-                let message = "the filter \"sinc\" is not supported yet: \"mitchell\" is used instead";
-                self.context.warn(&parameters.place.location(), message);
-                Filter::Mitchell { radius: radius.min(2.0), b: 1.0 / 3.0, c: 1.0 / 3.0 }
-            }
+            _ => Filter::Sinc { radius, tau: parameters.positive("tau", 3.0)? },
         };
         Ok(())
     }

@@ -240,17 +240,4 @@ impl Reader<'_, '_> {
         };
         Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })
     }
-
-    fn hair(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let message = "the hair material is not rendered yet: \"diffuse\" is used instead";
-        self.warn_once("hair", &p.place, message);
-        p.ignore(&["sigma_a", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"]);
-        let color = self.color_or_none(p, "reflectance", Reflectance)?;
-        let brown = Color::Value([0.2, 0.12, 0.07]);
-        let color = match color {
-            Some(color) => color,
-            None => self.color(p, "color", brown, Reflectance)?,
-        };
-        Ok(MaterialKind::Diffuse { reflectance: color })
-    }
 }

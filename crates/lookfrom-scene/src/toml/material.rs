@@ -4,7 +4,7 @@ use super::color::plain_color;
 use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, principled, subsurface};
+use super::{Reader, hair, principled, subsurface};
 use crate::chain;
 use crate::error::{Location, Result};
 use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
@@ -56,6 +56,7 @@ pub(super) const KEYS: Kinds = &[
         ],
     ),
     ("subsurface", subsurface::KEYS),
+    ("hair", hair::KEYS),
     ("principled", principled::KEYS),
     ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),

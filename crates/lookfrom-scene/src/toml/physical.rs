@@ -53,6 +53,7 @@ impl Reader<'_, '_> {
                 coat: self.coat(table),
             },
             "subsurface" => MaterialKind::Subsurface(Box::new(self.subsurface(table))),
+            "hair" => MaterialKind::Hair(Box::new(self.hair(table))),
             "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
             "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {

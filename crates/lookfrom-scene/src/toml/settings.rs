@@ -154,6 +154,11 @@ fn filter(value: Value<'_>) -> Result<Filter> {
             *b = table.or("b", *b, share);
             *c = table.or("c", *c, share);
         }
+        Filter::Sinc { radius, tau } => {
+            table.allow(&[&["type", "radius", "tau"]]);
+            *radius = table.or("radius", *radius, width);
+            *tau = table.or("tau", *tau, width);
+        }
     }
     Ok(chosen)
 }

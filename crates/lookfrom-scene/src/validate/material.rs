@@ -3,7 +3,8 @@
 use super::Part;
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, Ior, MaterialKind, NormalTexture, Principled, Roughness, Subsurface, Whitted,
+    BumpMapping, Coat, Hair, Ior, MaterialKind, NormalTexture, Pigment, Principled, Roughness, Subsurface,
+    Whitted,
 };
 use crate::scene::Scene;
 
@@ -41,6 +42,7 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
         }
         MaterialKind::Principled(look) => check_principled(part, look),
         MaterialKind::Subsurface(below) => check_subsurface(part, below),
+        MaterialKind::Hair(hair) => check_hair(part, hair),
         MaterialKind::ShadowCatcher { normal } => part.finite("normal", &normal.to_array().map(f64::from)),
         MaterialKind::Diffuse { .. } | MaterialKind::Unlit { .. } | MaterialKind::Interface => Ok(()),
     }
@@ -96,6 +98,16 @@ fn check_subsurface(part: &Part<'_>, below: &Subsurface) -> Result<()> {
     part.number("g", below.g.into(), "between -1 and 1", below.g.abs() < 1.0)?;
     part.positive("eta", below.eta.into())?;
     check_roughness(part, &below.roughness)
+}
+
+fn check_hair(part: &Part<'_>, hair: &Hair) -> Result<()> {
+    if let Pigment::Melanin { eumelanin, pheomelanin } = hair.pigment {
+        part.scalar("eumelanin", eumelanin)?;
+        part.scalar("pheomelanin", pheomelanin)?;
+    }
+    let scalars =
+        [("eta", hair.eta), ("beta_m", hair.beta_m), ("beta_n", hair.beta_n), ("alpha", hair.alpha)];
+    scalars.into_iter().try_for_each(|(name, scalar)| part.scalar(name, scalar))
 }
 
 fn check_principled(part: &Part<'_>, look: &Principled) -> Result<()> {

@@ -48,6 +48,10 @@ fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {
             (radius, [sigma, 0.0])
         }
         Filter::Mitchell { radius, b, c } => (radius, [b, c]),
+        Filter::Sinc { radius, tau } => {
+            part.positive("tau of the filter", tau.into())?;
+            (radius, [tau, 0.0])
+        }
     };
     part.finite("filter", &parameters.map(f64::from))?;
     let is_valid = radius > 0.0 && radius <= WIDEST;

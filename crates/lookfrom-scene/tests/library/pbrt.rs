@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::light::{LightKind, Power, Sky};
 use lookfrom_scene::material::{
-    Color, Energy, Ior, MaterialKind, Metal, Scalar, Subsurface, SubsurfaceMedium,
+    Color, Energy, Ior, MaterialKind, Metal, Pigment, Scalar, Subsurface, SubsurfaceMedium,
 };
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
@@ -276,16 +276,43 @@ fn what_is_not_rendered_is_warned_of_once() {
         "a.pbrt",
         "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
          Shape \"disk\"\n\
-         Material \"hair\" Material \"hair\"\n\
+         Material \"measured\" Material \"measured\"\n\
          Shape \"sphere\" \"float raduis\" 2",
     )]);
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
-        "a.pbrt:3:1: the hair material is not rendered yet: \"diffuse\" is used instead",
+        "a.pbrt:3:1: measured materials are not rendered yet: gray \"diffuse\" is used instead",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);
     assert_eq!(scene.render.samples, 12);
+}
+
+#[test]
+fn hair_has_its_colour_in_one_of_three_ways() {
+    let hair = |parameters: &str| {
+        let text = format!("WorldBegin Material \"hair\" {parameters} Shape \"sphere\"");
+        let (scene, warnings) = read_files(&[("a.pbrt", &text)]);
+        let MaterialKind::Hair(hair) = &scene.materials[1].kind else { panic!("{:?}", scene.materials[1]) };
+        ((**hair).clone(), warnings)
+    };
+    let number = Scalar::Value;
+    let (brown, warnings) = hair("");
+    assert_eq!((brown.pigment, warnings.len()), (Pigment::BROWN, 0));
+    let numbers = [brown.eta, brown.beta_m, brown.beta_n, brown.alpha];
+    assert_eq!(numbers, [number(1.55), number(0.3), number(0.3), number(2.0)]);
+
+    let (red, _) =
+        hair("\"float pheomelanin\" 2 \"float beta_m\" 0.1 \"float beta_n\" 0.2 \"float alpha\" 3");
+    assert_eq!(red.pigment, Pigment::Melanin { eumelanin: number(0.0), pheomelanin: number(2.0) });
+    assert_eq!([red.beta_m, red.beta_n, red.alpha], [number(0.1), number(0.2), number(3.0)]);
+
+    let (dyed, _) = hair("\"rgb color\" [0.1 0.5 0.2]");
+    assert_eq!(dyed.pigment, Pigment::Reflectance(Color::Value([0.1, 0.5, 0.2])));
+    let (dark, warnings) = hair("\"rgb sigma_a\" [4 5 6] \"float eumelanin\" 1");
+    assert_eq!(dark.pigment, Pigment::Absorption(Color::Value([4.0, 5.0, 6.0])));
+    let message = "a.pbrt:1:12: the colour of hair is given in more than one way: only \"sigma_a\" is used";
+    assert_eq!(warnings, [message]);
 }
 
 /// The material of the last shape.

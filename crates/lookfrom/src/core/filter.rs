@@ -5,7 +5,7 @@
 //! Ernst, Stamminger & Greiner 2006). Where a filter is negative, so is the weight. All filters here are separable:
 //! products of one curve along x and y.
 //!
-//! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window).
+//! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window); Duchon 1979 (the sinc of Lanczos).
 
 use lookfrom_scene::settings::Filter as Shape;
 use lookfrom_simd::{Float, Real};
@@ -60,6 +60,11 @@ enum Curve {
         c: f64,
     },
     BlackmanHarris,
+    /// sin(πx) / (πx), x in pixels, under the same function of x / τ.
+    Sinc {
+        radius: f64,
+        tau: f64,
+    },
 }
 
 impl Filter {
@@ -77,6 +82,9 @@ impl Filter {
                 (Curve::Mitchell { b: f64::from(b), c: f64::from(c) }, radius)
             }
             Shape::BlackmanHarris { radius } => (Curve::BlackmanHarris, radius),
+            Shape::Sinc { radius, tau } => {
+                (Curve::Sinc { radius: f64::from(radius), tau: f64::from(tau) }, radius)
+            }
         };
         let radius = if radius.is_finite() && radius > 0.0 { radius } else { 0.5 };
         match curve {
@@ -227,8 +235,15 @@ impl Curve {
                     + 0.14128 * libm::cos(2.0 * angle)
                     + 0.01168 * libm::cos(3.0 * angle)
             }
+            Self::Sinc { radius, tau } => sinc(radius * x) * sinc(radius * x / tau),
         }
     }
+}
+
+/// sin(πx) / (πx).
+fn sinc(x: f64) -> f64 {
+    let angle = std::f64::consts::PI * x;
+    if angle.abs() < 1e-8 { 1.0 } else { libm::sin(angle) / angle }
 }
 
 #[cfg(test)]

@@ -169,6 +169,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             | MaterialKind::Subsurface(_) => true,
             // A sky on a dome is unlit.
             MaterialKind::Unlit { .. }
+            | MaterialKind::Hair(_)
             | MaterialKind::DiffuseTransmission { .. }
             | MaterialKind::Dielectric { .. }
             | MaterialKind::ThinDielectric { .. }

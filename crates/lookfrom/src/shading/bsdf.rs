@@ -15,6 +15,7 @@ pub mod diffuse;
 pub mod droplets;
 mod factors;
 pub mod fresnel;
+pub mod hair;
 pub mod henyey_greenstein;
 pub mod lanes;
 pub mod layered;

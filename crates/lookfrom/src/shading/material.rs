@@ -8,6 +8,7 @@ mod albedo;
 mod approximate;
 mod bump;
 mod compile;
+mod hair;
 mod interior;
 mod kind;
 mod pictures;
@@ -40,6 +41,7 @@ pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub use bump::Relief;
 pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
+pub use hair::{HairMaterial, Pigment};
 pub use kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
     Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
@@ -338,6 +340,7 @@ impl Evaluator<'_> {
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
+            MaterialKind::Hair(hair) => Bsdf::Hair(self.hair(hair)),
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
             // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),

@@ -37,6 +37,8 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("medium-rgbgrid/scene", "medium-rgbgrid", 256, 16, 0.005),
     ("medium-cloud/scene", "medium-cloud", 256, 16, 0.005),
     ("subsurface/scene", "subsurface", 256, 16, 0.005),
+    ("hair/scene", "hair", 256, 16, 0.005),
+    ("lights-image/scene", "lights-image", 256, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how

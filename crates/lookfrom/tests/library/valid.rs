@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
-    BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Roughness, Scalar, SubsurfaceMedium,
+    BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium,
 };
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
 use lookfrom_scene::settings::Filter;
@@ -102,7 +102,8 @@ impl<'a> Places<'a> {
             | Filter::Triangle { radius }
             | Filter::Gaussian { radius, .. }
             | Filter::Mitchell { radius, .. }
-            | Filter::BlackmanHarris { radius } => p.single.push(radius),
+            | Filter::BlackmanHarris { radius }
+            | Filter::Sinc { radius, .. } => p.single.push(radius),
         }
         for material in &mut scene.materials {
             p.bump_mapping(&mut material.bump_mapping);
@@ -257,6 +258,17 @@ impl<'a> Places<'a> {
                 self.color(second);
                 self.single.extend([&mut below.scale, &mut below.g, &mut below.eta]);
                 self.roughness(&mut below.roughness);
+            }
+            MaterialKind::Hair(hair) => {
+                match &mut hair.pigment {
+                    Pigment::Absorption(color) | Pigment::Reflectance(color) => self.color(color),
+                    Pigment::Melanin { eumelanin, pheomelanin } => {
+                        self.scalar(eumelanin);
+                        self.scalar(pheomelanin);
+                    }
+                }
+                let numbers = [&mut hair.eta, &mut hair.beta_m, &mut hair.beta_n, &mut hair.alpha];
+                numbers.into_iter().for_each(|number| self.scalar(number));
             }
             MaterialKind::ShadowCatcher { normal } => self.single.push(&mut normal.y),
             MaterialKind::Interface => {}

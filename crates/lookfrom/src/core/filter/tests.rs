@@ -8,7 +8,7 @@ use crate::core::lanes::LANES;
 use crate::core::sampler::Sampler;
 use crate::core::statistics::chi_square_deviate;
 
-fn all() -> [Shape; 8] {
+fn all() -> [Shape; 10] {
     [
         Shape::Box { radius: 0.5 },
         Shape::Box { radius: 1.25 },
@@ -18,6 +18,8 @@ fn all() -> [Shape; 8] {
         Shape::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 },
         Shape::Mitchell { radius: 1.7, b: 0.0, c: 0.75 },
         Shape::BlackmanHarris { radius: 1.5 },
+        Shape::Sinc { radius: 4.0, tau: 3.0 },
+        Shape::Sinc { radius: 2.5, tau: 1.5 },
     ]
 }
 
@@ -173,6 +175,7 @@ fn nonsense_gives_finite_samples() {
                     Shape::BlackmanHarris { radius },
                     Shape::Gaussian { radius, sigma: a },
                     Shape::Mitchell { radius, b: a, c: b },
+                    Shape::Sinc { radius, tau: a },
                 ];
                 for shape in shapes {
                     let filter = Filter::new(shape);

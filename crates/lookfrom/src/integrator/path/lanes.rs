@@ -35,6 +35,7 @@ use crate::integrator::{Bounce, Event, Probe, SampleStream};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;

@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::conductor::Conductor;
 use super::dielectric::{Dielectric, ThinDielectric};
 use super::diffuse::{Diffuse, DiffuseTransmission};
+use super::hair::Hair;
 use super::layered::Layered;
 use super::lobes::Lobes;
 use super::normalized_fresnel::NormalizedFresnel;
@@ -104,6 +105,8 @@ macro_rules! bsdf_classes {
                 CoatedConductor(Layered<Conductor>),
                 /// glTF's metallic-roughness material with its extensions.
                 Principled(Principled),
+                /// A fibre of hair.
+                Hair(Hair),
             }
             one_by_one {
                 /// Lambertian reflection and transmission.

@@ -53,6 +53,10 @@ fn rough(x: f32, y: f32) -> TrowbridgeReitz {
     TrowbridgeReitz::new(x, y)
 }
 
+fn hair(h: f32, betas: [f32; 2]) -> Bsdf {
+    Bsdf::Hair(hair::Hair::new(h, 1.55, Spectrum([0.2, 0.4, 0.8, 0.1]), betas, 2.0))
+}
+
 fn whitted() -> WhittedBsdf {
     WhittedBsdf {
         diffuse: Spectrum([0.5, 0.2, 0.1, 0.0]),
@@ -83,6 +87,8 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("conserving gold 0.7 × 0.2", of_gold(0.7, 0.2).with_energy(Energy::Conserved)),
         ("conserving glass 0.6", Bsdf::dielectric(1.5, rough(0.6, 0.6)).with_energy(Energy::Conserved)),
         ("conserving bubble 0.3", Bsdf::dielectric(0.75, rough(0.3, 0.3)).with_energy(Energy::Conserved)),
+        ("hair", hair(0.3, [0.3, 0.3])),
+        ("hair rough", hair(-0.8, [0.6, 0.8])),
         ("whitted", Bsdf::Whitted(whitted())),
         ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
@@ -249,11 +255,12 @@ fn samples_carry_the_values_of_f_and_pdf() {
 #[test]
 fn light_goes_both_ways() {
     let mut non_zero = 0;
-    // Not reciprocal: Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
+    // Not reciprocal: hair, Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
     // and rough surfaces that conserve energy, as the glass of principled bodies does.
     let is_not = |name: &str| {
         name.starts_with("whitted")
             || name.starts_with("conserving")
+            || name.starts_with("hair")
             || name.contains("tilted")
             || ["principled body", "principled everything"].contains(&name)
     };

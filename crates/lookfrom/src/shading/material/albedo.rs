@@ -62,6 +62,7 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
             }
             SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance.varies(),
         },
+        MaterialKind::Hair(hair) => hair.varies(),
         MaterialKind::Mix { .. } => true,
         MaterialKind::Principled(look) => look.base_color.varies(),
         MaterialKind::Unlit { albedo, .. } => albedo.varies(),
@@ -100,6 +101,7 @@ fn of_kind(
             Metal::Indices { eta, k } => fresnel::conductor(1.0, color(eta), color(k)),
         },
         MaterialKind::Subsurface(below) => below.effective_albedo(color),
+        MaterialKind::Hair(hair) => hair.reflectance(textures, point),
         MaterialKind::Mix { materials: parts, amount } => {
             let [first, second] =
                 parts.map(|part| of_kind(&materials[part as usize].kind, materials, textures, point));

@@ -1,7 +1,7 @@
 //! The nearest equivalent of a physical material in Whitted's model; an approximation.
 
 use lookfrom_scene::material::{
-    Color, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, SubsurfaceMedium, Whitted,
+    Color, Ior, MaterialKind, Metal, Pigment, Principled, Roughness, Scalar, SubsurfaceMedium, Whitted,
 };
 
 use crate::core::spectrum::Spectrum;
@@ -38,6 +38,13 @@ pub(super) fn in_whitteds_model(
                 SubsurfaceMedium::Coefficients { .. } => albedo.map_or(Color::gray(0.5), Color::Value),
             };
             coated(reflectance, &below.roughness)
+        }
+        MaterialKind::Hair(hair) => {
+            let reflectance = match hair.pigment {
+                Pigment::Reflectance(reflectance) => reflectance,
+                _ => albedo.map_or(Color::gray(0.1), Color::Value),
+            };
+            Whitted { diffuse: reflectance, specular: Color::gray(0.1), shininess: 50.0, ..plain }
         }
         MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
         MaterialKind::Mix { materials: [first, second], amount } => {

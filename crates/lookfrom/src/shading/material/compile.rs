@@ -55,11 +55,11 @@ impl<'a> Compiler<'a> {
         (compiled, absorption)
     }
 
-    fn albedo(&self, color: Color) -> SpectrumTexture {
+    pub(super) fn albedo(&self, color: Color) -> SpectrumTexture {
         self.textures.spectrum_texture(color, SpectrumType::Albedo)
     }
 
-    fn unbounded(&self, color: Color) -> SpectrumTexture {
+    pub(super) fn unbounded(&self, color: Color) -> SpectrumTexture {
         self.textures.spectrum_texture(color, SpectrumType::Unbounded)
     }
 
@@ -96,6 +96,7 @@ impl<'a> Compiler<'a> {
             Written::Mix { materials, amount } => {
                 MaterialKind::Mix { materials: materials.map(|id| id.0), amount: (*amount).into() }
             }
+            Written::Hair(hair) => MaterialKind::Hair(Box::new(self.hair(hair))),
             Written::Subsurface(below) => MaterialKind::Subsurface(Box::new(self.subsurface(below))),
             Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
             Written::Unlit { color } => MaterialKind::Unlit {

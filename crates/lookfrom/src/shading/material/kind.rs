@@ -6,6 +6,7 @@ use glam::Vec3;
 use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
+use super::hair::HairMaterial;
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
@@ -74,6 +75,8 @@ pub enum MaterialKind {
     },
     /// Light is scattered below a dielectric surface.
     Subsurface(Box<SubsurfaceMaterial>),
+    /// Fibres of hair or fur.
+    Hair(Box<HairMaterial>),
     /// One of two materials, chosen at random at each hit.
     Mix {
         /// Indices of the mixed materials; never this one, directly or through other mixtures.

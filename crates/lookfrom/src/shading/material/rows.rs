@@ -6,6 +6,7 @@ use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::principled::Principled;
@@ -24,6 +25,7 @@ impl Material {
             MaterialKind::Principled(look) => {
                 (!look.is_solid && !disperses(look)).then_some(BsdfClass::Principled)
             }
+            MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             _ => None,
         }
     }
@@ -132,6 +134,14 @@ impl MaterialRow for Principled {
         let (bsdf, turned) = evaluator.principled(look, 0, geometry, *frame);
         *frame = turned;
         Some(bsdf)
+    }
+}
+
+impl MaterialRow for Hair {
+    #[inline]
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+        let MaterialKind::Hair(hair) = kind else { return None };
+        Some(evaluator.hair(hair))
     }
 }
 

@@ -6,6 +6,7 @@ use lookfrom_simd::{Kernel, Level, dispatch_wide, is_wide};
 use super::*;
 use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
+use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::principled::film::ThinFilm;
@@ -247,6 +248,16 @@ fn dielectrics_in_lanes() {
     compare::<Dielectric>(|index| {
         let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
         Bsdf::dielectric(eta, roughness(71, index)).with_energy(energy(index))
+    });
+}
+
+#[test]
+fn hair_in_lanes() {
+    compare::<Hair>(|index| {
+        let absorption = spectrum(80, index) * any(84, index, 5);
+        let betas = [unit(85, index), unit(86, index)];
+        let h = 2.0 * unit(87, index) - 1.0;
+        Bsdf::Hair(Hair::new(h, any(88, index, 1), absorption, betas, 20.0 * unit(89, index) - 10.0))
     });
 }
 
