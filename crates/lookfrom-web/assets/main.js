@@ -55,14 +55,16 @@ function openExample(path, keepsView) {
 /** Opens what was dropped: a scene, what one lacks, or a picture to compare with. @param {File[]} files */
 function take(files) {
     const scene = sceneOf(files);
-    if (scene !== null) {
+    const isBroken = !byId("failure").hidden;
+    // A model is what the scene lacks where the failure names it.
+    const isLacking = isBroken && files.some(({ path }) => byId("failure").textContent?.includes(path.split("/").at(-1) ?? path));
+    if (scene !== null && !isLacking) {
         isHeld = false;
         open(scene, files, false);
         choice.value = "";
         return keepLink(scene, files.find((file) => file.path === scene)?.bytes ?? new Uint8Array());
     }
-    const isShown = byId("failure").hidden && app.scene.get() !== null;
-    if (files.length === 1 && isPicture(files[0].path) && isShown) {
+    if (files.length === 1 && isPicture(files[0].path) && !isBroken && app.scene.get() !== null) {
         app.toast(`${files[0].path} can be compared with, under View`);
         return worker.compareWith(files[0]);
     }
