@@ -68,7 +68,9 @@ function take(files) {
         app.toast(`${files[0].path} can be compared with, under View`);
         return worker.compareWith(files[0]);
     }
-    if (files.length > 0) worker.change(files);
+    if (files.length === 0) return;
+    worker.change(files);
+    return keepLink(worker.scene(), worker.file(worker.scene())?.bytes ?? new Uint8Array());
 }
 
 const groups = [...new Set(held.scenes.map(({ group }) => group))];
