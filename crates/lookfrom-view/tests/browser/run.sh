@@ -14,6 +14,7 @@ command -v node > /dev/null && command -v npm > /dev/null || skip "node is not i
     || skip "npm's packages for the browser cannot be had"
 
 npx tsc --project tsconfig.json
+npx tsc --project ../../../lookfrom-web/tests/tsconfig.json
 node --test unit/
 
 chromium=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}

@@ -13,7 +13,7 @@ mod told;
 
 use lookfrom_bvh::{Hit, OriginPrimitive};
 
-use crate::core::lanes::{are_shaded_together, shade_together};
+use crate::core::lanes::are_shaded_together;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, Rounds};
 use crate::integrator::{
@@ -147,7 +147,7 @@ fn shade_bare_hits<P: Probe>(
     let Queues { modes, first_surfaces, .. } = &mut output.queues;
     let mut target = eight.aov_target(world, count, first_surfaces);
     let first = target.as_deref_mut();
-    shade_together(BareKernel { world, eight, streams: batch.streams, modes, wanted, shaded, first });
+    BareKernel { world, eight, streams: batch.streams, modes, wanted, shaded, first }.shade();
     if let Some(target) = target {
         eight.set_other_albedos(world, modes, target);
         first_surfaces.leave_block();

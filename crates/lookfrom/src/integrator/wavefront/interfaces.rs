@@ -55,7 +55,7 @@ impl Interfaces {
                 let eight = by_lane!(lane => of(chunk[lane.min(chunk.len() - 1)]));
                 let (rays, hits) = (by_lane!(lane => eight[lane].0), by_lane!(lane => eight[lane].1));
                 let bare = BareHits { rays, hits, are_on_spheres };
-                let Crossed { origins, front, outside } = shade_together(Cross { world, bare });
+                let Crossed { origins, front, outside } = Cross { world, bare }.cross();
                 for (lane, &place) in chunk.iter().enumerate() {
                     let (_, hit, before) = eight[lane];
                     let sides = (front & 1 << lane != 0, outside & 1 << lane != 0);
@@ -92,6 +92,13 @@ fn binding<'a>(world: &'a World, hit: &Hit) -> Option<&'a MaterialBinding> {
 struct Cross<'a> {
     world: &'a World,
     bare: BareHits<'a>,
+}
+
+impl Cross<'_> {
+    #[inline(never)]
+    fn cross(self) -> Crossed {
+        shade_together(self)
+    }
 }
 
 /// Origins of rays, and masks: whether each has met the outside, and whether it goes on there.

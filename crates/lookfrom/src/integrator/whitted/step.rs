@@ -8,7 +8,7 @@ use super::shaded::{BranchRays, FromLight, Shaded};
 use super::told::Told;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::{One, Width};
-use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum};
+use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::sample_streams::SampleStreams;
@@ -231,6 +231,14 @@ pub(super) struct BareKernel<'a> {
     pub(super) shaded: &'a mut Shaded,
     /// Receives the surfaces for AOVs, with the albedo of Whitted's coefficients.
     pub(super) first: Option<&'a mut FirstSurfaceColumns>,
+}
+
+impl BareKernel<'_> {
+    /// Apart from what listens, so that it is compiled once.
+    #[inline(never)]
+    pub(super) fn shade(self) {
+        shade_together(self);
+    }
 }
 
 impl Kernel for BareKernel<'_> {

@@ -8,6 +8,7 @@ pub(super) const CRATES: &[(&str, &str)] = &[
     ("lookfrom-scene", "lookfrom-test-data"),
     ("lookfrom", "lookfrom-bvh lookfrom-scene lookfrom-simd lookfrom-test-data"),
     ("lookfrom-view", "lookfrom lookfrom-scene"),
+    ("lookfrom-web", "lookfrom lookfrom-scene lookfrom-view"),
     ("lookfrom-cli", "lookfrom lookfrom-scene lookfrom-view"),
     ("lookfrom-py", "lookfrom lookfrom-bvh lookfrom-cli lookfrom-scene lookfrom-view"),
 ];
@@ -166,6 +167,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         ],
         exceptions: &[],
     },
+    Ladder { name: "lookfrom-web", rungs: &["dropped", "worker", "exports"], exceptions: &[] },
     Ladder {
         name: "lookfrom-cli",
         rungs: &[
