@@ -265,7 +265,7 @@ fn scaled_bessel<R: Real>(x: R) -> R {
         * u
         + 0.013_285_92)
         * u
-        + 0.398_942_28;
+        + 0.398_942_3;
     R::select(x.lt(x.like(3.75)), near * exp(-least), far / Float::sqrt(most))
 }
 
