@@ -31,6 +31,7 @@ pub mod json;
 pub mod light;
 pub mod load;
 pub mod material;
+pub mod measured;
 pub mod medium;
 pub mod model;
 pub mod nanovdb;

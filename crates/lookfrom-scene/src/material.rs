@@ -3,12 +3,15 @@
 mod hair;
 mod subsurface;
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 pub use hair::{Hair, Pigment};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
 
 use crate::error::Location;
+use crate::measured::Measured;
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, TextureId};
 
 /// A colour, constant or textured.
@@ -78,6 +81,7 @@ impl Material {
                     look.clearcoat_normal.is_some() || look.anisotropy.is_some()
                 }
                 MaterialKind::Hair(_) => true,
+                MaterialKind::Measured(measured) => !measured.is_isotropic(),
                 _ => false,
             }
     }
@@ -169,6 +173,8 @@ pub enum MaterialKind {
     Subsurface(Box<Subsurface>),
     /// Fibres of hair or fur.
     Hair(Box<Hair>),
+    /// A material that was measured.
+    Measured(Arc<Measured>),
     /// A stochastic mix: one of two materials is chosen at random at each intersection.
     Mix {
         /// The two materials; neither may contain this one, directly or indirectly.
@@ -231,6 +237,7 @@ impl MaterialKind {
             Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
             | Self::Mix { .. }
+            | Self::Measured(_)
             | Self::ShadowCatcher { .. }
             | Self::Interface => Vec::new(),
         }
@@ -281,6 +288,7 @@ impl MaterialKind {
             | Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
             | Self::Mix { .. }
+            | Self::Measured(_)
             | Self::Unlit { .. }
             | Self::ShadowCatcher { .. }
             | Self::Interface => Vec::new(),

@@ -15,6 +15,7 @@ mod lexer;
 mod light;
 mod loop_subdivision;
 mod material;
+mod measured;
 mod medium;
 mod mesh;
 mod missing;
@@ -32,6 +33,7 @@ mod version3;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::DMat4;
 
@@ -44,6 +46,7 @@ use crate::chain;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
+use crate::measured::Measured;
 use crate::packed;
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
@@ -91,6 +94,7 @@ pub(crate) fn from_bytes(
         models: BTreeMap::new(),
         warned: BTreeSet::new(),
         media: BTreeMap::new(),
+        measured: BTreeMap::new(),
         without_media: None,
         missing: Missing::default(),
         film_diagonal: 35.0,
@@ -139,6 +143,8 @@ struct Reader<'s, 'f> {
     models: BTreeMap<PathBuf, Model>,
     /// Warnings that have been given already.
     warned: BTreeSet<String>,
+    /// Measured materials by path.
+    measured: BTreeMap<PathBuf, Arc<Measured>>,
     /// Media by name.
     media: BTreeMap<String, MediumId>,
     /// An integrator that does not support media, until it has been warned of.

@@ -125,12 +125,7 @@ impl Reader<'_, '_> {
             }
             "subsurface" => self.subsurface(p)?,
             "hair" => self.hair(p)?,
-            "measured" => {
-                let message = "measured materials are not rendered yet: gray \"diffuse\" is used instead";
-                self.warn_once("measured", &p.place, message);
-                p.ignore(&["filename"]);
-                MaterialKind::Diffuse { reflectance: REFLECTANCE }
-            }
+            "measured" => self.measured(p)?,
             _ => return Err(Self::unknown(&p.place, "material", kind, KINDS.iter().copied())),
         };
         let bump_mapping = match kind {

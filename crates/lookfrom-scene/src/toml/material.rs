@@ -57,6 +57,7 @@ pub(super) const KEYS: Kinds = &[
     ),
     ("subsurface", subsurface::KEYS),
     ("hair", hair::KEYS),
+    ("measured", &["file", "normal_map", "bump"]),
     ("principled", principled::KEYS),
     ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),

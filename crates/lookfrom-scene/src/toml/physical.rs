@@ -3,11 +3,14 @@
 //! Roughness is perceptual, from 0 to 1: the α of the microfacet distribution is its square (Burley 2012). It is converted
 //! to α here, also if it is a texture.
 
+use std::sync::Arc;
+
 use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
 use crate::material::{Coat, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::measured::Measured;
 
 /// Reflectance of a diffuse surface, or base, where a scene does not set it: that of white paint, as of Whitted's `diffuse`.
 const REFLECTANCE: f32 = 0.8;
@@ -54,6 +57,10 @@ impl Reader<'_, '_> {
             },
             "subsurface" => MaterialKind::Subsurface(Box::new(self.subsurface(table))),
             "hair" => MaterialKind::Hair(Box::new(self.hair(table))),
+            "measured" => {
+                let read = table.need("file", "\"satin.bsdf\"", None, |value| self.measured(value).map(Some));
+                read.map_or(MaterialKind::Interface, MaterialKind::Measured)
+            }
             "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
             "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {
@@ -71,6 +78,12 @@ impl Reader<'_, '_> {
             }
             _ => MaterialKind::Interface,
         }
+    }
+
+    /// The tables of a file.
+    fn measured(&mut self, value: Value<'_>) -> Result<Arc<Measured>> {
+        let path = self.resolve(value, "the name of a .bsdf file")?;
+        Measured::read(&path, self.context).map(Arc::new).map_err(|error| value.blame(error))
     }
 
     /// A metal given by its name, its colour, or its optical constants.

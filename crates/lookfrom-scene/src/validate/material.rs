@@ -43,6 +43,10 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
         MaterialKind::Principled(look) => check_principled(part, look),
         MaterialKind::Subsurface(below) => check_subsurface(part, below),
         MaterialKind::Hair(hair) => check_hair(part, hair),
+        MaterialKind::Measured(measured) => match measured.is_consistent() {
+            true => Ok(()),
+            false => Err(part.fault("has tables of other sizes than it says")),
+        },
         MaterialKind::ShadowCatcher { normal } => part.finite("normal", &normal.to_array().map(f64::from)),
         MaterialKind::Diffuse { .. } | MaterialKind::Unlit { .. } | MaterialKind::Interface => Ok(()),
     }

@@ -276,12 +276,12 @@ fn what_is_not_rendered_is_warned_of_once() {
         "a.pbrt",
         "Integrator \"bdpt\" Sampler \"stratified\" \"integer xsamples\" 3 WorldBegin\n\
          Shape \"disk\"\n\
-         Material \"measured\" Material \"measured\"\n\
+         Texture \"a\" \"spectrum\" \"ptex\" Texture \"b\" \"spectrum\" \"ptex\"\n\
          Shape \"sphere\" \"float raduis\" 2",
     )]);
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
-        "a.pbrt:3:1: measured materials are not rendered yet: gray \"diffuse\" is used instead",
+        "a.pbrt:3:1: Ptex is not supported: such textures are gray",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);

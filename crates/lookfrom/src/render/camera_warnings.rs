@@ -166,6 +166,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }
             | MaterialKind::CoatedConductor { .. }
+            | MaterialKind::Measured(_)
             | MaterialKind::Subsurface(_) => true,
             // A sky on a dome is unlit.
             MaterialKind::Unlit { .. }

@@ -20,6 +20,7 @@ pub mod henyey_greenstein;
 pub mod lanes;
 pub mod layered;
 pub mod lobes;
+pub mod measured;
 pub mod microfacet;
 pub mod normalized_fresnel;
 mod one;

@@ -38,6 +38,7 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("medium-cloud/scene", "medium-cloud", 256, 16, 0.005),
     ("subsurface/scene", "subsurface", 256, 16, 0.005),
     ("hair/scene", "hair", 256, 16, 0.005),
+    ("measured/scene", "measured", 256, 16, 0.005),
     ("lights-image/scene", "lights-image", 256, 16, 0.005),
 ];
 

@@ -271,7 +271,7 @@ impl<'a> Places<'a> {
                 numbers.into_iter().for_each(|number| self.scalar(number));
             }
             MaterialKind::ShadowCatcher { normal } => self.single.push(&mut normal.y),
-            MaterialKind::Interface => {}
+            MaterialKind::Measured(_) | MaterialKind::Interface => {}
         }
     }
 

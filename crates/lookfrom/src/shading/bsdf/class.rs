@@ -8,6 +8,7 @@ use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::hair::Hair;
 use super::layered::Layered;
 use super::lobes::Lobes;
+use super::measured::Measured;
 use super::normalized_fresnel::NormalizedFresnel;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
@@ -113,6 +114,8 @@ macro_rules! bsdf_classes {
                 DiffuseTransmission(DiffuseTransmission),
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
+                /// A measured material.
+                Measured(Measured),
                 /// Whitted's model.
                 Whitted(WhittedBsdf),
                 /// The boundary of a medium in which light diffuses.

@@ -9,6 +9,8 @@ use super::whitted::WhittedBsdf;
 use super::*;
 use crate::core::hash;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
+use crate::shading::texture::SpectralMode;
+use std::f32::consts::PI;
 use std::f64::consts::TAU;
 
 /// Numbers in [0, 1), a function of the seed and the index.
@@ -57,6 +59,46 @@ fn hair(h: f32, betas: [f32; 2]) -> Bsdf {
     Bsdf::Hair(hair::Hair::new(h, 1.55, Spectrum([0.2, 0.4, 0.8, 0.1]), betas, 2.0))
 }
 
+/// A material of tables made here, seen from so many azimuths: facets of several slopes, most of them flat.
+fn measured(azimuths: usize) -> Bsdf {
+    use lookfrom_scene::measured::{Measured, Table};
+    let theta = vec![0.0, 0.7, 1.5];
+    let phi: Vec<f32> =
+        (0..azimuths).map(|k| -PI + TAU as f32 * k as f32 / (azimuths.max(2) - 1) as f32).collect();
+    let table = |size: [usize; 2], count: usize, value: &dyn Fn(u64, usize, usize) -> f32| Table {
+        size,
+        values: (0..count)
+            .flat_map(|k| (0..size[0] * size[1]).map(move |place| (k, place)))
+            .map(|(k, place)| value(k as u64, place % size[0], place / size[0]))
+            .collect(),
+    };
+    let count = azimuths * theta.len();
+    let seed = azimuths as u64;
+    // The last azimuth is the first.
+    let around = |k: u64| k % (count as u64 - if azimuths > 1 { 3 } else { 0 }).max(1);
+    let written = Measured {
+        ndf: table([9, 4], 1, &|_, x, _| 0.4 - 0.04 * x as f32),
+        sigma: table([5, 2], 1, &|_, x, _| 1.0 - 0.2 * x as f32),
+        vndf: table([7, 6], count, &|k, x, y| {
+            let rings = x as f32 * (7.0 - x as f32);
+            rings * (0.5 + number(seed, around(k) + 90 * (x as u64 + 9 * (y as u64 % 5))))
+        }),
+        luminance: table([4, 5], count, &|k, x, y| {
+            0.4 + number(seed + 1, around(k) + 90 * (x + 9 * y) as u64)
+        }),
+        spectra: table([4, 5], 2 * count, &|k, x, y| {
+            0.1 * number(seed + 2, around(k / 2) + 90 * (x + 9 * y) as u64)
+        }),
+        phi,
+        theta,
+        wavelengths: vec![400.0, 700.0],
+        digest: format!("made for tests, {azimuths}"),
+    };
+    assert!(written.is_consistent());
+    let tables = super::measured::MeasuredTables::kept(&written);
+    Bsdf::Measured(super::measured::Measured::new(tables, &SpectralMode::Rgb))
+}
+
 fn whitted() -> WhittedBsdf {
     WhittedBsdf {
         diffuse: Spectrum([0.5, 0.2, 0.1, 0.0]),
@@ -89,6 +131,8 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("conserving bubble 0.3", Bsdf::dielectric(0.75, rough(0.3, 0.3)).with_energy(Energy::Conserved)),
         ("hair", hair(0.3, [0.3, 0.3])),
         ("hair rough", hair(-0.8, [0.6, 0.8])),
+        ("measured", measured(1)),
+        ("measured grain", measured(5)),
         ("whitted", Bsdf::Whitted(whitted())),
         ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
@@ -255,12 +299,13 @@ fn samples_carry_the_values_of_f_and_pdf() {
 #[test]
 fn light_goes_both_ways() {
     let mut non_zero = 0;
-    // Not reciprocal: hair, Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
+    // Not reciprocal: tables of numbers, hair, Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
     // and rough surfaces that conserve energy, as the glass of principled bodies does.
     let is_not = |name: &str| {
         name.starts_with("whitted")
             || name.starts_with("conserving")
             || name.starts_with("hair")
+            || name.starts_with("measured")
             || name.contains("tilted")
             || ["principled body", "principled everything"].contains(&name)
     };

@@ -63,6 +63,7 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
             SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance.varies(),
         },
         MaterialKind::Hair(hair) => hair.varies(),
+        MaterialKind::Measured(_) => false,
         MaterialKind::Mix { .. } => true,
         MaterialKind::Principled(look) => look.base_color.varies(),
         MaterialKind::Unlit { albedo, .. } => albedo.varies(),
@@ -102,6 +103,7 @@ fn of_kind(
         },
         MaterialKind::Subsurface(below) => below.effective_albedo(color),
         MaterialKind::Hair(hair) => hair.reflectance(textures, point),
+        MaterialKind::Measured(tables) => Spectrum::from_rgb(tables.albedo()),
         MaterialKind::Mix { materials: parts, amount } => {
             let [first, second] =
                 parts.map(|part| of_kind(&materials[part as usize].kind, materials, textures, point));

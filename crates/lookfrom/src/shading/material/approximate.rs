@@ -46,6 +46,12 @@ pub(super) fn in_whitteds_model(
             };
             Whitted { diffuse: reflectance, specular: Color::gray(0.1), shininess: 50.0, ..plain }
         }
+        MaterialKind::Measured(_) => Whitted {
+            diffuse: albedo.map_or(Color::gray(0.5), Color::Value),
+            specular: Color::gray(0.2),
+            shininess: 50.0,
+            ..plain
+        },
         MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
         MaterialKind::Mix { materials: [first, second], amount } => {
             let greater = match amount {

@@ -8,6 +8,7 @@ use lookfrom_scene::scene::CurveId;
 
 use super::hair::HairMaterial;
 use crate::shading::bsdf::layered::CoatInterior;
+use crate::shading::bsdf::measured::MeasuredTables;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::principled as bsdf;
@@ -77,6 +78,8 @@ pub enum MaterialKind {
     Subsurface(Box<SubsurfaceMaterial>),
     /// Fibres of hair or fur.
     Hair(Box<HairMaterial>),
+    /// A material that was measured.
+    Measured(&'static MeasuredTables),
     /// One of two materials, chosen at random at each hit.
     Mix {
         /// Indices of the mixed materials; never this one, directly or through other mixtures.

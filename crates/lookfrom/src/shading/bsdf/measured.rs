@@ -1,0 +1,269 @@
+//! Measured materials: Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material Acquisition and Rendering"; with the
+//! conventions of pbrt-v4.
+//!
+//! `f = s(u, λ) D(ω_m) / (4 σ(ω_o) cos θ_i)`, where u are the two numbers that choose ω_m as a visible normal. Directions are sampled by the
+//! luminance of s over u.
+
+mod interpolant;
+
+use std::f32::consts::{FRAC_2_PI, PI};
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
+
+use glam::Vec3;
+use lookfrom_scene::measured as written;
+
+use self::interpolant::{Between, Interpolant};
+use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, same_side};
+use crate::core::color::{DenselySampledSpectrum, standard_illuminant};
+use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
+use crate::core::spectrum::Spectrum;
+use crate::shading::texture::SpectralMode;
+
+/// The tables of a measured material, compiled.
+pub struct MeasuredTables {
+    is_isotropic: bool,
+    ndf: Interpolant<0>,
+    sigma: Interpolant<0>,
+    vndf: Interpolant<2>,
+    luminance: Interpolant<2>,
+    spectra: Interpolant<3>,
+    /// What is reflected of red, green and blue, as wavelengths 0, 1 and 2 of a table.
+    colors: Interpolant<3>,
+    digest: String,
+}
+
+impl fmt::Debug for MeasuredTables {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "MeasuredTables({})", self.digest)
+    }
+}
+
+impl MeasuredTables {
+    /// Compiles tables.
+    pub fn new(written: &written::Measured) -> Self {
+        let written::Measured { phi, theta, wavelengths, .. } = written;
+        Self {
+            is_isotropic: written.is_isotropic(),
+            ndf: Interpolant::plain(&written.ndf, []),
+            sigma: Interpolant::plain(&written.sigma, []),
+            vndf: Interpolant::density(&written.vndf, [phi, theta]),
+            luminance: Interpolant::density(&written.luminance, [phi, theta]),
+            spectra: Interpolant::plain(&written.spectra, [phi, theta, wavelengths]),
+            colors: Interpolant::plain(&colors(written), [phi, theta, &[0.0, 1.0, 2.0]]),
+            digest: written.digest.clone(),
+        }
+    }
+
+    /// The compiled tables of a file, which are kept as long as the process, once for each content: BSDFs are copied, and refer to them.
+    pub fn kept(written: &written::Measured) -> &'static Self {
+        static KEPT: Mutex<Vec<&'static MeasuredTables>> = Mutex::new(Vec::new());
+        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        match kept.iter().find(|tables| tables.digest == written.digest) {
+            Some(tables) => tables,
+            None => {
+                let tables: &'static Self = Box::leak(Box::new(Self::new(written)));
+                kept.push(tables);
+                tables
+            }
+        }
+    }
+
+    /// The fraction of light from all around that is reflected straight up, in linear Rec. 709.
+    pub(crate) fn albedo(&'static self) -> [f32; 3] {
+        const COUNT: u32 = 256;
+        let bsdf = Measured::new(self, &SpectralMode::Rgb);
+        let numbers =
+            |index: u32| [(index as f32 + 0.5) / COUNT as f32, index.reverse_bits() as f32 * 2_f32.powi(-32)];
+        let mut sum = Spectrum::BLACK;
+        for sample in (0..COUNT)
+            .filter_map(|index| bsdf.sample(Vec3::Z, 0.0, numbers(index), Mode::Radiance, Lobes::ALL))
+            .filter(|sample| sample.pdf > 0.0)
+        {
+            sum += sample.f * (sample.wi.z.abs() / sample.pdf / COUNT as f32);
+        }
+        sum.rgb()
+    }
+}
+
+/// Spectra as colours in linear Rec. 709 under daylight, in place of three wavelengths.
+fn colors(written: &written::Measured) -> written::Table {
+    let wavelengths = &written.wavelengths;
+    let daylight = standard_illuminant();
+    // The colour of the piecewise linear function that is 1 at one of the wavelengths.
+    let colors: Vec<[f32; 3]> = (0..wavelengths.len())
+        .map(|index| {
+            let at = |nm: f32| {
+                let between = |one: usize, other: usize| match wavelengths.get(other) {
+                    Some(other) => 1.0 - (nm - wavelengths[one]) / (other - wavelengths[one]),
+                    None => 1.0,
+                };
+                let hat = match nm < wavelengths[index] {
+                    true => between(index, index.wrapping_sub(1)),
+                    false => between(index, index + 1),
+                };
+                hat.max(0.0)
+            };
+            let lit = std::array::from_fn(|i| at(360.0 + i as f32) * daylight.samples()[i]);
+            DenselySampledSpectrum::from_samples(lit).to_rgb()
+        })
+        .collect();
+    let area = written.spectra.area();
+    let mut values = Vec::with_capacity(written.spectra.values.len() / wavelengths.len() * 3);
+    for tables in written.spectra.values.chunks(area * wavelengths.len()) {
+        for channel in 0..3 {
+            values.extend((0..area).map(|place| {
+                let terms =
+                    colors.iter().enumerate().map(|(k, color)| color[channel] * tables[k * area + place]);
+                terms.sum::<f32>().max(0.0)
+            }));
+        }
+    }
+    written::Table { size: written.spectra.size, values }
+}
+
+/// A measured material, for the colours or wavelengths of a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured {
+    tables: &'static MeasuredTables,
+    /// The wavelengths of the lanes in nm; `None` for red, green and blue.
+    wavelengths: Option<[f32; 4]>,
+}
+
+impl PartialEq for Measured {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.tables, other.tables) && self.wavelengths == other.wavelengths
+    }
+}
+
+/// An outgoing direction of tables: of a material seen from outside.
+struct Seen {
+    phi: f32,
+    theta: f32,
+    by_direction: [Between<2>; 2],
+}
+
+impl Measured {
+    /// By its tables, for a sample.
+    pub fn new(tables: &'static MeasuredTables, mode: &SpectralMode) -> Self {
+        let wavelengths = match mode {
+            SpectralMode::Rgb => None,
+            SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda()),
+        };
+        Self { tables, wavelengths }
+    }
+
+    fn seen(&self, wo: Vec3) -> Seen {
+        let (theta, phi) = angles(wo);
+        let by_direction =
+            [self.tables.vndf.between([phi, theta]), self.tables.luminance.between([phi, theta])];
+        Seen { phi, theta, by_direction }
+    }
+
+    /// The place of a normal in tables that are seen from a direction.
+    fn place_of_normal(&self, seen: &Seen, wm: Vec3) -> [f32; 2] {
+        let (theta, phi) = angles(wm);
+        let [x, y] = place(theta, if self.tables.is_isotropic { phi - seen.phi } else { phi });
+        [x, y - y.floor()]
+    }
+
+    /// `f` for directions on the outside, by the numbers that choose their half vector, and its place.
+    fn value(&self, seen: &Seen, u: [f32; 2], normal: [f32; 2], wi: Vec3) -> Spectrum {
+        let tables = self.tables;
+        let reflected = match self.wavelengths {
+            Some(wavelengths) => {
+                let at = |nm| tables.spectra.value(u, &tables.spectra.between([seen.phi, seen.theta, nm]));
+                Spectrum(wavelengths.map(|nm| at(nm).max(0.0)))
+            }
+            None => {
+                let at = |channel: f32| {
+                    tables.colors.value(u, &tables.colors.between([seen.phi, seen.theta, channel]))
+                };
+                Spectrum::from_rgb([0.0, 1.0, 2.0].map(at))
+            }
+        };
+        let sigma = tables.sigma.value(place(seen.theta, seen.phi), &tables.sigma.between([]));
+        let ndf = tables.ndf.value(normal, &tables.ndf.between([]));
+        reflected * (ndf / (4.0 * sigma.max(f32::MIN_POSITIVE) * wi.z.abs()))
+    }
+}
+
+/// The angles θ to the normal and φ around it, −π … π.
+fn angles(w: Vec3) -> (f32, f32) {
+    let across = (w.x * w.x + w.y * w.y).sqrt();
+    let turns = |y, x| angle_in_turns::<f32>(y, x) * (2.0 * PI);
+    (turns(across, w.z), turns(w.y, w.x))
+}
+
+/// The place of a direction in tables.
+fn place(theta: f32, phi: f32) -> [f32; 2] {
+    [(theta * FRAC_2_PI).max(0.0).sqrt(), phi / (2.0 * PI) + 0.5]
+}
+
+/// What one density of normals in tables is over solid angle of incident directions.
+fn jacobian(wo: Vec3, wm: Vec3, [x, _]: [f32; 2]) -> f32 {
+    let sin = (wm.x * wm.x + wm.y * wm.y).sqrt();
+    4.0 * wo.dot(wm) * (2.0 * PI * PI * x * sin).max(1e-6)
+}
+
+/// Both directions on the outside, and their half vector; `None` where light does not go.
+fn on_the_outside(wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
+    if !same_side(wo, wi) {
+        return None;
+    }
+    let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
+    let wm = (wo + wi).try_normalize()?;
+    Some((wo, wi, wm))
+}
+
+impl ScatteringFunction for Measured {
+    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
+        let Some((wo, wi, wm)) = on_the_outside(wo, wi) else { return Spectrum::BLACK };
+        let seen = self.seen(wo);
+        let normal = self.place_of_normal(&seen, wm);
+        let (u, _) = self.tables.vndf.invert(normal, &seen.by_direction[0]);
+        self.value(&seen, u, normal, wi)
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
+        let Some((wo, _, wm)) = on_the_outside(wo, wi) else { return 0.0 };
+        let seen = self.seen(wo);
+        let normal = self.place_of_normal(&seen, wm);
+        let (u, of_normal) = self.tables.vndf.invert(normal, &seen.by_direction[0]);
+        of_normal * self.tables.luminance.pdf(u, &seen.by_direction[1]) / jacobian(wo, wm, normal)
+    }
+
+    fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
+        let is_inside = wo.z < 0.0;
+        let wo = if is_inside { -wo } else { wo };
+        let seen = self.seen(wo);
+        let (u, of_luminance) = self.tables.luminance.sample(u, &seen.by_direction[1])?;
+        let (normal, of_normal) = self.tables.vndf.sample(u, &seen.by_direction[0])?;
+
+        // The normal, and what it reflects.
+        let [x, y] = normal;
+        let around = if self.tables.is_isotropic { seen.phi } else { 0.0 };
+        let (sin_phi, cos_phi) = sin_cos_of_turns(y - 0.5 + around / (2.0 * PI));
+        let (sin, cos) = sin_cos_of_turns(0.25 * x * x);
+        let wm = Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+        let wi = wm * (2.0 * wo.dot(wm)) - wo;
+        if !same_side(wo, wi) {
+            return None;
+        }
+        let pdf = of_luminance * of_normal / jacobian(wo, wm, normal);
+        let f = self.value(&seen, u, normal, wi);
+        let wi = wi.normalize();
+        Some(BsdfSample::new(if is_inside { -wi } else { wi }, f, pdf, self.lobes()))
+    }
+
+    fn lobes(&self) -> Lobes {
+        Lobes::REFLECTION | Lobes::GLOSSY
+    }
+
+    fn description(&self) -> Description {
+        let lanes = self.wavelengths.map_or(Vec::new(), |wavelengths| {
+            vec![("wavelengths", super::Parameter::Numbers(wavelengths.to_vec()))]
+        });
+        Description { kind: "measured", does: "reflects light as a material was measured", numbers: lanes }
+    }
+}
