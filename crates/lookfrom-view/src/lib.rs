@@ -10,16 +10,14 @@
 //! The messages are in `message`. The page is in `assets/`: embedded in release builds, read from disk at each request in
 //! builds with debug assertions.
 
-#[cfg(feature = "server")]
+mod answers;
 mod assets;
-#[cfg(feature = "server")]
 mod bundle;
 mod compare;
 mod cost;
 mod desk;
 mod develop;
 mod document;
-#[cfg(feature = "server")]
 mod handout;
 mod heat;
 mod lobe;
@@ -30,6 +28,7 @@ mod patience;
 mod render;
 #[cfg(feature = "server")]
 mod server;
+mod source;
 mod space;
 mod told;
 mod view;
@@ -43,7 +42,6 @@ use std::path::PathBuf;
 use lookfrom::session::Options;
 
 pub use desk::Desk;
-#[cfg(feature = "server")]
 pub use handout::handout;
 pub use mailbox::Outgoing;
 #[cfg(feature = "server")]

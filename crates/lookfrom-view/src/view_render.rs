@@ -14,7 +14,7 @@ use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use crate::cost::CostMap;
 use crate::document::Loaded;
 use crate::mailbox::Mailbox;
-use crate::message::ViewRequest;
+use crate::message::{Answer, ViewRequest};
 use crate::view::refused;
 
 /// The time that a coarse picture may take while the camera is moved.
@@ -172,6 +172,25 @@ impl ViewRender {
             self.stage = Stage::Done;
         }
         Ok(true)
+    }
+
+    /// Whether the film is finished.
+    pub(crate) fn is_done(&self) -> bool {
+        self.film.is_some() && self.stage == Stage::Done
+    }
+
+    /// How far the view of this number is.
+    pub(crate) fn progress(&self, view: u64) -> Answer {
+        let seconds = self.spent.as_secs_f64();
+        Answer::Progress {
+            view,
+            samples: self.samples,
+            of: self.session.settings().samples,
+            seconds,
+            rays_per_second: self.rays as f64 / seconds.max(1e-9),
+            done: self.is_done(),
+            hash: self.film.as_ref().filter(|_| self.is_done()).map(Film::hash),
+        }
     }
 
     /// A sample of this view.

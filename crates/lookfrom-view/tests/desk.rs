@@ -188,3 +188,86 @@ fn files_of_a_scene_come_from_memory() {
     assert!(heard.iter().all(|(message, _)| message["type"] != "error"), "{heard:?}");
     assert_eq!(heard.last().expect("a picture").0["done"], true);
 }
+
+/// What a hand-out holds.
+fn held(html: &[u8]) -> Value {
+    let html = std::str::from_utf8(html).expect("a text");
+    let (_, rest) = html.split_once("id=\"handout\">").expect("its data");
+    serde_json::from_str(rest.split("</script>").next().expect("their end")).expect("they are JSON")
+}
+
+#[test]
+fn a_page_is_saved_with_the_view_and_its_pixel() {
+    let mut desk = desk(Duration::from_millis(30), SCENE);
+    let camera =
+        json!({ "lookfrom": [5.0, 1.0, 0.0], "lookat": [0.0, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "fov": 30.0 });
+    desk.hear(
+        &json!({ "type": "view", "id": 1, "camera": camera, "size": [64, 48], "exposure": 1.0, "samples": 9, "layer": "depth" })
+            .to_string(),
+    );
+    let heard = turns(&mut desk, 1000);
+    let hash =
+        heard.iter().rev().find(|(message, _)| message["type"] == "progress").expect("an end").0["hash"]
+            .clone();
+    desk.hear(&json!({ "type": "inspect", "id": 2, "x": 30, "y": 20, "sample": 5 }).to_string());
+    let inspection = turns(&mut desk, 10)[0].0["inspection"].clone();
+    desk.hear(&json!({ "type": "handout", "id": 3, "pixel": [30, 20], "sample": 5 }).to_string());
+    let (header, html) = turns(&mut desk, 10).remove(0);
+    assert_eq!(header, json!({ "kind": "file", "id": 3, "name": "scene.html", "mime": "text/html" }));
+    let held = held(&html);
+    assert_eq!((&held["pixel"], &held["sample"]), (&json!([30, 20]), &json!(5)));
+    assert_eq!(held["samples"].as_object().expect("samples").len(), 8, "the brightest, too");
+    assert_eq!(held["samples"]["5"]["inspection"]["inspection"], inspection);
+    assert_eq!(held["progress"]["hash"], hash);
+    assert_eq!((&held["scene"]["size"], &held["scene"]["exposure"]), (&json!([64, 48]), &json!(1.0)));
+    assert_eq!(held["scene"]["camera"]["lookfrom"], json!([5.0, 1.0, 0.0]));
+    assert_eq!((&held["picture"]["layer"], &held["picture"]["done"]), (&json!("color"), &json!(true)));
+    assert_eq!(held["source"], SCENE);
+
+    desk.hear(&json!({ "type": "handout", "id": 4, "pixel": [64, 20] }).to_string());
+    let error = &turns(&mut desk, 10)[0].0;
+    assert_eq!((&error["type"], &error["id"]), (&json!("error"), &json!(4)));
+    assert!(
+        error["message"].as_str().expect("a text").contains("outside of the picture of 64 × 48"),
+        "{error}"
+    );
+}
+
+/// Where nothing can be saved beside the scene, the text of a view is the whole scene.
+#[test]
+fn words_are_the_whole_scene() {
+    let mut desk = desk(Duration::from_millis(30), SCENE);
+    desk.hear(
+        &json!({ "type": "view", "id": 1, "size": [64, 48], "samples": 2, "depth": 3, "tonemap": "clamp" })
+            .to_string(),
+    );
+    turns(&mut desk, 1000);
+    desk.hear(&json!({ "type": "words", "id": 2 }).to_string());
+    let words = turns(&mut desk, 10).remove(0).0;
+    let text = words["toml"].as_str().expect("a text");
+    assert!(!text.contains("import") && text.contains("[materials.red]"), "{text}");
+    let picture = |text: &str, options: &Options| {
+        let session = Session::from_bytes("scene.toml", text.into(), options);
+        let session = session.unwrap_or_else(|error| panic!("{error}\n{text}"));
+        session.render(&()).expect("a picture").picture.pixels.clone()
+    };
+    let options = Options {
+        width: Some(64),
+        height: Some(48),
+        samples: Some(2),
+        depth: Some(3),
+        tonemap: Some(Tonemap::Clamp),
+        ..Options::default()
+    };
+    assert_eq!(picture(text, &Options::default()), picture(SCENE, &options));
+}
+
+#[test]
+fn the_vocabulary_is_that_of_the_reader() {
+    let mut desk = desk(Duration::from_millis(30), SCENE);
+    desk.hear(&json!({ "type": "vocabulary", "id": 1 }).to_string());
+    let answer = turns(&mut desk, 1000).pop().expect("an answer").0;
+    let told: Vec<(String, Vec<&str>)> = lookfrom_scene::toml::vocabulary();
+    let told: Vec<Value> = told.iter().map(|(title, keys)| json!({ "title": title, "keys": keys })).collect();
+    assert_eq!(answer["tables"], Value::from(told));
+}
