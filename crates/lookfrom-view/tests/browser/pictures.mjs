@@ -44,7 +44,7 @@ await at("exercise", join(SCENES, "notes-exercise.toml"), ["--size", "400x400"],
     await inspect(page, 275, 200);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
     await page.getByLabel("Lesson").selectOption("2");
-    await settle(page);
+    await settle(page, "#exercise svg");
     await keep("exercise");
 });
 
