@@ -86,7 +86,7 @@ impl Window {
             width,
             height,
             scale: 1,
-            samples: render.samples,
+            samples: render.samples + render.lent.back,
             of: session.settings().samples,
             done: render.is_done(),
             layer: "color".to_owned(),

@@ -20,9 +20,11 @@ mod develop;
 mod document;
 mod handout;
 mod heat;
+mod lent;
 mod lobe;
 mod mailbox;
 mod message;
+mod parts;
 #[cfg(feature = "server")]
 mod patience;
 mod render;
@@ -43,6 +45,7 @@ use lookfrom::session::Options;
 
 pub use desk::Desk;
 pub use handout::handout;
+pub use lent::Part;
 pub use mailbox::Outgoing;
 #[cfg(feature = "server")]
 pub use server::{Address, Server};

@@ -16,6 +16,7 @@ use lookfrom_scene::Result;
 use crate::cost::{CostMap, Counted};
 use crate::develop::{self, Shown};
 use crate::document::{Document, Loaded, panicked};
+use crate::lent::Part;
 use crate::mailbox::{Mailbox, Task};
 use crate::message::{Answer, Header, Request, ViewRequest};
 use crate::view::Variation;
@@ -61,6 +62,12 @@ impl Window {
 
     /// Does these tasks, then renders a little more.
     pub(crate) fn turn(&mut self, tasks: Vec<Task>) {
+        self.hear(tasks);
+        self.guarded(None, Self::step);
+    }
+
+    /// Does these tasks.
+    pub(crate) fn hear(&mut self, tasks: Vec<Task>) {
         for task in tasks {
             let id = match &task {
                 Task::Request(request) => request.id(),
@@ -68,7 +75,14 @@ impl Window {
             };
             self.guarded(id, |window| window.answer(task));
         }
-        self.guarded(None, Self::step);
+    }
+
+    /// Takes back a part of the picture, and shows it.
+    pub(crate) fn take_part(&mut self, part: &Part, film: &[u8]) {
+        let (Some(render), Some(loaded)) = (&mut self.render, &self.loaded) else { return };
+        if render.take_part(part, film, &loaded.options.budget) {
+            self.guarded(None, Self::show);
+        }
     }
 
     /// Does something; its failure becomes an answer, a panic too.
@@ -86,8 +100,11 @@ impl Window {
 
     /// Whether there is something to render. A pause holds up passes, not the first sight of another view.
     pub(crate) fn has_work(&self) -> bool {
-        let stage = self.render.as_ref().map_or(Stage::Done, |render| render.stage);
-        stage != Stage::Done && !(self.is_paused && stage == Stage::Full)
+        self.render.as_ref().is_some_and(|render| match render.stage {
+            Stage::Coarse(_) => true,
+            Stage::Full => !self.is_paused && !render.is_waiting(),
+            Stage::Done => false,
+        })
     }
 
     fn answer(&mut self, task: Task) -> Result<()> {
@@ -213,7 +230,7 @@ impl Window {
             width: film.width(),
             height: film.height(),
             scale,
-            samples: render.samples.max(1),
+            samples: (render.samples + render.lent.back).max(1),
             of: session.settings().samples,
             done: render.is_done(),
             layer: request.layer.clone().unwrap_or_else(|| "color".to_owned()),

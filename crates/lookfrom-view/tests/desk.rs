@@ -58,21 +58,25 @@ fn desk(slice: Duration, text: &str) -> Desk {
     desk
 }
 
-/// The messages of a number of turns, frames as their headers; ends when there is no more work.
+/// What a desk says, frames as their headers and what belongs to them.
+fn said(desk: &Desk) -> Vec<(Value, Vec<u8>)> {
+    let split = |message| match message {
+        Outgoing::Text(text) => (serde_json::from_str(&text).expect("it is JSON"), Vec::new()),
+        Outgoing::Binary(bytes) => {
+            let length = u32::from_le_bytes(bytes[..4].try_into().expect("four bytes")) as usize;
+            let header = serde_json::from_slice(&bytes[4..4 + length]).expect("it is JSON");
+            (header, bytes[4 + length..].to_vec())
+        }
+    };
+    std::iter::from_fn(|| desk.say()).map(split).collect()
+}
+
+/// The messages of a number of turns; ends when there is no more work.
 fn turns(desk: &mut Desk, most: usize) -> Vec<(Value, Vec<u8>)> {
     let mut heard = Vec::new();
     for _ in 0..most {
         let has_more = desk.turn();
-        while let Some(message) = desk.say() {
-            heard.push(match message {
-                Outgoing::Text(text) => (serde_json::from_str(&text).expect("it is JSON"), Vec::new()),
-                Outgoing::Binary(bytes) => {
-                    let length = u32::from_le_bytes(bytes[..4].try_into().expect("four bytes")) as usize;
-                    let header = serde_json::from_slice(&bytes[4..4 + length]).expect("it is JSON");
-                    (header, bytes[4 + length..].to_vec())
-                }
-            });
-        }
+        heard.extend(said(desk));
         if !has_more {
             return heard;
         }
@@ -270,4 +274,84 @@ fn the_vocabulary_is_that_of_the_reader() {
     let told: Vec<(String, Vec<&str>)> = lookfrom_scene::toml::vocabulary();
     let told: Vec<Value> = told.iter().map(|(title, keys)| json!({ "title": title, "keys": keys })).collect();
     assert_eq!(answer["tables"], Value::from(told));
+}
+
+/// The hash of a picture that is rendered with a helper, and how many parts were lent. `pass` may change each film on its way.
+fn with_helper(pass: impl Fn(usize, Vec<u8>) -> Vec<u8>) -> (Value, usize) {
+    let scene = SCENE.replace("samples = 4", "samples = 40");
+    let keeps_films =
+        || Settings { options: Options { film: true, ..Options::default() }, ..settings("scene.toml") };
+    let [mut desk, mut helper] = [(); 2].map(|()| Desk::new(Duration::ZERO));
+    for desk in [&mut desk, &mut helper] {
+        desk.open(keeps_films(), files(&[("scene.toml", scene.as_bytes())]));
+        desk.hear(&view(1));
+    }
+    let mut parts = 0;
+    for _ in 0..1000 {
+        desk.turn();
+        // Two are out at once, and come back in the other order.
+        let lent = [desk.lend(Duration::ZERO), desk.lend(Duration::ZERO)];
+        for part in lent.iter().rev().flatten() {
+            let film = helper.render_part(part).expect("it has the scene");
+            desk.take_part(part, &pass(parts, film));
+            parts += 1;
+        }
+        let progress = said(&desk).into_iter().map(|(message, _)| message);
+        if let Some(done) = progress.into_iter().find(|message| message["hash"].is_string()) {
+            assert_eq!((&done["samples"], &done["of"]), (&json!(40), &json!(40)));
+            assert!(!desk.turn() && desk.lend(Duration::ZERO).is_none(), "there is no more to do");
+            return (done["hash"].clone(), parts);
+        }
+    }
+    panic!("it never ends")
+}
+
+#[test]
+fn a_picture_with_helpers_has_the_same_bits() {
+    let alone = {
+        let mut desk = desk(Duration::from_millis(30), &SCENE.replace("samples = 4", "samples = 40"));
+        desk.hear(&view(1));
+        let heard = turns(&mut desk, 1000);
+        heard.iter().rev().find_map(|(message, _)| message["hash"].as_str().map(Value::from)).expect("an end")
+    };
+    let (helped, parts) = with_helper(|_, film| film);
+    assert!(parts > 4, "{parts} parts");
+    assert_eq!(helped, alone);
+    // Whatever a helper does: none, a film that is damaged, one of other samples.
+    let first = std::cell::RefCell::new(Vec::new());
+    let (helped, _) = with_helper(|number, mut film| match number {
+        1 => Vec::new(),
+        3 => {
+            let middle = film.len() / 2;
+            film[middle] ^= 1;
+            film
+        }
+        4 => first.borrow().clone(),
+        _ => {
+            first.replace(film.clone());
+            film
+        }
+    });
+    assert_eq!(helped, alone);
+}
+
+#[test]
+fn a_part_of_an_earlier_view_is_not_added() {
+    let scene = SCENE.replace("samples = 4", "samples = 40");
+    let mut desk = Desk::new(Duration::ZERO);
+    let options = Options { film: true, ..Options::default() };
+    desk.open(Settings { options, ..settings("scene.toml") }, files(&[("scene.toml", scene.as_bytes())]));
+    desk.hear(&view(1));
+    let lent = (0..100).find_map(|_| {
+        desk.turn();
+        desk.lend(Duration::ZERO)
+    });
+    let part = lent.expect("a part");
+    let film = desk.render_part(&part).expect("its own film");
+    desk.hear(&json!({ "type": "view", "id": 2, "samples": 60, "tonemap": "clamp" }).to_string());
+    desk.turn();
+    said(&desk);
+    desk.take_part(&part, &film);
+    assert_eq!(said(&desk), [], "nothing has changed");
+    assert!(desk.lend(Duration::from_secs(1000)).is_none(), "it is not worth the while");
 }

@@ -91,6 +91,23 @@ test("six pictures have the hashes of the command", async () => {
     await context.close();
 });
 
+test("several workers render one picture, and it has the bits of the command", async () => {
+    const { page, context, errors } = await open(browser, `${FILE}#scene=scenes/cornell.toml&size=128x128&samples=96`);
+    await finished(page);
+    await until("the hash", async () => (await hashOf(page)) !== "");
+    assert.ok(page.workers().length > 1, "there are helpers");
+    const told = await page.locator("#progress-text").textContent();
+    const { stdout } = await promisify(execFile)(BINARY, ["render", "scenes/cornell.toml", "--size", "128x128", "--samples", "96", "--denoise=off", "--json", "--quiet", "--output", "/tmp/t/x.png"], { cwd: ROOT, maxBuffer: 2 ** 24 });
+    assert.equal(await hashOf(page), JSON.parse(stdout).hash, told);
+    // Another view in the middle of it: what comes back of the first is not added.
+    await page.locator("#picture-overlay").press("ArrowRight");
+    await page.waitForTimeout(2500);
+    await page.locator("#picture-overlay").press("Home");
+    await until("the first picture again", async () => (await hashOf(page)) === JSON.parse(stdout).hash);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("from a server of static files, and nothing leaves the page", async () => {
     const [asked, bytes] = [[], await readFile(PAGE)];
     const server = createServer((request, response) => {

@@ -156,12 +156,12 @@ pub(super) const LADDERS: &[Ladder] = &[
     Ladder {
         name: "lookfrom-view",
         rungs: &[
-            "assets heat message patience source",
+            "assets heat lent message patience source",
             "compare cost mailbox words",
             "document",
             "view",
             "bundle develop lobe space view_render",
-            "render told",
+            "parts render told",
             "answers handout",
             "desk window",
             "server",
