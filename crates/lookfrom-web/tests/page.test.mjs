@@ -164,7 +164,7 @@ test("dropped files: a scene, what it lacks, an archive, a reference", async () 
     await until("its picture", async () => (await page.locator("#scene-name").textContent()) === "mine.toml" && (await page.locator("#picture").evaluate((canvas) => canvas.width)) === 96);
     await finished(page);
     const whole = await pictureHash(page);
-    assert.match(page.url(), /dropped=mine\.toml/);
+    await until("its name in the link", async () => /dropped=mine\.toml/.test(page.url()));
 
     const archive = zip("folder/model.obj", Buffer.from(QUAD.replace("mtllib quad.mtl\nusemtl red\n", "")));
     await drop(page, [["model.zip", archive]]);
