@@ -258,6 +258,23 @@ test("completion in the text: by keys, by the mouse, and named for screen reader
     await context.close();
 });
 
+test("360 pixels: nothing is cut off", async () => {
+    for (const width of [360, 800]) {
+        const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`, { viewport: { width, height: 740 } });
+        await finished(page);
+        await page.getByRole("tab", { name: "Scene" }).click();
+        await page.getByLabel("Text of the scene").press("Control+Space");
+        await page.getByRole("listbox", { name: "Completions" }).waitFor();
+        await screenshot(page, `web-${width}`);
+        const outside = await page.evaluate(() =>
+            [...document.querySelectorAll("button, input, select, summary, [role=option]")].filter((control) => control.checkVisibility() && !control.closest(".skip") && control.getBoundingClientRect().right > innerWidth + 1).map((control) => control.outerHTML));
+        assert.deepEqual(outside, []);
+        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "the page scrolls sideways");
+        assert.deepEqual(errors, []);
+        await context.close();
+    }
+});
+
 test("Share: a page that answers for its pixel, and a scene that is whole", async () => {
     const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`, { acceptDownloads: true });
     await finished(page);
