@@ -45,7 +45,7 @@ export function createHelpers(create, module, shown) {
 
     return {
         /** How many there may be. */
-        count: Math.max(0, Math.min(MOST, navigator.hardwareConcurrency || 1) - 1),
+        count: () => Math.max(0, Math.min(MOST, navigator.hardwareConcurrency || 1) - 1),
         /** The film of a part; empty where that cannot be. @param {string} part */
         async render(part) {
             /** @type {Helper | undefined} */

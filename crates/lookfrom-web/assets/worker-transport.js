@@ -30,7 +30,7 @@ export function workerTransport(module, script) {
             if (data === null) {
                 isOpen = true;
                 events?.opened();
-                send({ idle: helpers.count });
+                send({ idle: helpers.count() });
                 if (scene) send(...messagesOfScene());
             } else if (data.lent) helpers.render(data.lent).then((film) => send({ part: data.lent, film }));
             else if (typeof data === "string" || data instanceof ArrayBuffer) events?.heard(data);
