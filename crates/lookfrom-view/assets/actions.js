@@ -37,8 +37,9 @@ function attachMenu(app) {
         "copy-toml": async () => copy((await app.socket.request("words")).toml, "The view as TOML"),
         "copy-command": async () => copy((await app.socket.request("words")).command, "The command line"),
         "copy-link": async () => copy(location.href, "The link"),
-        "save-png": () => save("png"),
-        "save-exr": () => save("exr"),
+        "save-png": async () => save(await app.socket.request("save", { format: "png" })),
+        "save-exr": async () => save(await app.socket.request("save", { format: "exr" })),
+        "save-page": async () => save(await app.socket.request("handout", { pixel: app.pixel.get(), sample: app.sample.get() })),
     };
     for (const [id, action] of Object.entries(actions)) {
         byId(id).addEventListener("click", () => {
@@ -67,9 +68,8 @@ function attachMenu(app) {
         }
     }
 
-    /** @param {string} format */
-    async function save(format) {
-        const { header, payload } = await app.socket.request("save", { format });
+    /** @param {{header: import("./protocol.js").FileHeader, payload: ArrayBuffer}} file */
+    function save({ header, payload }) {
         const url = URL.createObjectURL(new Blob([payload], { type: header.mime }));
         h("a", { href: url, download: header.name }).click();
         setTimeout(() => URL.revokeObjectURL(url), 10_000);

@@ -1,5 +1,6 @@
 // From the pixel to the world: P_k goes through T1, S2, R3 and T4, for a pixel that is dragged.
 
+import { draggable } from "./drag.js";
 import { formula, matrix } from "./formula.js";
 import { byId, h, replace, svg } from "./html.js";
 import { short } from "./format.js";
@@ -75,22 +76,7 @@ function pixelPad([width, height], start, moved) {
         show();
         moved(p);
     };
-    const drag = (/** @type {PointerEvent} */ event) => {
-        const box = picture.getBoundingClientRect();
-        move(((event.clientX - box.left) / box.width) * width, (1 - (event.clientY - box.top) / box.height) * height);
-    };
-    picture.addEventListener("pointerdown", (event) => {
-        picture.setPointerCapture(event.pointerId);
-        drag(event);
-    });
-    picture.addEventListener("pointermove", (event) => void (picture.hasPointerCapture(event.pointerId) && drag(event)));
-    picture.addEventListener("keydown", (event) => {
-        const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-        if (!by) return;
-        event.preventDefault();
-        const step = event.shiftKey ? 10 : 1;
-        move(p[0] + by[0] * step, p[1] + by[1] * step);
-    });
+    draggable(picture, { to: (x, y) => move(x, height - y), by: (right, up) => move(p[0] + right, p[1] + up) });
     show();
     return picture;
 }

@@ -1,5 +1,6 @@
 // Snell's law and Fresnel's equations as a dial: the incident ray is turned by hand.
 
+import { draggable } from "./drag.js";
 import { display, frac } from "./formula.js";
 import { h, replace, svg } from "./html.js";
 import { slider } from "./fields.js";
@@ -26,23 +27,13 @@ export function fresnelLesson(app) {
     const element = h("div", {}, h("p", {}, "Turn the incident ray: drag it, or use the arrow keys."), figure, words,
         first.element, second.element, swap, display("η_1 sin θ_1 = η_2 sin θ_2,  F = ", frac("1", "2"), "( r_s² + r_p² )"), curve, here);
 
-    const turn = (/** @type {PointerEvent} */ event) => {
-        const box = figure.getBoundingClientRect();
-        const [x, y] = [((event.clientX - box.left) / box.width) * 300 - CX, ((event.clientY - box.top) / box.height) * 260 - CY];
-        angle = Math.min(Math.PI / 2 - 1e-3, Math.abs(Math.atan2(Math.abs(x), Math.abs(y))));
+    const turn = (/** @type {number} */ to) => {
+        angle = Math.max(0, Math.min(Math.PI / 2 - 1e-3, to));
         draw();
     };
-    figure.addEventListener("pointerdown", (event) => {
-        figure.setPointerCapture(event.pointerId);
-        turn(event);
-    });
-    figure.addEventListener("pointermove", (event) => void (figure.hasPointerCapture(event.pointerId) && turn(event)));
-    figure.addEventListener("keydown", (event) => {
-        const by = { ArrowLeft: 1, ArrowRight: -1, ArrowUp: -1, ArrowDown: 1 }[event.key];
-        if (!by) return;
-        event.preventDefault();
-        angle = Math.max(0, Math.min(Math.PI / 2 - 1e-3, angle + (by * Math.PI) / 180));
-        draw();
+    draggable(figure, {
+        to: (x, y) => turn(Math.atan2(Math.abs(x - CX), Math.abs(y - CY))),
+        by: (right, up) => turn(angle - ((right + up) * Math.PI) / 180),
     });
 
     function draw() {

@@ -1,5 +1,6 @@
 // Light through fog: Beer and Lambert's law from many thin slices, and the same number from random flights, in the mean.
 
+import { draggable } from "./drag.js";
 import { display, formula, frac } from "./formula.js";
 import { h, replace, svg } from "./html.js";
 import { slider } from "./fields.js";
@@ -39,21 +40,7 @@ export function mediumLesson(app) {
         h("p", {}, "Make the way so long that half of the light arrives, for whatever σ. How long is it, as a formula?"),
         verdict, here);
 
-    const drag = (/** @type {PointerEvent} */ event) => {
-        const box = figure.getBoundingClientRect();
-        to(((((event.clientX - box.left) / box.width) * 400 - LEFT) / WIDTH) * LONGEST);
-    };
-    figure.addEventListener("pointerdown", (event) => {
-        figure.setPointerCapture(event.pointerId);
-        drag(event);
-    });
-    figure.addEventListener("pointermove", (event) => void (figure.hasPointerCapture(event.pointerId) && drag(event)));
-    figure.addEventListener("keydown", (event) => {
-        const by = { ArrowLeft: -0.05, ArrowDown: -0.05, ArrowRight: 0.05, ArrowUp: 0.05 }[event.key];
-        if (!by) return;
-        event.preventDefault();
-        to(length + by);
-    });
+    draggable(figure, { to: (x) => to(((x - LEFT) / WIDTH) * LONGEST), by: (right, up) => to(length + 0.05 * (right + up)) });
 
     /** @param {number} next */
     function to(next) {

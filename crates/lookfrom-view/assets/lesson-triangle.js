@@ -1,5 +1,6 @@
 // A ray and a triangle: α, β, γ as the areas that the point leaves, for a point that is dragged.
 
+import { draggable } from "./drag.js";
 import { display, frac } from "./formula.js";
 import { h, replace, svg } from "./html.js";
 import { candidateTable, numbersOf } from "./candidates.js";
@@ -60,24 +61,16 @@ function areas(start) {
         const verdict = inside ? "hit" : beta < 0 ? "miss: β < 0" : gamma < 0 ? "miss: γ < 0" : "miss: β + γ > 1";
         replace(words, h("span", { class: "alpha" }, `α ${short(alpha, 4)}`), " + ", h("span", { class: "beta" }, `β ${short(beta, 4)}`), " + ", h("span", { class: "gamma" }, `γ ${short(gamma, 4)}`), ` = 1 · ${verdict}`);
     }
-    const drag = (/** @type {PointerEvent} */ event) => {
-        const box = picture.getBoundingClientRect();
-        const [x, y] = [((event.clientX - box.left) / box.width) * 400 - p0[0], ((event.clientY - box.top) / box.height) * 240 - p0[1]];
-        gamma = y / (p2[1] - p0[1]);
-        beta = (x - gamma * (p2[0] - p0[0])) / (p1[0] - p0[0]);
-        show();
-    };
-    picture.addEventListener("pointerdown", (event) => {
-        picture.setPointerCapture(event.pointerId);
-        drag(event);
-    });
-    picture.addEventListener("pointermove", (event) => void (picture.hasPointerCapture(event.pointerId) && drag(event)));
-    picture.addEventListener("keydown", (event) => {
-        const by = { ArrowLeft: [-0.02, 0], ArrowRight: [0.02, 0], ArrowUp: [-0.01, 0.02], ArrowDown: [0.01, -0.02] }[event.key];
-        if (!by) return;
-        event.preventDefault();
-        [beta, gamma] = [beta + by[0], gamma + by[1]];
-        show();
+    draggable(picture, {
+        to(x, y) {
+            gamma = (y - p0[1]) / (p2[1] - p0[1]);
+            beta = (x - p0[0] - gamma * (p2[0] - p0[0])) / (p1[0] - p0[0]);
+            show();
+        },
+        by(right, up) {
+            [beta, gamma] = [beta + 0.02 * right - 0.01 * up, gamma + 0.02 * up];
+            show();
+        },
     });
     show();
     return h("div", {}, picture, words);

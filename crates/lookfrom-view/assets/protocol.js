@@ -64,6 +64,7 @@
 /** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, sizes?: number[]}} PictureHeader */
 /** @typedef {{kind: "space", id: number, width: number, height: number, screen_from_world: number[], sizes: number[]}} SpaceHeader */
 /** @typedef {{kind: "file", id: number, name: string, mime: string}} FileHeader */
+/** A table of the scene format: its title is `[camera]`, `[[light]] point`, `[materials.NAME] whitted`, or the name of a table within one. @typedef {{title: string, keys: string[]}} Table */
 /** A binary message of any kind. @typedef {{header: {kind: string, id?: number}, payload: ArrayBuffer}} Binary */
 /** @typedef {{header: PictureHeader, payload: ArrayBuffer}} Picture */
 /** @typedef {{type: "lobe", address: number, point: Vector, normal: Vector, wi: Vector, chosen: Vector | null, theta: number, phi: number, values: number[], directions: Vector[]}} Lobe */
@@ -77,7 +78,9 @@
  * @property {Lobe} lobe
  * @property {{toml: string, command: string}} words
  * @property {{header: SpaceHeader, payload: ArrayBuffer}} space
+ * @property {{tables: Table[]}} vocabulary
  * @property {{header: FileHeader, payload: ArrayBuffer}} save
+ * @property {{header: FileHeader, payload: ArrayBuffer}} handout
  */
 
 /** @typedef {import("../types/inspection.js").SampleSummary} SampleRow */

@@ -9,6 +9,7 @@ use lookfrom_scene::files::SharedFiles;
 
 use crate::Settings;
 use crate::document::Document;
+use crate::lent::Part;
 use crate::mailbox::{Mailbox, Outgoing, Task};
 use crate::message::Request;
 use crate::render::Window;
@@ -60,6 +61,28 @@ impl Desk {
         let Some(window) = &mut self.window else { return false };
         window.turn(self.mailbox.take(false).unwrap_or_default());
         window.has_work()
+    }
+
+    /// Some samples of the picture for a helper, a desk with the same scene and the same view; none where all that is left takes
+    /// less than twice as long as `least`, as far as is known. The helper's film, or an empty one, has to be [taken](Self::take_part).
+    pub fn lend(&mut self, least: Duration) -> Option<Part> {
+        let window = self.window.as_mut().filter(|window| window.has_work())?;
+        window.render.as_mut()?.lend(least)
+    }
+
+    /// Renders a part that another desk lends, and returns its film as a file; `None` where that cannot be. Needs
+    /// [`Options::film`](lookfrom::session::Options::film), as does taking it.
+    pub fn render_part(&mut self, part: &Part) -> Option<Vec<u8>> {
+        let window = self.window.as_mut()?;
+        window.hear(self.mailbox.take(false).unwrap_or_default());
+        window.render.as_ref()?.render_part(part).ok()
+    }
+
+    /// Takes back a part with its film, of which the page is told. Where it cannot be added, its samples are rendered here.
+    pub fn take_part(&mut self, part: &Part, film: &[u8]) {
+        if let Some(window) = &mut self.window {
+            window.take_part(part, film);
+        }
     }
 
     /// The next message for the page, if there is one.

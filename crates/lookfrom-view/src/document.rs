@@ -133,7 +133,11 @@ impl Document {
         }
     }
 
-    fn load(&self, generation: u64, inputs: &Inputs) -> Result<Loaded> {
+    /// The scene as its files are now.
+    ///
+    /// # Errors
+    /// As [`Session::open`], and those of the pictures beside it.
+    pub(crate) fn load(&self, generation: u64, inputs: &Inputs) -> Result<Loaded> {
         let Settings { scene, options, environment, reference, .. } = &self.settings;
         let picture = |path: &PathBuf| {
             let files = inputs.record(&*self.files, scene.display().to_string());

@@ -1,32 +1,29 @@
 //! A hand-out: the page with one picture and one pixel as a single file, which is opened without a server and asks nobody.
 //!
-//! Its answers are those of a [`Desk`], asked for as the page would ask.
+//! It holds the answers of a window, as they would be sent to its page.
 
 use std::fmt::Write;
-use std::path::Path;
-use std::time::Duration;
+use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use lookfrom_scene::Result;
+use lookfrom::session::Format;
 use lookfrom_scene::files::SharedFiles;
-use serde_json::{Value, json};
+use lookfrom_scene::{Inputs, Result};
+use serde_json::Value;
 
-use crate::bundle;
+use crate::document::Document;
+use crate::mailbox::Mailbox;
+use crate::message::{Answer, Header, ViewRequest};
+use crate::render::Window;
 use crate::view::refused;
-use crate::{Desk, Outgoing, Settings};
+use crate::{Settings, bundle, source};
 
-/// The most samples whose rays are held, unless one is named: the brightest.
+/// The most samples whose rays are held.
 const MOST_SAMPLES: usize = 8;
 
-/// The longest scene file whose text is held, in bytes.
-const LONGEST_SOURCE: u64 = 1 << 20;
-
-/// The time of a turn of the desk.
-const SLICE: Duration = Duration::from_millis(500);
-
-/// Renders a scene, follows the samples of a pixel (by default the middle one), and returns the page as HTML. With the number of a sample
-/// that one is held, otherwise the brightest ones.
+/// Renders a scene in its own view, follows the samples of a pixel (by default the middle one), and returns the page as HTML. It holds the
+/// brightest samples, and shows that of this number first, if there is one.
 ///
 /// # Errors
 /// What is wrong with the scene; `Request` for a pixel or a sample that it does not have.
@@ -36,148 +33,97 @@ pub fn handout(
     pixel: Option<[u32; 2]>,
     sample: Option<u32>,
 ) -> Result<String> {
-    let source = source(&settings.scene, &files);
-    let mut asker = Asker { desk: Desk::new(SLICE), last_id: 0, progress: String::new(), picture: None };
-    asker.desk.open(settings, files);
-    let scene = asker.scene()?;
-    let told: Value = parsed(&scene)?;
-    let size = [&told["size"][0], &told["size"][1]].map(|side| side.as_u64().unwrap_or(1) as u32);
-    let [x, y] = pixel.unwrap_or(size.map(|side| side / 2));
-    if x >= size[0] || y >= size[1] {
-        let [width, height] = size;
-        return Err(refused(format!("pixel {x} {y} is outside of the picture of {width} × {height} pixels")));
+    let document = Arc::new(Document::new(settings, files));
+    let loaded = Arc::new(document.load(1, &Inputs::default())?);
+    let image = loaded.session.image();
+    let view = ViewRequest { exposure: image.exposure, denoise: image.denoise, ..ViewRequest::default() };
+    check(pixel, [image.width, image.height])?;
+    let mut window = Window::new(Arc::<Mailbox>::default(), document, None);
+    window.loaded = Some(loaded);
+    window.look(view)?;
+    while window.has_work() {
+        window.step()?;
     }
-    let (header, png) = asker.rendered(&told)?;
-    let report = asker.ask(json!({ "type": "pixel", "x": x, "y": y }))?;
-    let value = asker.ask(json!({ "type": "value", "x": x, "y": y }))?;
-    let words = asker.ask(json!({ "type": "words" }))?;
-    let rows = parsed(&report)?;
-    let brightest =
-        rows["report"]["all"].as_array().into_iter().flatten().filter_map(|row| row["sample"].as_u64());
-    let held: Vec<u64> = match sample {
-        Some(sample) => vec![sample.into()],
-        None => brightest.take(MOST_SAMPLES).collect(),
-    };
-    let mut samples = Vec::new();
-    for sample in &held {
-        samples.push(format!("\"{sample}\":{}", asker.sample([x, y], *sample)?));
-    }
-    // Answers stand here as they are: numbers that are read and written again could lose bits.
-    let kept = format!(
-        r#"{{"pixel":[{x},{y}],"sample":{},"scene":{scene},"progress":{},"picture":{header},"png":"{}","words":{words},"report":{report},"value":{value},"samples":{{{}}},"source":{}}}"#,
-        held.first().copied().unwrap_or_default(),
-        asker.progress,
-        STANDARD.encode(&png),
-        samples.join(","),
-        Value::from(source)
-    );
-    bundle::page("handout.js", "handout", &kept)
+    window.handout(pixel, sample)
 }
 
-/// The text of the scene's file, if it is one.
-fn source(scene: &Path, files: &SharedFiles) -> Option<String> {
-    String::from_utf8(files.read(scene, LONGEST_SOURCE).ok()?).ok().filter(|text| !text.contains('\0'))
-}
-
-fn parsed(text: &str) -> Result<Value> {
-    serde_json::from_str(text).map_err(|error| refused(format!("not JSON: {error}")))
-}
-
-/// A desk that is asked one thing after the other.
-struct Asker {
-    desk: Desk,
-    last_id: u64,
-    progress: String,
-    /// The header and the bytes of the last picture.
-    picture: Option<(String, Vec<u8>)>,
-}
-
-impl Asker {
-    /// The scene, as the page is told of it.
-    fn scene(&mut self) -> Result<String> {
-        self.desk.turn();
-        self.until(|message| message["type"] == "scene")
-    }
-
-    /// The finished picture in the scene's own view.
-    fn rendered(&mut self, scene: &Value) -> Result<(String, Vec<u8>)> {
-        let view = json!({ "type": "view", "id": 0, "exposure": scene["exposure"], "tonemap": scene["tonemap"], "denoise": scene["denoise"], "layer": "color" });
-        self.desk.hear(&view.to_string());
-        while self.desk.turn() {
-            self.take()?;
+/// # Errors
+/// `Request` for a pixel that a picture of this size does not have.
+fn check(pixel: Option<[u32; 2]>, [width, height]: [u32; 2]) -> Result<()> {
+    match pixel {
+        Some([x, y]) if x >= width || y >= height => {
+            Err(refused(format!("pixel {x} {y} is outside of the picture of {width} × {height} pixels")))
         }
-        self.take()?;
-        self.picture.take().ok_or_else(|| refused("the scene has no picture"))
+        _ => Ok(()),
     }
+}
 
-    /// The answer to a question.
-    fn ask(&mut self, mut question: Value) -> Result<String> {
-        self.last_id += 1;
-        let id = Value::from(self.last_id);
-        question["id"] = id.clone();
-        self.desk.hear(&question.to_string());
-        self.desk.turn();
-        self.until(|message| message["id"] == id)
+impl Window {
+    /// The page of the view as it is, as HTML.
+    ///
+    /// # Errors
+    /// As [`handout`], and where there is no picture yet.
+    pub(crate) fn handout(&self, pixel: Option<[u32; 2]>, sample: Option<u32>) -> Result<String> {
+        let (render, session) = (self.rendered()?, self.as_shown()?);
+        let (width, height) = (session.image().width, session.image().height);
+        check(pixel, [width, height])?;
+        let pixel = pixel.unwrap_or([width / 2, height / 2]);
+        let png = self.picture(Format::Png)?;
+        let report = self.pixel(0, pixel)?;
+        let brightest = match &report {
+            Answer::Pixel { report, .. } => report.all.iter().map(|row| row.sample).collect(),
+            _ => Vec::new(),
+        };
+        let others = brightest.into_iter().filter(|&other| Some(other) != sample);
+        let held: Vec<u32> = sample.into_iter().chain(others).take(MOST_SAMPLES).collect();
+        let samples = held.iter().map(|&sample| self.held(pixel, sample)).collect::<Result<Vec<_>>>()?;
+        let mut scene = self.loaded.as_ref().map(|loaded| Box::new(loaded.told(&session)));
+        if let Some(scene) = &mut scene {
+            scene.reference = None;
+        }
+        let picture = Header::Picture {
+            view: 0,
+            width,
+            height,
+            scale: 1,
+            samples: render.samples + render.lent.back,
+            of: session.settings().samples,
+            done: render.is_done(),
+            layer: "color".to_owned(),
+            seconds: render.spent.as_secs_f64(),
+            sizes: vec![png.len()],
+        };
+        let [x, y] = pixel;
+        // Answers stand here as they are sent: numbers that are read and written again could lose bits.
+        let kept = format!(
+            r#"{{"pixel":[{x},{y}],"sample":{},"scene":{},"progress":{},"picture":{},"png":"{}","words":{},"report":{},"value":{},"samples":{{{}}},"source":{}}}"#,
+            held.first().copied().unwrap_or_default(),
+            scene.map(|scene| Answer::Scene(scene).text()).unwrap_or_default(),
+            render.progress(0).text(),
+            picture.text(),
+            STANDARD.encode(&png),
+            self.words(0, true)?.text(),
+            report.text(),
+            self.value(0, pixel)?.text(),
+            samples.join(","),
+            Value::from(source::of(&self.document.settings().scene, self.document.files()))
+        );
+        bundle::page("handout.js", "handout", &kept)
     }
 
     /// The rays of a sample, and the scattering at each of their ends that has a lobe.
-    fn sample(&mut self, [x, y]: [u32; 2], sample: u64) -> Result<String> {
-        let of = |kind: &str| json!({ "type": kind, "x": x, "y": y, "sample": sample });
-        let inspection = self.ask(of("inspect"))?;
+    fn held(&self, pixel: [u32; 2], sample: u32) -> Result<String> {
+        let inspection = self.inspection(0, pixel, sample, None, None)?;
         let mut lobes = String::new();
-        for ray in parsed(&inspection)?["inspection"]["rays"].as_array().into_iter().flatten() {
-            let mut question = of("lobe");
-            question["address"] = ray["address"].clone();
-            // Mirrors and rays that leave the scene have none.
-            if ray["met"].is_object()
-                && let Ok(lobe) = self.ask(question)
-            {
-                let comma = if lobes.is_empty() { "" } else { "," };
-                let _ = write!(lobes, "{comma}\"{}\":{lobe}", ray["address"]);
-            }
-        }
-        Ok(format!(r#"{{"inspection":{inspection},"lobes":{{{lobes}}}}}"#))
-    }
-
-    /// The first text among what is said that fits; errors that come before it are errors.
-    fn until(&mut self, fits: impl Fn(&Value) -> bool) -> Result<String> {
-        let mut found = None;
-        for (text, message) in self.take()? {
-            if message["type"] == "error" {
-                let excerpt =
-                    message["excerpt"].as_str().map(|excerpt| format!("\n{excerpt}")).unwrap_or_default();
-                return Err(refused(format!("{}{excerpt}", message["message"].as_str().unwrap_or_default())));
-            }
-            if fits(&message) {
-                found = found.or(Some(text));
-            }
-        }
-        found.ok_or_else(|| refused("internal error: a question has no answer; please report it"))
-    }
-
-    /// All texts that are said; progress and pictures are kept aside.
-    fn take(&mut self) -> Result<Vec<(String, Value)>> {
-        let mut texts = Vec::new();
-        while let Some(message) = self.desk.say() {
-            match message {
-                Outgoing::Text(text) => {
-                    let message = parsed(&text)?;
-                    if message["type"] == "progress" {
-                        self.progress = text;
-                    } else {
-                        texts.push((text, message));
-                    }
-                }
-                Outgoing::Binary(bytes) => {
-                    if let Some((length, rest)) = bytes.split_first_chunk()
-                        && let Some((header, payload)) =
-                            rest.split_at_checked(u32::from_le_bytes(*length) as usize)
-                    {
-                        self.picture = Some((String::from_utf8_lossy(header).into_owned(), payload.to_vec()));
-                    }
+        if let Answer::Inspection { inspection, .. } = &inspection {
+            for ray in inspection.rays.iter().filter(|ray| ray.met.is_some()) {
+                // Mirrors and rays that leave the scene have none.
+                if let Ok(lobe) = self.lobe(0, pixel, sample, ray.address) {
+                    let comma = if lobes.is_empty() { "" } else { "," };
+                    let _ = write!(lobes, "{comma}\"{}\":{}", ray.address, lobe.text());
                 }
             }
         }
-        Ok(texts)
+        Ok(format!(r#""{sample}":{{"inspection":{},"lobes":{{{lobes}}}}}"#, inspection.text()))
     }
 }

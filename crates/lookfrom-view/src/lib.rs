@@ -10,26 +10,27 @@
 //! The messages are in `message`. The page is in `assets/`: embedded in release builds, read from disk at each request in
 //! builds with debug assertions.
 
-#[cfg(feature = "server")]
+mod answers;
 mod assets;
-#[cfg(feature = "server")]
 mod bundle;
 mod compare;
 mod cost;
 mod desk;
 mod develop;
 mod document;
-#[cfg(feature = "server")]
 mod handout;
 mod heat;
+mod lent;
 mod lobe;
 mod mailbox;
 mod message;
+mod parts;
 #[cfg(feature = "server")]
 mod patience;
 mod render;
 #[cfg(feature = "server")]
 mod server;
+mod source;
 mod space;
 mod told;
 mod view;
@@ -43,8 +44,8 @@ use std::path::PathBuf;
 use lookfrom::session::Options;
 
 pub use desk::Desk;
-#[cfg(feature = "server")]
 pub use handout::handout;
+pub use lent::Part;
 pub use mailbox::Outgoing;
 #[cfg(feature = "server")]
 pub use server::{Address, Server};

@@ -30,12 +30,16 @@ pub(crate) enum Request {
     Save { id: u64, format: FileFormat },
     /// The view in words.
     Words { id: u64 },
+    /// The page as a file that holds a pixel, by default the middle one; the sample is shown first, by default the brightest.
+    Handout { id: u64, pixel: Option<[u32; 2]>, sample: Option<u32> },
+    /// The tables and keys of the scene format.
+    Vocabulary { id: u64 },
     /// Stop rendering, or go on.
     Pause { paused: bool },
 }
 
 /// The view that a page requests; `None` is the scene's own.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 pub(crate) struct ViewRequest {
     pub(crate) id: u64,
     pub(crate) camera: Option<CameraRequest>,
@@ -148,6 +152,17 @@ pub(crate) enum Answer {
         toml: String,
         command: String,
     },
+    Vocabulary {
+        id: u64,
+        tables: Vec<TableAnswer>,
+    },
+}
+
+/// A table of the scene format, as messages name it: `[camera]`, `[[light]] point`, `[materials.NAME] whitted`, `rotate`.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct TableAnswer {
+    pub(crate) title: String,
+    pub(crate) keys: Vec<&'static str>,
 }
 
 /// A place in a text file; line and column are counted from 1.
@@ -301,6 +316,8 @@ impl Request {
             | Self::Value { id, .. }
             | Self::Save { id, .. }
             | Self::Words { id }
+            | Self::Handout { id, .. }
+            | Self::Vocabulary { id }
             | Self::Lobe { id, .. } => Some(id),
             Self::Pause { .. } => None,
         }
@@ -337,9 +354,14 @@ impl Answer {
 }
 
 impl Header {
+    /// The text of the header.
+    pub(crate) fn text(&self) -> String {
+        json::line(self)
+    }
+
     /// The frame of this header with what follows it.
     pub(crate) fn frame(&self, payload: &[&[u8]]) -> Vec<u8> {
-        let header = json::line(self);
+        let header = self.text();
         let mut frame =
             Vec::with_capacity(4 + header.len() + payload.iter().map(|part| part.len()).sum::<usize>());
         frame.extend((header.len() as u32).to_le_bytes());

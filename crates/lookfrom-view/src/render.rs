@@ -10,23 +10,17 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lookfrom::core::clock::Stopwatch;
-use lookfrom::film::Film;
-use lookfrom::inspect;
-use lookfrom::session::{Format, Session};
-use lookfrom_scene::settings::{ImageSettings, RenderSettings};
-use lookfrom_scene::{Error, Result};
+use lookfrom::session::Session;
+use lookfrom_scene::Result;
 
 use crate::cost::{CostMap, Counted};
 use crate::develop::{self, Shown};
 use crate::document::{Document, Loaded, panicked};
-use crate::mailbox::{Mailbox, Outgoing, Task};
-use crate::message::{Answer, FileFormat, Header, Request, ViewRequest};
-use crate::view::{Variation, refused};
+use crate::lent::Part;
+use crate::mailbox::{Mailbox, Task};
+use crate::message::{Answer, Header, Request, ViewRequest};
+use crate::view::Variation;
 use crate::view_render::{Stage, ViewRender};
-use crate::{lobe, space, words};
-
-/// The most samples of a pixel that are inspected at once: it takes a second or so.
-const MOST_INSPECTED: u32 = 4096;
 
 /// Runs until the window is closed.
 #[cfg(feature = "server")]
@@ -39,15 +33,15 @@ pub(crate) fn run(mailbox: Arc<Mailbox>, document: Arc<Document>) {
 
 /// A window: what it shows.
 pub(crate) struct Window {
-    mailbox: Arc<Mailbox>,
+    pub(crate) mailbox: Arc<Mailbox>,
     pub(crate) document: Arc<Document>,
     /// The longest time of a pass between two turns; `None` where messages interrupt it.
-    slice: Option<Duration>,
-    loaded: Option<Arc<Loaded>>,
+    pub(crate) slice: Option<Duration>,
+    pub(crate) loaded: Option<Arc<Loaded>>,
     /// The scene as this window alone wants it.
     variation: Option<(Variation, Session)>,
-    request: Option<ViewRequest>,
-    render: Option<ViewRender>,
+    pub(crate) request: Option<ViewRequest>,
+    pub(crate) render: Option<ViewRender>,
     is_paused: bool,
 }
 
@@ -68,6 +62,12 @@ impl Window {
 
     /// Does these tasks, then renders a little more.
     pub(crate) fn turn(&mut self, tasks: Vec<Task>) {
+        self.hear(tasks);
+        self.guarded(None, Self::step);
+    }
+
+    /// Does these tasks.
+    pub(crate) fn hear(&mut self, tasks: Vec<Task>) {
         for task in tasks {
             let id = match &task {
                 Task::Request(request) => request.id(),
@@ -75,7 +75,14 @@ impl Window {
             };
             self.guarded(id, |window| window.answer(task));
         }
-        self.guarded(None, Self::step);
+    }
+
+    /// Takes back a part of the picture, and shows it.
+    pub(crate) fn take_part(&mut self, part: &Part, film: &[u8]) {
+        let (Some(render), Some(loaded)) = (&mut self.render, &self.loaded) else { return };
+        if render.take_part(part, film, &loaded.options.budget) {
+            self.guarded(None, Self::show);
+        }
     }
 
     /// Does something; its failure becomes an answer, a panic too.
@@ -93,8 +100,11 @@ impl Window {
 
     /// Whether there is something to render. A pause holds up passes, not the first sight of another view.
     pub(crate) fn has_work(&self) -> bool {
-        let stage = self.render.as_ref().map_or(Stage::Done, |render| render.stage);
-        stage != Stage::Done && !(self.is_paused && stage == Stage::Full)
+        self.render.as_ref().is_some_and(|render| match render.stage {
+            Stage::Coarse(_) => true,
+            Stage::Full => !self.is_paused && !render.is_waiting(),
+            Stage::Done => false,
+        })
     }
 
     fn answer(&mut self, task: Task) -> Result<()> {
@@ -105,32 +115,9 @@ impl Window {
                 self.is_paused = paused;
                 Ok(())
             }
-            Task::Request(Request::Pixel { id, x, y }) => self.pixel(id, [x, y]),
-            Task::Request(Request::Inspect { id, x, y, sample, depth, min_contribution }) => {
-                self.inspect(id, [x, y], sample, depth, min_contribution)
-            }
-            Task::Request(Request::Lobe { id, x, y, sample, address }) => {
-                let render = self.render.as_ref().ok_or_else(nothing_yet)?;
-                let sample = render.checked([x, y], sample)?;
-                let lobe = lobe::answer(render.session.renderer(), id, sample, address)?;
-                self.mailbox.say(&Answer::Lobe(Box::new(lobe)));
-                Ok(())
-            }
-            Task::Request(Request::Value { id, x, y }) => self.value(id, x, y),
-            Task::Request(Request::Space { id, camera, size }) => {
-                let loaded = self.loaded.as_ref().ok_or_else(nothing_yet)?;
-                let session = self.render.as_ref().map_or(&loaded.session, |render| &render.session);
-                self.mailbox.send(Outgoing::Binary(space::frame(session, id, &camera, size)?));
-                Ok(())
-            }
-            Task::Request(Request::Save { id, format }) => self.save(id, format),
-            Task::Request(Request::Words { id }) => {
-                let (Some(render), Some(request)) = (&self.render, &self.request) else {
-                    return Err(nothing_yet());
-                };
-                let toml = words::toml(&render.session, request);
-                let command = words::command(&render.session, request, &self.document.settings().typed);
-                self.mailbox.say(&Answer::Words { id, toml, command });
+            Task::Request(question) => {
+                let answer = self.answer_to(question)?;
+                self.mailbox.send(answer);
                 Ok(())
             }
         }
@@ -142,7 +129,7 @@ impl Window {
         if let Some(loaded) = loaded
             && self.loaded.as_ref().is_none_or(|before| before.generation != loaded.generation)
         {
-            self.mailbox.say(&Answer::Scene(Box::new(loaded.told())));
+            self.mailbox.say(&Answer::Scene(Box::new(loaded.told(&loaded.session))));
             (self.loaded, self.variation, self.render) = (Some(loaded), None, None);
             if let Some(request) = self.request.clone() {
                 self.look(request)?;
@@ -155,7 +142,7 @@ impl Window {
     }
 
     /// Shows another view, or the same one developed anew.
-    fn look(&mut self, request: ViewRequest) -> Result<()> {
+    pub(crate) fn look(&mut self, request: ViewRequest) -> Result<()> {
         let Some(loaded) = self.loaded.clone() else {
             self.request = Some(request);
             return Ok(());
@@ -199,7 +186,7 @@ impl Window {
     }
 
     /// Renders a little more.
-    fn step(&mut self) -> Result<()> {
+    pub(crate) fn step(&mut self) -> Result<()> {
         if !self.has_work() {
             return Ok(());
         }
@@ -218,25 +205,15 @@ impl Window {
         else {
             return Ok(());
         };
-        let of = render.session.settings().samples;
-        let is_done = render.film.is_some() && render.stage == Stage::Done;
-        let seconds = render.spent.as_secs_f64();
-        self.mailbox.say(&Answer::Progress {
-            view: request.id,
-            samples: render.samples,
-            of,
-            seconds,
-            rays_per_second: render.rays as f64 / seconds.max(1e-9),
-            done: is_done,
-            hash: render.film.as_ref().filter(|_| is_done).map(Film::hash),
-        });
+        self.mailbox.say(&render.progress(request.id));
         let started = Stopwatch::start();
         let denoises = request.denoise && render.samples > 0;
-        if denoises && !is_done && render.denoised.is_some_and(|(last, rest)| last.elapsed() < rest) {
+        if denoises && !render.is_done() && render.denoised.is_some_and(|(last, rest)| last.elapsed() < rest)
+        {
             return Ok(());
         }
         if let Some(counted) = develop::counted(request)? {
-            return self.show_cost(counted, is_done);
+            return self.show_cost(counted);
         }
         let (session, film, scale) = match (&render.film, &render.coarse) {
             (Some(film), _) if render.samples > 0 => (&render.session, film, 1),
@@ -253,11 +230,11 @@ impl Window {
             width: film.width(),
             height: film.height(),
             scale,
-            samples: render.samples.max(1),
-            of,
-            done: is_done,
+            samples: (render.samples + render.lent.back).max(1),
+            of: session.settings().samples,
+            done: render.is_done(),
             layer: request.layer.clone().unwrap_or_else(|| "color".to_owned()),
-            seconds,
+            seconds: render.spent.as_secs_f64(),
             sizes: pictures.iter().map(Vec::len).collect(),
         };
         let parts: Vec<&[u8]> = pictures.iter().map(Vec::as_slice).collect();
@@ -266,7 +243,7 @@ impl Window {
     }
 
     /// Sends a heat map of the cost, which is measured once.
-    fn show_cost(&mut self, counted: Counted, done: bool) -> Result<()> {
+    fn show_cost(&mut self, counted: Counted) -> Result<()> {
         let (Some(render), Some(request)) = (&mut self.render, &self.request) else { return Ok(()) };
         let map = match render.cost.take() {
             Some(map) => map,
@@ -280,7 +257,7 @@ impl Window {
             scale: map.scale,
             samples: 1,
             of: render.session.settings().samples,
-            done,
+            done: render.is_done(),
             layer: request.layer.clone().unwrap_or_default(),
             seconds: render.spent.as_secs_f64(),
             sizes: vec![png.len()],
@@ -289,89 +266,4 @@ impl Window {
         self.mailbox.show(header.frame(&[&png]));
         Ok(())
     }
-
-    fn pixel(&self, id: u64, pixel: [u32; 2]) -> Result<()> {
-        let session = self.as_shown()?;
-        let samples = session.settings().samples.min(MOST_INSPECTED);
-        let report = Box::new(inspect::inspect_pixel(session.renderer(), pixel, 0..samples)?);
-        self.mailbox.say(&Answer::Pixel { id, report });
-        Ok(())
-    }
-
-    /// The session, developed as the picture on the screen is.
-    fn as_shown(&self) -> Result<Session> {
-        let (Some(render), Some(request)) = (&self.render, &self.request) else { return Err(nothing_yet()) };
-        let mut session = render.session.clone();
-        let own = session.image().clone();
-        let tonemap = request.tonemap(own.tonemap)?;
-        session.set_image(ImageSettings {
-            exposure: request.exposure,
-            tonemap,
-            denoise: request.denoise,
-            ..own
-        })?;
-        Ok(session)
-    }
-
-    fn inspect(
-        &self,
-        id: u64,
-        pixel: [u32; 2],
-        sample: u32,
-        depth: Option<u32>,
-        min_contribution: Option<f32>,
-    ) -> Result<()> {
-        let render = self.render.as_ref().ok_or_else(nothing_yet)?;
-        let sample = render.checked(pixel, sample)?;
-        let mut session = self.as_shown()?;
-        let own = session.settings().clone();
-        session.set_settings(RenderSettings {
-            depth: depth.unwrap_or(own.depth).min(256),
-            min_contribution: min_contribution.unwrap_or(own.min_contribution),
-            ..own
-        })?;
-        let inspection = inspect::inspect(session.renderer(), sample);
-        let text = inspection.to_string();
-        self.mailbox.say(&Answer::Inspection { id, inspection: Box::new(inspection), text });
-        Ok(())
-    }
-
-    fn value(&self, id: u64, x: u32, y: u32) -> Result<()> {
-        let render = self.render.as_ref().ok_or_else(nothing_yet)?;
-        render.check_pixel([x, y])?;
-        let film = render.film.as_ref().ok_or_else(nothing_yet)?;
-        let reference = self.loaded.as_ref().and_then(|loaded| loaded.reference.as_ref());
-        let reference = reference.filter(|image| x < image.width && y < image.height);
-        self.mailbox.say(&Answer::Value {
-            id,
-            x,
-            y,
-            rgb: film.mean(x, y),
-            samples: film.samples(x, y),
-            variance: film.variance(x, y),
-            reference: reference.map(|image| image.texel(y as usize * image.width as usize + x as usize)),
-        });
-        Ok(())
-    }
-
-    fn save(&self, id: u64, format: FileFormat) -> Result<()> {
-        let (Some(render), Some(request), Some(loaded)) = (&self.render, &self.request, &self.loaded) else {
-            return Err(nothing_yet());
-        };
-        let film = render.film.as_ref().ok_or_else(nothing_yet)?;
-        let (format, extension, mime) = match format {
-            FileFormat::Png => (Format::Png, "png", "image/png"),
-            FileFormat::Exr => (Format::Exr, "exr", "image/x-exr"),
-        };
-        let shown = Shown { session: &render.session, film, is_coarse: false, loaded, request };
-        let bytes = shown.file(format)?;
-        let stem = self.document.settings().scene.file_stem().unwrap_or_default().to_string_lossy();
-        let header = Header::File { id, name: format!("{stem}.{extension}"), mime };
-        self.mailbox.send(Outgoing::Binary(header.frame(&[&bytes])));
-        Ok(())
-    }
-}
-
-fn nothing_yet() -> Error {
-    refused("there is no picture yet")
 }

@@ -1,6 +1,7 @@
 //! The message that tells a page of a scene.
 
 use lookfrom::inspect::{self, LightPlace};
+use lookfrom::session::Session;
 use lookfrom::world::World;
 use lookfrom_scene::camera::{Camera, Look, Projection, View};
 use lookfrom_scene::settings::{Integrator, Tonemap};
@@ -14,9 +15,8 @@ use crate::message::{AnimationAnswer, BoundsAnswer, CameraAnswer, LayerAnswer, L
 const MOST_LIGHTS: usize = 256;
 
 impl Loaded {
-    /// The message of this scene.
-    pub(crate) fn told(&self) -> SceneAnswer {
-        let session = &self.session;
+    /// The message of this scene, with the camera and the settings of a session of it.
+    pub(crate) fn told(&self, session: &Session) -> SceneAnswer {
         let (image, settings, info) = (session.image(), session.settings(), session.info());
         let numbered =
             |(number, name): (usize, Option<&String>)| name.cloned().unwrap_or_else(|| number.to_string());

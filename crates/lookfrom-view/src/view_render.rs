@@ -13,8 +13,9 @@ use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 
 use crate::cost::CostMap;
 use crate::document::Loaded;
+use crate::lent::Lent;
 use crate::mailbox::Mailbox;
-use crate::message::ViewRequest;
+use crate::message::{Answer, ViewRequest};
 use crate::view::refused;
 
 /// The time that a coarse picture may take while the camera is moved.
@@ -49,6 +50,7 @@ pub(crate) struct ViewRender {
     /// Stopwatch of the last denoised picture, and the shortest time from it to the next: denoising takes time from the render.
     pub(crate) denoised: Option<(Stopwatch, Duration)>,
     pub(crate) stage: Stage,
+    pub(crate) lent: Lent,
     /// The memory of the film and its pictures.
     _memory: Reservation,
 }
@@ -74,6 +76,7 @@ impl ViewRender {
     pub(crate) fn new(session: Session, pace: Option<f64>) -> Result<Self> {
         let memory = session.room_for_picture()?;
         let scale = pace.map_or(FIRST_SCALE, |pace| scale_of(session.image(), pace));
+        let lent = Lent::none(session.settings().samples);
         Ok(Self {
             session,
             coarse: None,
@@ -87,6 +90,7 @@ impl ViewRender {
             spent_on_pass: Duration::ZERO,
             denoised: None,
             stage: Stage::Coarse(scale),
+            lent,
             _memory: memory,
         })
     }
@@ -98,9 +102,11 @@ impl ViewRender {
             return Ok(());
         }
         self.session.set_settings(RenderSettings { samples, ..self.session.settings().clone() })?;
-        if samples < self.samples {
+        // The last samples of the former number may be in the film.
+        if samples < self.samples || self.lent.back > 0 {
             (self.film, self.samples, self.pass, self.rays, self.spent) = (None, 0, 1, 0, Duration::ZERO);
         }
+        self.lent = Lent::none(samples);
         if self.stage == Stage::Done && samples != self.samples {
             self.stage = Stage::Full;
         }
@@ -145,8 +151,7 @@ impl ViewRender {
 
     /// Adds samples to the film, for at most as long as a slice, where there is one. Whether there is a whole pass more.
     pub(crate) fn render_pass(&mut self, mailbox: &Mailbox, slice: Option<Duration>) -> Result<bool> {
-        let of = self.session.settings().samples;
-        let end = of.min(self.samples.saturating_add(self.pass));
+        let end = self.lent.start.min(self.samples.saturating_add(self.pass));
         let film = match self.film.take() {
             Some(film) => film,
             None => Film::for_image(self.session.image())?,
@@ -168,10 +173,41 @@ impl ViewRender {
         if std::mem::take(&mut self.spent_on_pass) < PASS / 2 {
             self.pass = self.pass.saturating_mul(2);
         }
-        if end == of {
+        self.settle();
+        Ok(true)
+    }
+
+    /// Whether all that is left is lent.
+    pub(crate) fn is_waiting(&self) -> bool {
+        self.samples == self.lent.start && self.lent.out > 0
+    }
+
+    /// Ends the render if every sample is there.
+    pub(crate) fn settle(&mut self) {
+        if self.samples == self.lent.start && self.lent.out == 0 {
+            self.samples = self.session.settings().samples;
+            self.lent = Lent::none(self.samples);
             self.stage = Stage::Done;
         }
-        Ok(true)
+    }
+
+    /// Whether the film is finished.
+    pub(crate) fn is_done(&self) -> bool {
+        self.film.is_some() && self.stage == Stage::Done
+    }
+
+    /// How far the view of this number is.
+    pub(crate) fn progress(&self, view: u64) -> Answer {
+        let seconds = self.spent.as_secs_f64();
+        Answer::Progress {
+            view,
+            samples: self.samples + self.lent.back,
+            of: self.session.settings().samples,
+            seconds,
+            rays_per_second: self.rays as f64 / seconds.max(1e-9),
+            done: self.is_done(),
+            hash: self.film.as_ref().filter(|_| self.is_done()).map(Film::hash),
+        }
     }
 
     /// A sample of this view.

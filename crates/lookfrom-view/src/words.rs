@@ -9,19 +9,22 @@ use lookfrom_scene::camera::{Camera, Look, Projection, View};
 use lookfrom_scene::settings::{Filter, RenderSettings};
 
 use crate::message::ViewRequest;
+use crate::source;
 
-/// A view as a scene file, to be saved beside the scene's: it imports the scene, and has the camera and the settings of the view. A
-/// scene of pbrt cannot be imported; of that these are all tables but its contents.
-pub(crate) fn toml(session: &Session, request: &ViewRequest) -> String {
+/// A view as a scene file: the text of the scene with the camera and the settings of the view, or without that text a file to be saved beside the
+/// scene's, which it imports. A scene of pbrt cannot be imported; of that these are all tables but its contents.
+pub(crate) fn toml(session: &Session, request: &ViewRequest, source: Option<&str>) -> String {
     let (image, settings, camera) = (session.image(), session.settings(), session.camera());
     let file = Path::new(session.name()).file_name().unwrap_or_default().to_string_lossy();
-    let mut text = match has_format_of_pbrt(&file) {
-        true => format!(
+    let contents = source.and_then(|text| source::without(text, &["camera", "image", "render"]));
+    let mut text = match contents {
+        Some(contents) => format!("{}\n\n", contents.trim_end()),
+        None if has_format_of_pbrt(&file) => format!(
             "# The contents of {} are to be added: pbrt's scenes cannot be imported.\n\n",
             one_line(&file)
         ),
         // Strings of JSON are strings of TOML.
-        false => format!(
+        None => format!(
             "# A view of {}, to be saved in its folder.\nimport = {}\n\n",
             one_line(&file),
             serde_json::Value::from(file.as_ref())

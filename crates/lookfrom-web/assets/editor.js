@@ -1,13 +1,12 @@
 // The text of the scene beside its picture, read again as one types, with what is wrong under its line.
 
 import { byId, h, replace } from "../../lookfrom-view/assets/html.js";
+import { LINE, attachSuggestions } from "./suggestions.js";
 
 /** @typedef {import("../../lookfrom-view/assets/app.js").App} App */
 /** @typedef {import("../../lookfrom-view/assets/protocol.js").Failure} Failure */
 
 const PAUSE = 250;
-/** Pixels, as in style.css. */
-const LINE = 18;
 const TEXTS = /\.(toml|pbrt|gltf|obj|mtl)$/i;
 /** Longer texts are not for typing. */
 const LONGEST = 1 << 20;
@@ -28,7 +27,8 @@ export function attachEditor(app, changed) {
     const mark = h("div", { class: "mark", "aria-hidden": "true", hidden: true });
     const error = h("p", { id: "scene-error", role: "status" });
     const none = h("p", { class: "hint", hidden: true }, "This scene is not a text that can be edited here.");
-    const sheet = h("div", { class: "sheet" }, numbers, h("div", { class: "paper" }, area, mark));
+    const paper = h("div", { class: "paper" }, area, mark);
+    const sheet = h("div", { class: "sheet" }, numbers, paper);
     replace(byId("scene"), none, sheet, error);
     let path = "";
     let timer = 0;
@@ -61,8 +61,9 @@ export function attachEditor(app, changed) {
     area.addEventListener("scroll", layOut);
     area.addEventListener("keydown", (event) => {
         // Tab leaves the text after Escape, for those who have only keys.
-        if (event.key === "Escape") area.blur();
+        if (event.key === "Escape" && !event.defaultPrevented) area.blur();
     });
+    attachSuggestions(app, area, paper, () => /\.toml$/i.test(path));
     app.socket.on("error", (/** @type {Failure} */ failure) => void (failure.id === null && show(failure)));
     app.scene.on(() => show(null));
 

@@ -1,5 +1,7 @@
 // The way to a worker of this page, in place of a server: the same messages, and the files of the scene.
 
+import { createHelpers } from "./helpers.js";
+
 /** @typedef {{path: string, bytes: Uint8Array<ArrayBuffer>}} File */
 
 /**
@@ -16,6 +18,10 @@ export function workerTransport(module, script) {
     /** @type {Map<string, File>} */
     let files = new Map();
     let [scene, reference] = ["", ""];
+    /** The view that the page has asked for last, and how often the files have changed. */
+    let [view, edition] = ["", 0];
+    const messagesOfScene = () => [{ forget: true }, ...[...files.values()].map((file) => ({ file })), { open: { scene, reference } }];
+    const helpers = createHelpers(() => new Worker(url), module, () => ({ edition, view, messages: messagesOfScene }));
 
     /** Starts a worker, in place of one that has ended. */
     async function start() {
@@ -24,8 +30,10 @@ export function workerTransport(module, script) {
             if (data === null) {
                 isOpen = true;
                 events?.opened();
-                if (scene) send({ forget: true }, ...[...files.values()].map((file) => ({ file })), { open: { scene, reference } });
-            } else if (typeof data === "string" || data instanceof ArrayBuffer) events?.heard(data);
+                send({ idle: helpers.count() });
+                if (scene) send(...messagesOfScene());
+            } else if (data.lent) helpers.render(data.lent).then((film) => send({ part: data.lent, film }));
+            else if (typeof data === "string" || data instanceof ArrayBuffer) events?.heard(data);
             else ended(data.fault);
         };
         worker.onerror = (event) => ended(event.message);
@@ -51,6 +59,7 @@ export function workerTransport(module, script) {
 
     /** Shows the scene again, with these files new. @param {File[]} changed @param {boolean} isOther */
     function show(changed, isOther) {
+        edition++;
         if (isOther) files = new Map();
         for (const file of changed) files.set(file.path, file);
         if (!worker) start();
@@ -64,7 +73,10 @@ export function workerTransport(module, script) {
             start();
         },
         /** @param {string} text */
-        send: (text) => send({ say: text }),
+        send(text) {
+            if (text.startsWith('{"type":"view"')) view = text;
+            send({ say: text });
+        },
         isOpen: () => isOpen,
         whenLost: "The program has ended; open a scene, or reload the page",
         whenBroken: "Mend it under Scene, or drop the files that it lacks.",

@@ -2,14 +2,20 @@
 //
 // In: {module} once, then {forget}, {file: {path, bytes}}, {open: {scene, reference}} and {say: text}. Out: texts and frames, as those
 // of a server; null once it is ready; {fault} where the program has ended.
+//
+// Helpers render parts of the picture in workers of their own: {idle: count} tells of some, {lent: part} asks one, {part, film} gives
+// back what it has made. A helper gets {render: part} in the same view, says nothing else, and takes no turns.
 
-/** @typedef {{memory: WebAssembly.Memory, start(): void, input(length: number): number, output(): number, output_length(): number, add_file(path: number): void, forget_files(): void, open_scene(scene: number): void, hear(): void, turn(): number, say(): number}} Exports */
+/** @typedef {{memory: WebAssembly.Memory, start(): void, input(length: number): number, output(): number, output_length(): number, add_file(path: number): void, forget_files(): void, open_scene(scene: number): void, hear(): void, turn(): number, say(): number, lend(): number, render_part(): void, take_part(part: number): void}} Exports */
 
 const utf8 = new TextEncoder();
 /** @type {Exports | null} */
 let exports = null;
 let isDead = false;
 let isScheduled = false;
+let isHelper = false;
+/** Helpers that wait for a part, and those that could not render one: they may be asked again once the files are others. */
+let [idle, unable] = [0, 0];
 
 // Between two turns the messages of the page arrive.
 const channel = new MessageChannel();
@@ -17,6 +23,7 @@ channel.port1.onmessage = () => {
     isScheduled = false;
     guarded(() => {
         if (exports?.turn()) schedule();
+        for (; exports && idle > 0 && exports.lend(); idle--) postMessage({ lent: new TextDecoder().decode(output(exports)) });
     });
 };
 
@@ -36,13 +43,16 @@ function write(...parts) {
     }
 }
 
+/** The output of a call, until the next one. @param {Exports} of */
+const output = (of) => new Uint8Array(of.memory.buffer, of.output(), of.output_length());
+
 /** Sends all messages for the page. */
 function deliver() {
-    if (!exports) return;
+    if (!exports || isHelper) return;
     for (;;) {
         const kind = exports.say();
         if (kind === 0) return;
-        const bytes = new Uint8Array(exports.memory.buffer, exports.output(), exports.output_length());
+        const bytes = output(exports);
         if (kind === 1) postMessage(new TextDecoder().decode(bytes));
         else {
             const { buffer } = bytes.slice();
@@ -64,7 +74,7 @@ function guarded(act) {
 }
 
 /** @param {any} message */
-function hear({ forget, file, open, say }) {
+function hear({ forget, file, open, say, helps, idle: more, render, part, film }) {
     if (!exports) return;
     if (forget) exports.forget_files();
     if (file) {
@@ -76,12 +86,28 @@ function hear({ forget, file, open, say }) {
         const scene = utf8.encode(open.scene);
         write(scene, utf8.encode(open.reference ?? ""));
         exports.open_scene(scene.length);
+        [idle, unable] = [idle + unable, 0];
     }
     if (say !== undefined) {
         write(utf8.encode(say));
         exports.hear();
     }
-    if (open || say !== undefined) schedule();
+    if (helps) isHelper = true;
+    if (more) idle += more;
+    if (render) {
+        write(utf8.encode(render));
+        exports.render_part();
+        const { buffer } = output(exports).slice();
+        postMessage({ part: render, film: buffer }, { transfer: [buffer] });
+    }
+    if (part) {
+        const text = utf8.encode(part);
+        write(text, new Uint8Array(film));
+        exports.take_part(text.length);
+        if (film.byteLength > 0) idle++;
+        else unable++;
+    }
+    if (!isHelper && (open || part || say !== undefined)) schedule();
 }
 
 onmessage = ({ data }) => {

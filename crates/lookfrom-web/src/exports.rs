@@ -76,6 +76,24 @@ extern "C" fn turn() -> u32 {
     u32::from(with(Worker::turn))
 }
 
+/// As [`Worker::lend`].
+#[unsafe(no_mangle)]
+extern "C" fn lend() -> u32 {
+    u32::from(with(Worker::lend))
+}
+
+/// As [`Worker::render_part`].
+#[unsafe(no_mangle)]
+extern "C" fn render_part() {
+    with(Worker::render_part);
+}
+
+/// As [`Worker::take_part`].
+#[unsafe(no_mangle)]
+extern "C" fn take_part(part: usize) {
+    with(|worker| worker.take_part(part));
+}
+
 /// As [`Worker::say`].
 #[unsafe(no_mangle)]
 extern "C" fn say() -> u32 {

@@ -6,13 +6,16 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lookfrom::session::Options;
-use lookfrom_scene::Budget;
+use lookfrom_scene::{Budget, json};
 use lookfrom_view::{Desk, Outgoing, Settings};
 
 use crate::dropped::Dropped;
 
 /// The time that a turn renders: messages of the page wait for so long.
 const SLICE: Duration = Duration::from_millis(40);
+
+/// The time that a part for a helper takes: much longer than its film needs to be packed and added.
+const WORTHWHILE: Duration = Duration::from_secs(1);
 
 /// Memory for all scenes and films. The address space of WebAssembly has four gigabytes, and browsers may give less.
 const MEMORY: u64 = 3 << 30;
@@ -62,7 +65,7 @@ impl Worker {
         let reference = String::from_utf8(reference).ok().filter(|path| !path.is_empty());
         let settings = Settings {
             scene: scene.into(),
-            options: Options { budget: Budget::new(MEMORY), ..Options::default() },
+            options: Options { budget: Budget::new(MEMORY), film: true, ..Options::default() },
             environment: None,
             reference: reference.map(PathBuf::from),
             typed: Vec::new(),
@@ -79,6 +82,30 @@ impl Worker {
     /// Answers, and renders for a slice of time; returns whether there is more to render.
     pub(crate) fn turn(&mut self) -> bool {
         self.desk.turn()
+    }
+
+    /// Puts a part of the picture for a helper into the output, as JSON; whether there is one.
+    pub(crate) fn lend(&mut self) -> bool {
+        let part = self.desk.lend(WORTHWHILE);
+        self.output = part.as_ref().map(json::line).unwrap_or_default().into_bytes();
+        part.is_some()
+    }
+
+    /// Renders the part of another worker that the input is, and puts its film into the output; nothing where that cannot be.
+    pub(crate) fn render_part(&mut self) {
+        let (part, _) = self.take(usize::MAX);
+        let film = serde_json::from_str(&part).ok().and_then(|part| self.desk.render_part(&part));
+        self.output = film.unwrap_or_default();
+        // Nobody listens to a helper.
+        while self.desk.say().is_some() {}
+    }
+
+    /// Takes back a part; the input is the part, of this many bytes, and its film.
+    pub(crate) fn take_part(&mut self, part: usize) {
+        let (part, film) = self.take(part);
+        if let Ok(part) = serde_json::from_str(&part) {
+            self.desk.take_part(&part, &film);
+        }
     }
 
     /// Puts the next message of the page into the output, and returns its kind: 0 for none, 1 for a text, 2 for a frame.

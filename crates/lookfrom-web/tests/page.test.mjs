@@ -2,14 +2,16 @@
 
 import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
-import { readFile } from "node:fs/promises";
+import { readFile, readdir } from "node:fs/promises";
+import { createRequire } from "node:module";
 import { createServer } from "node:http";
 import { after, before, test } from "node:test";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { promisify } from "node:util";
 import { deflateRawSync } from "node:zlib";
-import { BINARY, PATIENCE, inspect, inspection, launch, open, pictureHash, screenshot } from "../../lookfrom-view/tests/browser/browser.mjs";
+import { completions } from "../assets/complete.js";
+import { BINARY, PATIENCE, inspect, inspection, launch, open, pictureHash, screenshot, serve } from "../../lookfrom-view/tests/browser/browser.mjs";
 
 const ROOT = join(dirname(fileURLToPath(import.meta.url)), "../../..");
 const PAGE = join(ROOT, "dist/page/index.html");
@@ -89,6 +91,23 @@ test("six pictures have the hashes of the command", async () => {
     await context.close();
 });
 
+test("several workers render one picture, and it has the bits of the command", async () => {
+    const { page, context, errors } = await open(browser, `${FILE}#scene=scenes/cornell.toml&size=128x128&samples=96`);
+    await finished(page);
+    await until("the hash", async () => (await hashOf(page)) !== "");
+    assert.ok(page.workers().length > 1, "there are helpers");
+    const told = await page.locator("#progress-text").textContent();
+    const { stdout } = await promisify(execFile)(BINARY, ["render", "scenes/cornell.toml", "--size", "128x128", "--samples", "96", "--denoise=off", "--json", "--quiet", "--output", "/tmp/t/x.png"], { cwd: ROOT, maxBuffer: 2 ** 24 });
+    assert.equal(await hashOf(page), JSON.parse(stdout).hash, told);
+    // Another view in the middle of it: what comes back of the first is not added.
+    await page.locator("#picture-overlay").press("ArrowRight");
+    await page.waitForTimeout(2500);
+    await page.locator("#picture-overlay").press("Home");
+    await until("the first picture again", async () => (await hashOf(page)) === JSON.parse(stdout).hash);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("from a server of static files, and nothing leaves the page", async () => {
     const [asked, bytes] = [[], await readFile(PAGE)];
     const server = createServer((request, response) => {
@@ -145,7 +164,7 @@ test("dropped files: a scene, what it lacks, an archive, a reference", async () 
     await until("its picture", async () => (await page.locator("#scene-name").textContent()) === "mine.toml" && (await page.locator("#picture").evaluate((canvas) => canvas.width)) === 96);
     await finished(page);
     const whole = await pictureHash(page);
-    assert.match(page.url(), /dropped=mine\.toml/);
+    await until("its name in the link", async () => /dropped=mine\.toml/.test(page.url()));
 
     const archive = zip("folder/model.obj", Buffer.from(QUAD.replace("mtllib quad.mtl\nusemtl red\n", "")));
     await drop(page, [["model.zip", archive]]);
@@ -192,4 +211,128 @@ test("the text of the scene: a picture as one types, an error under its line, an
     assert.deepEqual([...errors, ...other.errors], []);
     await other.context.close();
     await context.close();
+});
+
+test("completion in the text: by keys, by the mouse, and named for screen readers", async () => {
+    const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`);
+    await finished(page);
+    const before = await pictureHash(page);
+    await page.getByRole("tab", { name: "Scene" }).click();
+    const area = page.getByLabel("Text of the scene");
+    const text = await area.inputValue();
+    const caretAfter = (part) => area.evaluate((area, part) => area.setSelectionRange(area.value.indexOf(part) + part.length, area.value.indexOf(part) + part.length), part);
+    const list = page.getByRole("listbox", { name: "Completions" });
+    const options = () => list.getByRole("option").allTextContents();
+    await area.focus();
+    await caretAfter("[[sphere]]");
+    await page.keyboard.press("Enter");
+    await page.keyboard.press("Control+Space");
+    await list.waitFor();
+    assert.ok((await options()).includes("material") === !text.includes("material"), (await options()).join());
+    await page.keyboard.press("ArrowDown");
+    assert.equal(await list.getByRole("option", { selected: true }).textContent(), (await options())[1]);
+    assert.equal(await area.getAttribute("aria-activedescendant"), "completion-1");
+    const axe = await readFile(createRequire(new URL("../../lookfrom-view/tests/browser/", import.meta.url)).resolve("axe-core/axe.min.js"), "utf8");
+    // The policy of the page lets no script in: it is evaluated by the browser's own tools.
+    await page.evaluate(axe);
+    assert.deepEqual((await page.evaluate(() => window.axe.run())).violations.map(({ id, nodes }) => [id, nodes.map(({ html }) => html)]), []);
+    await screenshot(page, "web-completion");
+    await page.keyboard.press("Escape");
+    assert.ok(await list.isHidden());
+    assert.ok(await area.evaluate((area) => area === document.activeElement), "Escape closes the list first");
+
+    await page.keyboard.type("rev");
+    await list.waitFor();
+    assert.deepEqual(await options(), ["reverse_orientation"]);
+    await page.keyboard.press("Tab");
+    await page.keyboard.type("true\n");
+    await page.keyboard.type("ph");
+    await list.getByRole("option", { name: "phi_max" }).click();
+    await page.keyboard.type("200");
+    assert.equal(await area.inputValue(), text.replace("[[sphere]]\n", "[[sphere]]\nreverse_orientation = true\nphi_max = 200\n"));
+    await until("half a sphere", async () => (await pictureHash(page)) !== before);
+    assert.ok(await page.locator("#scene .mark").isHidden());
+    for (let i = 0; i < 80 && (await area.inputValue()) !== text; i++) await page.keyboard.press("Control+z");
+    assert.equal(await area.inputValue(), text, "all of it can be undone");
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("360 pixels: nothing is cut off", async () => {
+    for (const width of [360, 800]) {
+        const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`, { viewport: { width, height: 740 } });
+        await finished(page);
+        await page.getByRole("tab", { name: "Scene" }).click();
+        await page.getByLabel("Text of the scene").press("Control+Space");
+        await page.getByRole("listbox", { name: "Completions" }).waitFor();
+        await screenshot(page, `web-${width}`);
+        const outside = await page.evaluate(() =>
+            [...document.querySelectorAll("button, input, select, summary, [role=option]")].filter((control) => control.checkVisibility() && !control.closest(".skip") && control.getBoundingClientRect().right > innerWidth + 1).map((control) => control.outerHTML));
+        assert.deepEqual(outside, []);
+        assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "the page scrolls sideways");
+        assert.deepEqual(errors, []);
+        await context.close();
+    }
+});
+
+test("Share: a page that answers for its pixel, and a scene that is whole", async () => {
+    const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`, { acceptDownloads: true });
+    await finished(page);
+    await inspect(page, 30, 50);
+    await until("the sample is in the link", async () => /sample=\d+/.test(page.url()));
+    await page.locator("#picture-overlay").press("ArrowRight");
+    await until("another camera", async () => page.url().includes("camera="));
+    await finished(page);
+    await until("its rays", async () => !(await page.locator("body").evaluate((body) => body.classList.contains("is-tracing"))));
+    await page.waitForTimeout(500);
+    const shown = await pictureHash(page);
+    await page.getByText("Share").click();
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save page" }).click()]);
+    assert.equal(download.suggestedFilename(), "notes-exercise.html");
+    await page.getByText("Share").click();
+    await page.getByRole("button", { name: "Copy as TOML" }).click();
+    await page.locator("#text pre").or(page.locator("#toast.shown", { hasText: "clipboard" })).first().waitFor();
+    const saved = `${await download.path()}.html`;
+    await download.saveAs(saved);
+    const other = await open(browser, pathToFileURL(saved).href);
+    await other.page.locator("#tree li").first().waitFor();
+    assert.equal(await pictureHash(other.page), shown);
+    assert.match(other.page.url(), /pixel=30,50&sample=\d+/);
+    const toml = await other.page.evaluate(() => JSON.parse(document.getElementById("handout").textContent).words.toml);
+    // The whole scene: it needs no other file, and shows the view.
+    await drop(page, [["whole.toml", toml]]);
+    await until("the scene", async () => (await page.locator("#scene-name").textContent()) === "whole.toml");
+    await finished(page);
+    await until("the same picture", async () => (await pictureHash(page)) === shown);
+    assert.deepEqual([...errors, ...other.errors], []);
+    await other.context.close();
+    await context.close();
+});
+
+test("wherever a scene of the repository has a key, that key would have been offered", async () => {
+    const server = await serve(join(ROOT, "scenes/notes-exercise.toml"), ["--size", "16x16", "--samples", "1"]);
+    const { page, context } = await open(browser, server.url);
+    const tables = await page.evaluate(() => new Promise((resolve) => {
+        const socket = new WebSocket(`${location.origin.replace("http", "ws")}/socket${location.search}`);
+        socket.onopen = () => socket.send(JSON.stringify({ type: "vocabulary", id: 1 }));
+        socket.onmessage = ({ data }) => void (typeof data === "string" && JSON.parse(data).id === 1 && resolve(JSON.parse(data).tables));
+    }));
+    await context.close();
+    await server.stop();
+    let count = 0;
+    for (const folder of ["scenes", "docs/guide/scenes"]) {
+        for (const name of (await readdir(join(ROOT, folder))).filter((name) => name.endsWith(".toml"))) {
+            const text = await readFile(join(ROOT, folder, name), "utf8");
+            for (const { 1: before, 2: key, index } of text.matchAll(/((?:^|[{,])[ \t]*)([a-z_]+)(?= *=)/gm)) {
+                const at = index + before.length;
+                const typed = text.slice(0, at + 1) + text.slice(at + key.length);
+                const isFree = /^\[variables\]$|light_paths = \{[^}]*$/m.test(text.slice(0, at).split(/^(?=\[)/m).at(-1));
+                if (isFree || /#[^\n]*$/.test(text.slice(0, at))) continue;
+                const offered = completions(tables, typed, at + 1)?.options ?? [];
+                assert.ok(key.length === 1 || offered.includes(key), `${name}: ${key} is not among ${offered.join(", ")}`);
+                count++;
+            }
+        }
+    }
+    assert.ok(count > 500, `${count} keys`);
 });

@@ -50,7 +50,7 @@ pub(crate) struct ViewArguments {
     #[arg(long, value_name = "X,Y", requires = "export", value_parser = values::pixel)]
     pub(crate) pixel: Option<[u32; 2]>,
 
-    /// The only sample of the pixel whose rays the hand-out holds [default: the 8 brightest]
+    /// The sample of the pixel that the hand-out shows first [default: the brightest]; it holds the rays of 8, the brightest
     #[arg(long, value_name = "N", requires = "export")]
     pub(crate) sample: Option<u32>,
 

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { promisify } from "node:util";
-import { BINARY, SCENES, inspection, launch, open, placeOf, screenshot } from "./browser.mjs";
+import { BINARY, SCENES, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
 
 const SCENE = join(SCENES, "glass-and-mirror.toml");
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
@@ -57,3 +57,39 @@ for (const [width, height, colorScheme] of [[1280, 800, "light"], [360, 740, "da
         await context.close();
     });
 }
+
+test("Share saves the page of the view as it is, with its pixel and sample", async () => {
+    const server = await serve(SCENE, SMALL);
+    const { page, context, errors } = await open(browser, server.url);
+    await page.locator('#picture[data-done="true"]').waitFor();
+    await page.locator("#picture-overlay").focus();
+    for (let i = 0; i < 3; i++) await page.keyboard.press("ArrowRight");
+    await page.waitForFunction(() => /camera=/.test(location.hash));
+    await page.locator('#picture[data-done="true"]').waitFor();
+    await inspect(page, 60, 75);
+    const brightest = await page.locator("#tree").textContent();
+    await page.locator("#samples tbody tr").last().getByRole("button").click();
+    const sample = await page.locator("#samples tbody tr").last().getAttribute("data-sample");
+    await page.waitForFunction((before) => document.getElementById("tree").textContent !== before, brightest);
+    const [picture, rays] = [await pictureHash(page), await page.locator("#tree").textContent()];
+    await page.getByText("Share").click();
+    await screenshot(page, "share");
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save page" }).click()]);
+    assert.equal(download.suggestedFilename(), "glass-and-mirror.html");
+    const saved = join(folder, "saved.html");
+    await download.saveAs(saved);
+
+    const other = await open(browser, pathToFileURL(saved).href);
+    const asked = [];
+    other.page.on("request", (request) => /^(https?|wss?|file):/.test(request.url()) && asked.push(request.url()));
+    await other.page.locator("#tree li").first().waitFor();
+    await other.page.waitForFunction((sample) => location.hash.includes(`pixel=60,75&sample=${sample}`), sample);
+    assert.deepEqual([await pictureHash(other.page), await other.page.locator("#tree").textContent()], [picture, rays]);
+    await other.page.getByText("Share").click();
+    assert.ok(await other.page.locator("#save-page").isHidden());
+    await screenshot(other.page, "saved-page");
+    assert.deepEqual([...errors, ...other.errors, ...asked], []);
+    await other.context.close();
+    await context.close();
+    await server.stop();
+});

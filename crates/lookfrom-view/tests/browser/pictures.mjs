@@ -44,7 +44,7 @@ await at("exercise", join(SCENES, "notes-exercise.toml"), ["--size", "400x400"],
     await inspect(page, 275, 200);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
     await page.getByLabel("Lesson").selectOption("2");
-    await settle(page);
+    await settle(page, "#exercise svg");
     await keep("exercise");
 });
 
@@ -66,7 +66,7 @@ await copy.remove();
 
 if (process.env.LOOKFROM_SHARED) {
     const scene = join(process.env.LOOKFROM_SHARED, "scenes/veach-bidir/scene.pbrt");
-    await at("firefly", scene, ["--samples", "32"], [1280, 800], async (page, keep) => {
+    await at("firefly", scene, ["--size", "200x200", "--samples", "32"], [1280, 800], async (page, keep) => {
         await inspect(page, 97, 102);
         await settle(page);
         await keep("firefly-1");

@@ -15,7 +15,7 @@ command -v node > /dev/null && command -v npm > /dev/null || skip "node is not i
 
 npx tsc --project tsconfig.json
 npx tsc --project ../../../lookfrom-web/tests/tsconfig.json
-node --test unit/
+node --test unit/ ../../../lookfrom-web/tests/unit/
 
 chromium=${CHROMIUM:-$(command -v chromium || command -v chromium-browser || command -v google-chrome || true)}
 [[ -n $chromium ]] || skip "Chromium is not installed"

@@ -123,6 +123,46 @@ test("the exercise of the notes: M_vw = I", async () => {
     await context.close();
 });
 
+test("each step of the course has something to drag, by keys too", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await inspect(page, 120, 80);
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    const text = () => page.locator(".lesson").evaluate((lesson) => lesson.textContent + [...lesson.querySelectorAll("svg")].map((figure) => figure.innerHTML).join());
+    for (let lesson = 0; lesson < 8; lesson++) {
+        await page.getByLabel("Lesson").selectOption(String(lesson));
+        const before = await text();
+        await page.locator('.lesson [role="slider"], .lesson input[type="range"]').first().press("ArrowLeft");
+        await until(`step ${lesson + 1} changes`, async () => (await text()) !== before);
+    }
+    // The sphere of step 5, off its ray and back to its origin.
+    await page.getByLabel("Lesson").selectOption({ label: "5. A ray and a sphere" });
+    const box = await page.getByRole("slider", { name: "The centre of the sphere" }).boundingBox();
+    const drag = async (right, down) => {
+        const [x, y] = [box.x + box.width / 2, box.y + box.height / 3];
+        await page.mouse.move(x, y);
+        await page.mouse.down();
+        await page.mouse.move(x + right, y + down, { steps: 3 });
+        await page.mouse.up();
+    };
+    const words = () => page.locator(".lesson .number.centred").textContent();
+    assert.match((await words()) ?? "", /two roots, the nearer one counts/);
+    await drag(0, -90);
+    assert.match((await words()) ?? "", /no real root/);
+    await drag(-box.width, 90);
+    assert.match((await words()) ?? "", /the origin is in the sphere|behind the origin/);
+    // The camera of step 3, which the picture follows.
+    await page.getByLabel("Lesson").selectOption({ label: "3. The exercise: M_vw = I" });
+    const verdict = page.locator("#exercise-verdict");
+    await page.getByRole("button", { name: "Look from there" }).click();
+    await until("the identity", async () => /^M_vw = I/.test((await verdict.textContent()) ?? ""));
+    const shown = await pictureHash(page);
+    await page.getByRole("slider", { name: "Direction of the camera" }).press("ArrowRight");
+    assert.match((await verdict.textContent()) ?? "", /not the identity/);
+    await until("another picture", async () => (await pictureHash(page)) !== shown);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("the lesson on fog: its exercise checks itself", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await page.getByRole("tab", { name: "Notes, alive" }).click();

@@ -156,14 +156,15 @@ pub(super) const LADDERS: &[Ladder] = &[
     Ladder {
         name: "lookfrom-view",
         rungs: &[
-            "assets heat message patience",
+            "assets heat lent message patience source",
             "compare cost mailbox words",
             "document",
             "view",
             "bundle develop lobe space view_render",
-            "render told",
+            "parts render told",
+            "answers handout",
             "desk window",
-            "handout server",
+            "server",
         ],
         exceptions: &[],
     },
