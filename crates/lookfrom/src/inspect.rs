@@ -7,6 +7,7 @@
 mod camera;
 mod candidate;
 mod expression;
+mod lens_system;
 mod lights;
 mod microfacets;
 mod pixel;
@@ -36,7 +37,7 @@ pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
-    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection, LiftReport,
+    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection, LensSurfaceReport, LensSystemReport, LiftReport,
     LightReport, MatrixStep, MetReport, NullReport, PhaseLobeReport, PhaseReport, ProbeReport,
     ProbeSegmentReport, ProfileReport, RayReport, SensorReport, ShadowReport, SphereMapping, TrackingReport,
     WavelengthsReport,

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::expression::Contribution;
 use super::segments::RaySegment;
 
-pub use camera::{CameraSteps, MatrixStep, SphereMapping};
+pub use camera::{CameraSteps, LensSurfaceReport, LensSystemReport, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
 pub use medium::{
     CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, ProfileReport, TrackingReport,

@@ -27,8 +27,8 @@ impl Projection {
         let (ahead, upward) =
             if level.length() > 0.3 { (level.normalize(), DVec3::Y) } else { (forward, up) };
         let right = ahead.cross(upward);
-        let is_perspective = match (view, camera.projection) {
-            (SvgView::Camera, OfCamera::Perspective { .. }) => true,
+        let is_perspective = match (view, &camera.projection) {
+            (SvgView::Camera, OfCamera::Perspective { .. } | OfCamera::LensSystem(_)) => true,
             (SvgView::Camera, OfCamera::Orthographic { .. }) => false,
             (SvgView::Camera, _) => return None,
             _ => false,
