@@ -48,7 +48,10 @@ pub fn parse(bytes: &[u8], file: &Location) -> Result<Vec<LensSurface>> {
         }
         let number = word.parse().ok().filter(|number: &f64| number.abs() <= LARGEST);
         let number = number.ok_or_else(|| {
-            Error::syntax(&file.at(line, 0), format!("`{word}` is no number; expected one of at most {LARGEST:e}"))
+            Error::syntax(
+                &file.at(line, 0),
+                format!("`{word}` is no number; expected one of at most {LARGEST:e}"),
+            )
         });
         numbers.push((line, number?));
     }
@@ -62,7 +65,10 @@ pub fn parse(bytes: &[u8], file: &Location) -> Result<Vec<LensSurface>> {
     }
     let surfaces: Vec<LensSurface> = rows.iter().map(|row| surface(row, file)).collect::<Result<_>>()?;
     if surfaces.iter().all(LensSurface::is_stop) {
-        return Err(Error::invalid(file, "no surface refracts: all have a radius of curvature of 0, as a stop has"));
+        return Err(Error::invalid(
+            file,
+            "no surface refracts: all have a radius of curvature of 0, as a stop has",
+        ));
     }
     Ok(surfaces)
 }
@@ -71,7 +77,10 @@ fn surface(row: &[(u32, f64); 4], file: &Location) -> Result<LensSurface> {
     let [(_, curvature_radius), (_, thickness), (_, index), (_, diameter)] = *row;
     let bad = |place: usize, what: &str, expected: &str| {
         let (line, number) = row[place];
-        Err(Error::invalid(&file.at(line, 0), format!("{what} of a surface is {number}; expected {expected}")))
+        Err(Error::invalid(
+            &file.at(line, 0),
+            format!("{what} of a surface is {number}; expected {expected}"),
+        ))
     };
     if thickness < 0.0 {
         return bad(1, "the thickness", "a number of at least 0");
@@ -92,7 +101,8 @@ mod tests {
     #[test]
     fn a_table_with_comments() {
         let file = Location::default();
-        let lens = parse(b"# thin\n50 0.5 1.5 25 # front\r\n0 1 0 20\n-50 50\n1 25\n", &file).expect("a lens");
+        let lens =
+            parse(b"# thin\n50 0.5 1.5 25 # front\r\n0 1 0 20\n-50 50\n1 25\n", &file).expect("a lens");
         let surface = |curvature_radius, thickness, index, diameter| LensSurface {
             curvature_radius,
             thickness,
@@ -107,7 +117,9 @@ mod tests {
 
     #[test]
     fn files_that_are_no_lens_are_refused() {
-        let of = |bytes: &[u8]| parse(bytes, &Location::file(Path::new("a.dat"))).expect_err("no lens").to_string();
+        let of = |bytes: &[u8]| {
+            parse(bytes, &Location::file(Path::new("a.dat"))).expect_err("no lens").to_string()
+        };
         for (bad, why) in [
             (&b""[..], "a.dat: 0 numbers"),
             (b"# nothing", "0 numbers"),

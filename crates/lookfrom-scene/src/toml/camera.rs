@@ -41,9 +41,26 @@ impl Reader<'_, '_> {
     pub(super) fn camera(&mut self, table: &Table<'_>) -> Result<Camera> {
         let surfaces = table.maybe("lens", |value| self.lens_surfaces(value));
         let shape = table.or("aperture_shape", ApertureShape::Circle, |value| self.aperture_shape(value));
+        let lengths = [("millimetre", 1e-3), ("film", 35.0)];
+        let [millimetre, film_diagonal] =
+            lengths.map(|(key, default)| table.or(key, default, Value::positive));
         let camera = camera(table)?;
-        let Some(surfaces) = surfaces else { return Ok(camera) };
-        let system = lens_system(table, surfaces, shape, &camera)?;
+        let Some((name, surfaces)) = surfaces else { return Ok(camera) };
+        if let Some(value) = ["fov", "window"].iter().find_map(|key| table.find(key)) {
+            let message = format!("`{}` has no meaning with a `lens`", value.key());
+            return Err(value.error(message).hint("a lens sees as much as its `film` is large"));
+        }
+        let stop_diameter = table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre);
+        let system = LensSystem {
+            name,
+            surfaces,
+            stop_diameter,
+            shape,
+            focus_distance: camera.lens.map_or(1.0, |lens| lens.focus_distance),
+            film_diagonal,
+            millimetre,
+            convention: LensConvention::AsPinhole,
+        };
         Ok(Camera { projection: Projection::LensSystem(Arc::new(system)), lens: None, ..camera })
     }
 
@@ -64,37 +81,12 @@ impl Reader<'_, '_> {
             value,
             "\"circle\", \"gaussian\", \"square\", \"pentagon\", \"star\", or the name of a picture",
         )?;
-        let image = image::read(&path, self.context).map_err(|error| value.blame(error))?;
+        let image = image::read(&path, self.context).map_err(|error| {
+            let names = ApertureShape::NAMED.map(|(name, _)| format!("{name:?}")).join(", ");
+            value.blame(error).hint(format!("give the name of a picture, or one of {names}"))
+        })?;
         Ok(ApertureShape::Image(Arc::new(image)))
     }
-}
-
-/// The lens system of a camera whose other keys are valid.
-fn lens_system(
-    table: &Table<'_>,
-    (name, surfaces): (String, Vec<LensSurface>),
-    shape: ApertureShape,
-    camera: &Camera,
-) -> Result<LensSystem> {
-    let millimetre = table.or("millimetre", 1e-3, Value::positive);
-    let film_diagonal = table.or("film", 35.0, Value::positive);
-    let stop_diameter =
-        table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre);
-    if let Some(value) = ["fov", "window"].iter().find_map(|key| table.find(key)) {
-        let message = format!("`{}` has no meaning with a `lens`", value.key());
-        return Err(value.error(message).hint("a lens sees as much as its `film` is large"));
-    }
-    let focus_distance = camera.lens.map_or(1.0, |lens| lens.focus_distance);
-    Ok(LensSystem {
-        name,
-        surfaces,
-        stop_diameter,
-        shape,
-        focus_distance,
-        film_diagonal,
-        millimetre,
-        convention: LensConvention::AsPinhole,
-    })
 }
 
 /// The camera without a lens system.
@@ -156,7 +148,17 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
 pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
     (
         "perspective",
-        &["fov", "aperture", "focus", "focus_distance", "window", "lens", "film", "aperture_shape", "millimetre"],
+        &[
+            "fov",
+            "aperture",
+            "focus",
+            "focus_distance",
+            "window",
+            "lens",
+            "film",
+            "aperture_shape",
+            "millimetre",
+        ],
     ),
     ("orthographic", &["height", "aperture", "focus", "focus_distance", "window"]),
     ("equirectangular", &[]),

@@ -22,7 +22,9 @@ pub(super) fn report(renderer: &Renderer, id: SampleId, weight: f32) -> Option<L
             aperture_radius: section.radius,
             index_ratio: section.index_ratio,
             point: crossing.and_then(|crossing| finite(crossing.point)),
-            direction: crossing.filter(|crossing| crossing.passes).and_then(|crossing| finite(crossing.direction)),
+            direction: crossing
+                .filter(|crossing| crossing.passes)
+                .and_then(|crossing| finite(crossing.direction)),
             passes: crossing.is_some_and(|crossing| crossing.passes),
         }
     });

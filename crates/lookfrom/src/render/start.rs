@@ -95,12 +95,7 @@ impl Renderer {
         let Start { wavelengths, points, rays, weights, filter_weights } = start;
         let camera = &self.view.camera;
         let count = if self.is_spectral() { ids.len() } else { 0 };
-        self.sampler.two_of_each(
-            count,
-            |k| (ids[k].pixel, ids[k].sample),
-            WAVELENGTH_DIMENSION,
-            wavelengths,
-        );
+        self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), WAVELENGTH_DIMENSION, wavelengths);
         points.clear();
         weights.clear();
         filter_weights.clear();
@@ -138,10 +133,12 @@ impl Renderer {
         let rows = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[1])));
         let samples = u32x8::load_array(simd, by_lane!(lane => ids[lane].sample));
         let samplers = PixelSamplers::of_pixels(&self.sampler, columns | (rows << 32));
-        let two = |dimension: u32| samplers.two(samples, u64x8::splat(simd, u64::from(dimension)));
-        let lens = if has_lens { two(LENS_DIMENSION) } else { [f32x8::splat(simd, 0.5); 2] };
-        let (point, weight) =
-            self.image_point([below_2_to_52(columns), below_2_to_52(rows)], two(sampler::PIXEL));
+        let u = samplers.two(samples, u64x8::splat(simd, u64::from(sampler::PIXEL)));
+        let (point, weight) = self.image_point([below_2_to_52(columns), below_2_to_52(rows)], u);
+        let lens = match has_lens {
+            true => samplers.two(samples, u64x8::splat(simd, u64::from(LENS_DIMENSION))),
+            false => [f32x8::splat(simd, 0.5); 2],
+        };
         (point, weight, lens)
     }
 }

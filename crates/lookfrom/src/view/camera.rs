@@ -194,7 +194,9 @@ impl Camera {
     /// Whether it has an image plane, so that its rays are those of [`Camera::flat_ray`].
     pub(crate) fn is_flat(&self) -> bool {
         match self.projection {
-            Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => true,
+            Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => {
+                true
+            }
             Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => false,
         }
     }
@@ -239,7 +241,9 @@ impl Camera {
         // every ray from the lens intersects the pinhole's ray in the plane of focus
         let pinhole = image_point - start;
         let focus = start + pinhole * (zero.like(focus_distance) / pinhole.z);
-        let [x, y] = warp::concentric_disk(lens).map(|place| place.widen() * zero.like(radius));
+        let [x, y] = warp::concentric_disk(lens);
+        let radius = zero.like(radius);
+        let (x, y) = (x.widen() * radius, y.widen() * radius);
         let a = start + Vector { x, y, z: zero };
         let direction = (focus - a) * zero.like(self.distance / focus_distance);
         StartingRay { a, direction, weight: one }
@@ -320,10 +324,14 @@ fn through_lens_system<R: Real>(
     let zero = image_point.x.like(0.0);
     let LeavingRay { origin, direction, weight } = system.leaving(film_point(system, image_point), lens);
     let is_blocked = weight.widen().eq(zero);
-    let in_view = |v: Vector<R::Double>| Vector { x: -v.x, ..v };
+    let nowhere = Vector { x: zero, y: zero, z: zero };
     StartingRay {
-        a: Vector::select(is_blocked, Vector { x: zero, y: zero, z: zero }, in_view(origin)),
-        direction: Vector::select(is_blocked, image_point.normalize(), in_view(direction)),
+        a: Vector::select(is_blocked, nowhere, Vector { x: -origin.x, ..origin }),
+        direction: Vector::select(
+            is_blocked,
+            image_point.normalize(),
+            Vector { x: -direction.x, ..direction },
+        ),
         weight,
     }
 }
@@ -447,10 +455,12 @@ mod tests {
             type Output = [([f64; 3], [f64; 3], f32); 8];
             #[inline(always)]
             fn run<S: Simd>(self, simd: S) -> Self::Output {
-                let [points, lens] = [0, 1].map(|axis| {
-                    let points = f64x8::load_array(simd, self.1.map(|point| point[axis]));
-                    (points, f32x8::load_array(simd, self.2.map(|u| u[axis])))
-                }).into();
+                let [points, lens] = [0, 1]
+                    .map(|axis| {
+                        let points = f64x8::load_array(simd, self.1.map(|point| point[axis]));
+                        (points, f32x8::load_array(simd, self.2.map(|u| u[axis])))
+                    })
+                    .into();
                 let ray = self.0.flat_ray([points.0, lens.0], [points.1, lens.1]);
                 let (a, direction) = (scatter_f64(ray.a), scatter_f64(ray.direction));
                 let weight: [f32; 8] = ray.weight.into();
@@ -459,7 +469,7 @@ mod tests {
         }
         let mut written = look([3.0, 1.0, -4.0], [-2.0, 5.0, 7.0], [0.1, 1.0, 0.2]);
         let thin = Some(Lens { radius: 0.3, focus_distance: 4.0 });
-        let systems = crate::view::lens_system::examples();
+        let systems = crate::view::lens_system::tests::examples();
         let cases = [
             (Projection::Perspective { fov: 40.0 }, None),
             (Projection::Perspective { fov: 40.0 }, thin),
@@ -524,8 +534,8 @@ mod tests {
             let written = Written { projection, ..look([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]) };
             Camera::new(&written, 400, 200).unwrap()
         };
-        let sees = |projection, u: f64, direction: [f64; 3]| {
-            let ray = camera(projection).ray([400.0 * u, 100.0], [0.5; 2]);
+        let sees = |projection: Projection, u: f64, direction: [f64; 3]| {
+            let ray = camera(projection.clone()).ray([400.0 * u, 100.0], [0.5; 2]);
             assert!(
                 ray.direction.distance(direction.into()) < 1e-12,
                 "{projection:?} {u}: {}",

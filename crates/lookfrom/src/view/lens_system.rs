@@ -11,7 +11,7 @@ mod aperture;
 mod focus;
 mod pupil;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use lookfrom_scene::lens::{LensConvention, LensSystem as Written};
 use lookfrom_scene::{Error, Location, Result};
@@ -131,11 +131,16 @@ impl LensSystem {
             }
             let before = place.checked_sub(1).map_or(1.0, |place| written.surfaces[place].index_behind());
             let own = surface.diameter;
-            let diameter = if surface.is_stop() { own.min(written.stop_diameter.unwrap_or(own)) } else { own };
+            let diameter =
+                if surface.is_stop() { own.min(written.stop_diameter.unwrap_or(own)) } else { own };
             let radius = 0.5 * diameter * written.millimetre;
             surfaces.push(Surface {
                 vertex,
-                curvature: if surface.is_stop() { 0.0 } else { 1.0 / (surface.curvature_radius * written.millimetre) },
+                curvature: if surface.is_stop() {
+                    0.0
+                } else {
+                    1.0 / (surface.curvature_radius * written.millimetre)
+                },
                 ratio: (!surface.is_stop()).then(|| surface.index_behind() / before),
                 radius_squared: radius * radius,
             });
@@ -158,7 +163,9 @@ impl LensSystem {
         let is_passed = system.irradiance > 0.0 && system.irradiance.is_finite();
         if !is_passed {
             let message = format!("no light from the middle of the film passes the lens system {name:?}");
-            return Err(Error::invalid(at, message).hint("check the diameters of its surfaces and of the aperture"));
+            return Err(
+                Error::invalid(at, message).hint("check the diameters of its surfaces and of the aperture")
+            );
         }
         if written.convention == LensConvention::AsPinhole {
             system.exposure = 1.0 / system.irradiance;
@@ -175,7 +182,8 @@ impl LensSystem {
         let cosine_squared = cosine * cosine;
         let weight = cosine_squared * cosine_squared * area * (self.exposure / (self.rear * self.rear));
         let ray = self.crossed(ray);
-        let weight = R::narrow(<R::Double as Float>::select(ray.passes, weight, zero)) * self.transmittance::<R>(ray.on_stop);
+        let weight = R::narrow(<R::Double as Float>::select(ray.passes, weight, zero))
+            * self.transmittance::<R>(ray.on_stop);
         LeavingRay { origin: ray.p, direction: ray.d, weight }
     }
 
@@ -184,9 +192,12 @@ impl LensSystem {
     fn on_rear_plane<R: Real>(&self, [x, y]: [R::Double; 2], [u, v]: [R; 2]) -> ([R::Double; 2], R::Double) {
         let distance = (x * x + y * y).sqrt();
         let zero = distance.like(0.0);
-        let interval = R::to_integer(R::narrow(distance * distance.like(INTERVALS as f64 / self.film_radius)));
-        let bound = |side: usize| R::lookup(interval, |interval| self.pupil.bounds(interval)[side]).widen();
-        let [left, right, bottom, top] = [bound(0), bound(1), bound(2), bound(3)];
+        let interval =
+            R::to_integer(R::narrow(distance * distance.like(INTERVALS as f64 / self.film_radius)));
+        let left = R::lookup(interval, |interval| self.pupil.bounds(interval)[0]).widen();
+        let right = R::lookup(interval, |interval| self.pupil.bounds(interval)[1]).widen();
+        let bottom = R::lookup(interval, |interval| self.pupil.bounds(interval)[2]).widen();
+        let top = R::lookup(interval, |interval| self.pupil.bounds(interval)[3]).widen();
         let (width, height) = (right - left, top - bottom);
         let (along, across) = (left + width * u.widen(), bottom + height * v.widen());
         // The bounds are those of film points on the x axis.
@@ -301,7 +312,7 @@ impl Surface {
             let passes = passes & !t.lt(zero) & self.is_within(p);
             return LensRay { p, d, on_stop, passes };
         };
-        let [curvature, ratio] = [self.curvature, ratio].map(|number| zero.like(number));
+        let (curvature, ratio) = (zero.like(self.curvature), zero.like(ratio));
         let q = Vector { z: p.z - zero.like(self.vertex), ..p };
         // c t² + 2 b t + e = 0
         let b = curvature * q.dot(d) + d.z;
@@ -309,7 +320,7 @@ impl Surface {
         // The cosine between ray and normal.
         let cos_i = (b * b - curvature * e).sqrt();
         let t = -e / (b + cos_i);
-        let [p, q] = [p, q].map(|point| point + d * t);
+        let (p, q) = (p + d * t, q + d * t);
         // Snell: the part along the surface is scaled by the ratio of indices.
         let cos_t_squared = zero.like(1.0) - ratio * ratio * (zero.like(1.0) - cos_i * cos_i);
         let bend = cos_t_squared.sqrt() - ratio * cos_i;

@@ -5,7 +5,7 @@ use serde::Serialize;
 /// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraSteps {
-    /// How the camera projects: `perspective`, `orthographic`, or all around.
+    /// How the camera projects: `perspective`, `orthographic`, all around, or `lens system`.
     pub projection: &'static str,
     /// The camera's position.
     pub lookfrom: [f64; 3],
@@ -27,7 +27,7 @@ pub struct CameraSteps {
     pub a: [f64; 3],
     /// `b`: its intersection with the image plane; `P_world`, unless a lens moved `a` away.
     pub b: [f64; 3],
-    /// `b − a`: its direction, not of unit length; `t = 1` is the image plane.
+    /// `b − a`: its direction, not of unit length; `t = 1` is the image plane. Of a lens system of unit length.
     pub direction: [f64; 3],
     /// Whether a lens moved `a` away from `lookfrom`.
     pub lens: bool,

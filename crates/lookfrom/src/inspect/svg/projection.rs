@@ -37,7 +37,7 @@ impl Projection {
             SvgView::Side => [ahead, upward, -right],
             SvgView::Top => [ahead, -right, -upward],
             SvgView::Front => [right, upward, ahead],
-            SvgView::Camera | SvgView::Sheet => [-left, up, forward],
+            SvgView::Camera | SvgView::Sheet | SvgView::Lens => [-left, up, forward],
         };
         let eye = if view == SvgView::Camera { camera.lookfrom() } else { DVec3::ZERO };
         let rows = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), DVec4::W).transpose();

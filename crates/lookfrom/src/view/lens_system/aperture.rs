@@ -25,9 +25,9 @@ impl ApertureImage {
     pub(super) fn new(shape: &ApertureShape, at: &Location) -> Result<Option<Self>> {
         let (width, height, texels): (usize, usize, Vec<f32>) = match shape {
             ApertureShape::Circle => return Ok(None),
-            ApertureShape::Gaussian => rasterized(|[x, y]| {
-                (libm::exp(-(x * x + y * y)) - libm::exp(-1.0)).max(0.0) as f32
-            }),
+            ApertureShape::Gaussian => {
+                rasterized(|[x, y]| (libm::exp(-(x * x + y * y)) - libm::exp(-1.0)).max(0.0) as f32)
+            }
             ApertureShape::Square => rasterized(|[x, y]| f32::from(x.abs() < 0.5 && y.abs() < 0.5)),
             ApertureShape::Pentagon => rasterized(inside(&corners(5, |_| 0.8, 0.25))),
             ApertureShape::Star => {
@@ -59,7 +59,8 @@ impl ApertureImage {
         };
         let ((column, u), (row, v)) = (along(x, self.width), along(-y, self.height));
         let texel = |column: i64, row: i64| {
-            let [column, row] = [usize::try_from(column), usize::try_from(row)].map(|place| place.unwrap_or(usize::MAX));
+            let [column, row] =
+                [usize::try_from(column), usize::try_from(row)].map(|place| place.unwrap_or(usize::MAX));
             let is_inside = column < self.width && row < self.height;
             if is_inside { self.texels[row * self.width + column] } else { 0.0 }
         };

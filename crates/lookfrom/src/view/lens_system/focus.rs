@@ -38,7 +38,7 @@ pub(super) fn focused(written: &Written, at: &Location) -> Result<ThickLens> {
     let both = distance - between_principals;
     let root = (both * (both - 4.0 * focal_length)).sqrt();
     if !(both > 4.0 * focal_length && root.is_finite()) {
-        let nearest = (4.0 * focal_length + between_principals) * written.millimetre;
+        let nearest = ((4.0 * focal_length + between_principals) * written.millimetre) as f32;
         let message = format!(
             "{} cannot be focused at {}, but only farther away than {nearest}",
             described(),

@@ -22,6 +22,8 @@ const FINE_GRID: usize = 256;
 const FINEST_GRID: usize = 1024;
 const ALONG: usize = 64;
 const ACROSS: usize = 16;
+/// How much finer grids are for a stop that is no circle, and may have narrow points.
+const DETAIL: usize = 4;
 
 /// The margin of pbrt's bounds, in diagonals of its searched square.
 const PBRT_MARGIN: f64 = 2.0 / 1024.0;
@@ -49,7 +51,9 @@ impl ExitPupil {
             ends.push(dispatch(level(), Search { system, distance: end as f64 * step, nearer }));
         }
         let margin = match convention {
-            LensConvention::Pbrt => PBRT_MARGIN * 2.0 * SEARCHED * std::f64::consts::SQRT_2 * system.rear_radius,
+            LensConvention::Pbrt => {
+                PBRT_MARGIN * 2.0 * SEARCHED * std::f64::consts::SQRT_2 * system.rear_radius
+            }
             LensConvention::AsPinhole => 0.0,
         };
         let of_both = |ends: &[Option<Rectangle>]| {
@@ -73,8 +77,7 @@ pub(super) fn irradiance(system: &LensSystem) -> f64 {
     let mut sum = 0.0;
     for row in 0..FINE_GRID {
         for column in 0..FINE_GRID {
-            let on_rear =
-                [left + (column as f64 + 0.5) * cell[0], bottom + (row as f64 + 0.5) * cell[1]];
+            let on_rear = [left + (column as f64 + 0.5) * cell[0], bottom + (row as f64 + 0.5) * cell[1]];
             let (ray, cosine) = system.toward([0.0; 2], on_rear);
             let ray = system.crossed(ray);
             if ray.passes {
@@ -128,15 +131,17 @@ impl Kernel for Search<'_> {
             coarse = self.passed(simd, whole, [FINEST_GRID; 2]);
         }
         let coarse = coarse?;
-        let found = self.passed(simd, coarse, [GRID; 2]).unwrap_or(coarse);
+        let detail = if self.system.aperture.is_some() { DETAIL } else { 1 };
+        let (grid, along) = (GRID * detail, ALONG * detail);
+        let found = self.passed(simd, coarse, [grid; 2]).unwrap_or(coarse);
         // Each side lies within two cells of that grid.
         let [left, right, bottom, top] = found;
-        let cell = [2.0 * (coarse[1] - coarse[0]) / GRID as f64, 2.0 * (coarse[3] - coarse[2]) / GRID as f64];
+        let cell = [2.0 * (coarse[1] - coarse[0]) / grid as f64, 2.0 * (coarse[3] - coarse[2]) / grid as f64];
         let sides = [
-            ([left, left + cell[0], bottom, top], [ACROSS, ALONG]),
-            ([right - cell[0], right, bottom, top], [ACROSS, ALONG]),
-            ([left, right, bottom, bottom + cell[1]], [ALONG, ACROSS]),
-            ([left, right, top - cell[1], top], [ALONG, ACROSS]),
+            ([left, left + cell[0], bottom, top], [ACROSS, along]),
+            ([right - cell[0], right, bottom, top], [ACROSS, along]),
+            ([left, right, bottom, bottom + cell[1]], [along, ACROSS]),
+            ([left, right, top - cell[1], top], [along, ACROSS]),
         ];
         let mut finest = None;
         for (side, cells) in sides {
@@ -153,7 +158,12 @@ impl Kernel for Search<'_> {
 impl Search<'_> {
     /// The bounds of the cells of a grid whose middles light passes, and those around them; `None` if it passes none.
     #[inline(always)]
-    fn passed<S: Simd>(&self, simd: S, [left, right, bottom, top]: Rectangle, cells: [usize; 2]) -> Option<Rectangle> {
+    fn passed<S: Simd>(
+        &self,
+        simd: S,
+        [left, right, bottom, top]: Rectangle,
+        cells: [usize; 2],
+    ) -> Option<Rectangle> {
         let cell = [(right - left) / cells[0] as f64, (top - bottom) / cells[1] as f64];
         let mut bounds: Option<Rectangle> = None;
         let splat = |x: f64| f64x8::splat(simd, x);
