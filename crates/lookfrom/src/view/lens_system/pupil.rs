@@ -24,6 +24,9 @@ const ALONG: usize = 64;
 const ACROSS: usize = 16;
 /// How much finer grids are for a stop that is no circle, and may have narrow points.
 const DETAIL: usize = 4;
+/// Cells by which bounds may be wrong: the points of a circle's pupil, where two arcs meet, are blunt, those of a star are not.
+const MARGIN: f64 = 1.0;
+const MARGIN_OF_SHAPES: f64 = 2.0;
 
 /// The margin of pbrt's bounds, in diagonals of its searched square.
 const PBRT_MARGIN: f64 = 2.0 / 1024.0;
@@ -115,54 +118,60 @@ impl Kernel for Search<'_> {
     fn run<S: Simd>(self, simd: S) -> Option<Rectangle> {
         let side = SEARCHED * self.system.rear_radius;
         let whole = [-side, side, -side, side];
-        let mut coarse = self.passed(simd, whole, [GRID; 2]);
+        let (detail, margin) = match self.system.aperture {
+            Some(_) => (DETAIL, MARGIN_OF_SHAPES),
+            None => (1, MARGIN),
+        };
+        let (grid, along) = (GRID * detail, ALONG * detail);
+        let mut coarse = self.passed(simd, whole, [grid; 2], margin);
         if coarse.is_none() {
             coarse = match self.nearer {
-                None => self.passed(simd, whole, [FINE_GRID; 2]),
+                None => self.passed(simd, whole, [FINE_GRID; 2], margin),
                 // The pupil moves little from one film point to the next.
                 Some(Some(nearer)) => {
                     let size = [nearer[1] - nearer[0], nearer[3] - nearer[2]];
-                    self.passed(simd, grown(nearer, size), [FINE_GRID; 2])
+                    self.passed(simd, grown(nearer, size), [FINE_GRID; 2], margin)
                 }
                 Some(None) => None,
             };
         }
         if coarse.is_none() && self.nearer.is_none() {
-            coarse = self.passed(simd, whole, [FINEST_GRID; 2]);
+            coarse = self.passed(simd, whole, [FINEST_GRID; 2], margin);
         }
         let coarse = coarse?;
-        let detail = if self.system.aperture.is_some() { DETAIL } else { 1 };
-        let (grid, along) = (GRID * detail, ALONG * detail);
-        let found = self.passed(simd, coarse, [grid; 2]).unwrap_or(coarse);
-        // Each side lies within two cells of that grid.
+        let found = self.passed(simd, coarse, [grid; 2], margin).unwrap_or(coarse);
+        // Each side lies within the margins of that grid.
         let [left, right, bottom, top] = found;
-        let cell = [2.0 * (coarse[1] - coarse[0]) / grid as f64, 2.0 * (coarse[3] - coarse[2]) / grid as f64];
+        let deep = 2.0 * margin / grid as f64;
+        let cell = [deep * (coarse[1] - coarse[0]), deep * (coarse[3] - coarse[2])];
         let sides = [
             ([left, left + cell[0], bottom, top], [ACROSS, along]),
             ([right - cell[0], right, bottom, top], [ACROSS, along]),
             ([left, right, bottom, bottom + cell[1]], [along, ACROSS]),
             ([left, right, top - cell[1], top], [along, ACROSS]),
         ];
-        let mut finest = None;
+        let mut finest: Option<Rectangle> = None;
         for (side, cells) in sides {
-            let passed = self.passed(simd, side, cells);
-            finest = match (finest, passed) {
-                (Some(finest), Some(passed)) => Some(union(finest, passed)),
-                (finest, passed) => finest.or(passed),
-            };
+            if let Some(passed) = self.passed(simd, side, cells, 1.0) {
+                finest = Some(finest.map_or(passed, |finest| union(finest, passed)));
+            }
         }
+        // Between the places along a side there may be a point.
+        let room = 0.5 * margin * margin / along as f64 * (right - left).max(top - bottom);
+        finest = finest.map(|finest| grown(finest, [room; 2]));
         finest.or(Some(found))
     }
 }
 
 impl Search<'_> {
-    /// The bounds of the cells of a grid whose middles light passes, and those around them; `None` if it passes none.
+    /// The bounds of the middles of a grid's cells that light passes, and a margin in cells around them; `None` if it passes none.
     #[inline(always)]
     fn passed<S: Simd>(
         &self,
         simd: S,
         [left, right, bottom, top]: Rectangle,
         cells: [usize; 2],
+        margin: f64,
     ) -> Option<Rectangle> {
         let cell = [(right - left) / cells[0] as f64, (top - bottom) / cells[1] as f64];
         let mut bounds: Option<Rectangle> = None;
@@ -184,7 +193,7 @@ impl Search<'_> {
                 }
             }
         }
-        bounds.map(|bounds| grown(bounds, cell))
+        bounds.map(|bounds| grown(bounds, cell.map(|size| size * margin)))
     }
 }
 
