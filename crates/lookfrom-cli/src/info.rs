@@ -103,6 +103,10 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     );
     choices(&info.contents, &mut line);
     line("camera", camera_in_words(session.camera()));
+    if let Some(lens) = &session.renderer().view().camera().lens_system {
+        let [focal_length, f_number] = [lens.focal_length(), lens.f_number()].map(digits);
+        line("lens", format!("focal length {focal_length}, f/{f_number}"));
+    }
     if !info.contents.variables.is_empty() {
         let entry = |(name, value): &(String, String)| format!("{name} = {value}");
         let entries: Vec<String> = info.contents.variables.iter().map(entry).collect();
@@ -212,9 +216,9 @@ fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
     let entry = |CameraEntry { name, projection }: &CameraEntry| {
         let projection = match projection {
             Some(seen @ Projection::Perspective { .. }) => {
-                format!("perspective, {}", projection_in_words(*seen))
+                format!("perspective, {}", projection_in_words(seen))
             }
-            Some(seen) => projection_in_words(*seen),
+            Some(seen) => projection_in_words(seen),
             None => "values out of range".to_owned(),
         };
         format!("{} ({projection})", quoted(name))
@@ -222,12 +226,19 @@ fn choices(contents: &Contents, line: &mut impl FnMut(&str, String)) {
     list("cameras", contents.cameras.iter().map(entry).collect());
 }
 
-fn projection_in_words(projection: Projection) -> String {
+fn projection_in_words(projection: &Projection) -> String {
     match projection {
-        Projection::Perspective { fov } => format!("fov {}°", digits(fov)),
-        Projection::Orthographic { height } => format!("orthographic, height {}", digits(height)),
+        Projection::Perspective { fov } => format!("fov {}°", digits(*fov)),
+        Projection::Orthographic { height } => format!("orthographic, height {}", digits(*height)),
         Projection::Equirectangular | Projection::EquirectangularPbrt => "equirectangular".to_owned(),
         Projection::Octahedral => "octahedral".to_owned(),
+        Projection::LensSystem(system) => format!(
+            "lens {:?} of {}, film diagonal {} mm, focus distance {}",
+            system.name,
+            counted(system.surfaces.len(), "surface"),
+            digits(system.film_diagonal),
+            digits(system.focus_distance)
+        ),
     }
 }
 
@@ -238,7 +249,7 @@ fn camera_in_words(camera: &Camera) -> String {
         }
         View::Matrix(matrix) => format!("lookfrom {}, given by a matrix", numbers(matrix.w_axis.truncate())),
     };
-    let _ = write!(text, ", {}", projection_in_words(camera.projection));
+    let _ = write!(text, ", {}", projection_in_words(&camera.projection));
     if let Some(lens) = camera.lens {
         let _ = write!(
             text,

@@ -1,9 +1,12 @@
 //! Camera parameters, with the names of the lecture notes: `lookfrom`, `lookat`, `up`, `θ`. The crate `lookfrom` computes
 //! matrices from them.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DMat4, DVec3};
 
 use crate::error::Location;
+use crate::lens::LensSystem;
 use crate::scene::MediumId;
 
 /// An up vector, along an axis, that is not parallel to a direction: y, or z for what looks up or down.
@@ -23,7 +26,7 @@ pub struct Camera {
     pub target: Option<Target>,
     /// The projection.
     pub projection: Projection,
-    /// A thin lens, for depth of field; `None` is a pinhole.
+    /// A thin lens, for depth of field; `None` is a pinhole, or a [`Projection::LensSystem`].
     pub lens: Option<Lens>,
     /// The screen window; `None` for that of the projection, centred on the axis.
     pub window: Option<Window>,
@@ -93,13 +96,30 @@ impl Camera {
         Some(Look { lookfrom, lookat: lookfrom + distance * w, up: linear.y_axis })
     }
 
+    /// The distance of the plane of focus along the view axis, of a thin lens or a lens system.
+    pub fn focus_distance(&self) -> Option<f64> {
+        match &self.projection {
+            Projection::LensSystem(system) => Some(system.focus_distance),
+            _ => self.lens.map(|lens| lens.focus_distance),
+        }
+    }
+
+    fn set_focus_distance(&mut self, distance: f64) {
+        if let Projection::LensSystem(system) = &mut self.projection {
+            Arc::make_mut(system).focus_distance = distance;
+        }
+        if let Some(lens) = &mut self.lens {
+            lens.focus_distance = distance;
+        }
+    }
+
     /// Changes position and orientation. A lens that was focused on `lookat` ([`Camera::look`]) stays so.
     pub fn set_look(&mut self, look: Look, middle: DVec3) {
         let before = self.look(middle).map(|look| look.lookfrom.distance(look.lookat));
-        if let (Some(lens), Some(before)) = (&mut self.lens, before)
-            && (lens.focus_distance - before).abs() <= 1e-9 * before
+        if let (Some(focus_distance), Some(before)) = (self.focus_distance(), before)
+            && (focus_distance - before).abs() <= 1e-9 * before
         {
-            lens.focus_distance = look.lookfrom.distance(look.lookat);
+            self.set_focus_distance(look.lookfrom.distance(look.lookat));
         }
         self.view = View::Look { lookfrom: look.lookfrom, lookat: look.lookat, up: look.up };
     }
@@ -122,7 +142,7 @@ impl Target {
 }
 
 /// The projection.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Projection {
     /// Perspective projection.
     Perspective {
@@ -145,6 +165,8 @@ pub enum Projection {
     EquirectangularPbrt,
     /// A full panorama on a square, by the equal-area octahedral mapping (Clarberg 2008).
     Octahedral,
+    /// Through a lens system onto a film, whose middle is at the position of the camera.
+    LensSystem(Arc<LensSystem>),
 }
 
 /// A part of the image plane, in units of half the projection's height: x to the right, y up. Without one the image shows

@@ -28,6 +28,7 @@ pub mod ies;
 pub mod image;
 pub mod inputs;
 pub mod json;
+pub mod lens;
 pub mod light;
 pub mod load;
 pub mod material;

@@ -254,7 +254,7 @@ impl Reader<'_, '_> {
     /// The camera, image and render settings of this file; without them, those of the first import that has any apply.
     fn settings(&mut self, top: &Table<'_>) {
         if let Some(table) = top.maybe("camera", |value| value.table("[camera]")) {
-            let camera = camera::camera(&table).map_err(|error| table.note(error));
+            let camera = self.camera(&table).map_err(|error| table.note(error));
             let medium = table.maybe("medium", |value| self.medium_named(value));
             self.scene.camera = camera.ok().map(|camera| Camera { medium, ..camera });
         }

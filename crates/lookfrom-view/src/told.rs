@@ -79,6 +79,7 @@ fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
         Projection::Orthographic { .. } => (None, "orthographic"),
         Projection::Equirectangular | Projection::EquirectangularPbrt => (None, "equirectangular"),
         Projection::Octahedral => (None, "octahedral"),
+        Projection::LensSystem(_) => (None, "lens"),
     };
     CameraAnswer {
         lookfrom: look.lookfrom.into(),

@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use lookfrom::session::Session;
 use lookfrom_scene::camera::{Camera, Look, Projection, View};
+use lookfrom_scene::lens::{ApertureShape, LensSystem};
 use lookfrom_scene::settings::{Filter, RenderSettings};
 
 use crate::message::ViewRequest;
@@ -67,15 +68,16 @@ pub(crate) fn toml(session: &Session, request: &ViewRequest, source: Option<&str
 
 /// Keys of `[camera]` besides position and orientation.
 fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
-    let mut keys = match camera.projection {
-        Projection::Perspective { fov } => vec![("fov", number(fov))],
+    let mut keys = match &camera.projection {
+        Projection::Perspective { fov } => vec![("fov", number(*fov))],
         Projection::Orthographic { height } => {
-            vec![("projection", "\"orthographic\"".to_owned()), ("height", number(height))]
+            vec![("projection", "\"orthographic\"".to_owned()), ("height", number(*height))]
         }
         Projection::Equirectangular | Projection::EquirectangularPbrt => {
             vec![("projection", "\"equirectangular\"".to_owned())]
         }
         Projection::Octahedral => vec![("projection", "\"octahedral\"".to_owned())],
+        Projection::LensSystem(system) => lens_system(system),
     };
     if matches!(camera.projection, Projection::Perspective { .. } | Projection::Orthographic { .. }) {
         if let Some(lens) = &camera.lens {
@@ -87,6 +89,22 @@ fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
         }
     }
     keys.push(("distance", number(camera.distance)));
+    keys
+}
+
+/// The keys of a lens system.
+fn lens_system(system: &LensSystem) -> Vec<(&'static str, String)> {
+    let mut keys = vec![("lens", format!("{:?}", system.name)), ("film", number(system.film_diagonal))];
+    if let Some(diameter) = system.stop_diameter {
+        keys.push(("aperture", number(0.5 * diameter * system.millimetre)));
+    }
+    if system.shape != ApertureShape::Circle {
+        keys.push(("aperture_shape", format!("{:?}", system.shape.name())));
+    }
+    if system.millimetre != 1e-3 {
+        keys.push(("millimetre", number(system.millimetre)));
+    }
+    keys.push(("focus_distance", number(system.focus_distance)));
     keys
 }
 

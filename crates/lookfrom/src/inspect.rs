@@ -7,6 +7,7 @@
 mod camera;
 mod candidate;
 mod expression;
+mod lens_system;
 mod lights;
 mod microfacets;
 mod pixel;
@@ -36,10 +37,10 @@ pub use microfacets::MicrofacetReport;
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
-    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection, LiftReport,
-    LightReport, MatrixStep, MetReport, NullReport, PhaseLobeReport, PhaseReport, ProbeReport,
-    ProbeSegmentReport, ProfileReport, RayReport, SensorReport, ShadowReport, SphereMapping, TrackingReport,
-    WavelengthsReport,
+    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection,
+    LensSurfaceReport, LensSystemReport, LiftReport, LightReport, MatrixStep, MetReport, NullReport,
+    PhaseLobeReport, PhaseReport, ProbeReport, ProbeSegmentReport, ProfileReport, RayReport, SensorReport,
+    ShadowReport, SphereMapping, TrackingReport, WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,
@@ -93,6 +94,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         radiance: told.radiance,
         additions: told.additions,
         weight: traced.weight,
+        filter_weight: traced.filter_weight,
         sensor: sensor(renderer, told.sum * traced.weight, &traced.mode),
         development: development(&renderer.view().image),
         alpha: traced.alpha,

@@ -121,8 +121,10 @@ pub struct Traced {
     pub radiance: Spectrum,
     /// The spectral mode of `radiance`.
     pub mode: SpectralMode,
-    /// The filter's weight: 1 for filters without negative lobes.
+    /// The filter's weight, which is 1 for filters without negative lobes, times that of a ray through a lens system.
     pub weight: f32,
+    /// The filter's weight alone.
+    pub filter_weight: f32,
     /// Alpha, not multiplied by the filter weight.
     pub alpha: f32,
 }
@@ -311,7 +313,7 @@ impl Renderer {
         probe: &mut P,
         batch: &mut Batch,
     ) -> Rays {
-        let mut rays_traced = Rays { camera: ids.len() as u64, ..Rays::default() };
+        let mut rays_traced = Rays::default();
         let Batch { start, queues, paths, rays, origin_primitives, hits, .. } = batch;
         let mut both = paths.take::<[Vec<Path<I::State>>; 2]>();
         let [mut under_way, next] = std::mem::take(&mut *both);
@@ -325,16 +327,18 @@ impl Renderer {
             probe,
         };
 
-        // Start: a ray from the camera for each sample.
+        // Start: a ray from the camera for each sample that no lens system blocks.
         self.start(ids, start);
         output.queues.start(ids.len(), start.modes());
         let modes = &output.queues.modes;
-        output.paths.extend(start.rays.iter().enumerate().map(|(slot, ray)| Path {
+        let unblocked = start.rays.iter().enumerate().filter(|(slot, _)| !start.is_blocked(*slot));
+        output.paths.extend(unblocked.map(|(slot, ray)| Path {
             beta: modes[slot].one(),
             slot: slot as u32,
             light_path,
             ..self.root(*ray)
         }));
+        rays_traced.camera = output.paths.len() as u64;
         let starting = std::mem::take(&mut output.paths);
         output.start_layers(&self.world, &starting);
         output.paths = starting;
@@ -347,9 +351,15 @@ impl Renderer {
             output.paths.clear();
             // All are replaced.
             hits.resize(under_way.len(), Hit::MISS);
-            if are_from_camera {
+            if are_from_camera && under_way.len() == ids.len() {
                 self.world.bvh.closest_hits(&start.rays, hits);
                 output.queues.first_surfaces.note_outermost(hits);
+            } else if are_from_camera {
+                rays.clear();
+                rays.extend(under_way.iter().map(|path| path.ray));
+                self.world.bvh.closest_hits(rays, hits);
+                let slots = under_way.iter().map(|path| path.slot);
+                output.queues.first_surfaces.note_outermost_of(slots, hits, ids.len());
             } else {
                 rays.clear();
                 rays.extend(under_way.iter().map(|path| path.ray));
@@ -416,7 +426,7 @@ impl Renderer {
             } else {
                 for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
                     let [x, y] = id.pixel;
-                    tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.weight);
+                    tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.filter_weight);
                     if tile.has_light_paths() {
                         let layers = self.light_by_paths(batch, slot, &traced);
                         tile.add_light_paths(x, y, traced.rgb, layers);

@@ -1,6 +1,7 @@
 //! Views of a world: camera and settings of the picture.
 
 pub mod camera;
+pub mod lens_system;
 
 use lookfrom_scene::camera::Camera as Written;
 use lookfrom_scene::scene::MediumId;

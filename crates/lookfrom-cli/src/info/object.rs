@@ -84,6 +84,19 @@ struct CameraObject {
     lens_radius: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     focus_distance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lens: Option<LensObject>,
+}
+
+/// A lens system; lengths in units of the world.
+#[derive(Serialize)]
+struct LensObject {
+    file: String,
+    surfaces: usize,
+    aperture: String,
+    film_diagonal: f64,
+    focal_length: f64,
+    f_number: f64,
 }
 
 #[derive(Serialize)]
@@ -140,7 +153,7 @@ impl<'a> Object<'a> {
                 .map(|(name, value)| (name.as_str(), value.as_str()))
                 .collect(),
             cameras: contents.cameras.iter().map(Into::into).collect(),
-            camera: session.camera().into(),
+            camera: CameraObject { lens: lens(session), ..session.camera().into() },
             image: session.image().into(),
             render: session.settings().into(),
             bvh: tree(session),
@@ -171,15 +184,16 @@ impl<'a> From<&'a AnimationEntry> for AnimationObject<'a> {
 
 impl<'a> From<&'a CameraEntry> for CameraEntryObject<'a> {
     fn from(entry: &'a CameraEntry) -> Self {
-        Self { name: entry.name.as_deref(), projection: entry.projection.map(Into::into) }
+        Self { name: entry.name.as_deref(), projection: entry.projection.as_ref().map(Into::into) }
     }
 }
 
-impl From<Projection> for ProjectionObject {
-    fn from(projection: Projection) -> Self {
-        let (projection, fov, height) = match projection {
+impl From<&Projection> for ProjectionObject {
+    fn from(projection: &Projection) -> Self {
+        let (projection, fov, height) = match *projection {
             Projection::Perspective { fov } => ("perspective", Some(fov), None),
             Projection::Orthographic { height } => ("orthographic", None, Some(height)),
+            Projection::LensSystem(_) => ("lens", None, None),
             Projection::Equirectangular | Projection::EquirectangularPbrt => ("equirectangular", None, None),
             Projection::Octahedral => ("octahedral", None, None),
         };
@@ -199,11 +213,27 @@ impl From<&Camera> for CameraObject {
         };
         Self {
             view,
-            projection: camera.projection.into(),
+            projection: (&camera.projection).into(),
             lens_radius: camera.lens.map(|lens| lens.radius),
-            focus_distance: camera.lens.map(|lens| lens.focus_distance),
+            focus_distance: camera.focus_distance(),
+            lens: None,
         }
     }
+}
+
+fn lens(session: &Session) -> Option<LensObject> {
+    let camera = session.renderer().view().camera();
+    let (Projection::LensSystem(written), Some(system)) = (&camera.projection, &camera.lens_system) else {
+        return None;
+    };
+    Some(LensObject {
+        file: written.name.clone(),
+        surfaces: written.surfaces.len(),
+        aperture: written.shape.name().to_owned(),
+        film_diagonal: 2.0 * system.film_radius(),
+        focal_length: system.focal_length(),
+        f_number: system.f_number(),
+    })
 }
 
 impl From<&ImageSettings> for ImageObject {

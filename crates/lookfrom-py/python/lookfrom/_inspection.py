@@ -25,7 +25,7 @@ class Sample:
     segments: The rays and shadow rays as lines of a drawing, each ray before its shadow rays.
     radiance: The sum over all rays, added in the order of `additions`.
     additions: Every addition to the sample, in the order in which they were made.
-    weight: The filter's weight.
+    weight: The filter's weight, times that of a ray through a lens system.
     sensor: What the sensor does to it.
     development: How a picture is developed from the film.
     alpha: Alpha, before the filter's weight.
@@ -233,7 +233,7 @@ class Branch:
 class CameraSteps:
     """`P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
 
-    projection: How the camera projects: `perspective`, `orthographic`, or all around.
+    projection: How the camera projects: `perspective`, `orthographic`, all around, or `lens system`.
     lookfrom: The camera's position.
     u: To the viewer's left.
     v: Up.
@@ -244,9 +244,11 @@ class CameraSteps:
     p_world: `P_world`: the point of the image plane in the world.
     a: `a`: the origin of the ray.
     b: `b`: its intersection with the image plane; `P_world`, unless a lens moved `a` away.
-    direction: `b − a`: its direction, not of unit length; `t = 1` is the image plane.
+    direction: `b − a`: its direction, not of unit length; `t = 1` is the image plane. Of a lens system of
+        unit length.
     lens: Whether a lens moved `a` away from `lookfrom`.
     mapping: For cameras that see all around, the way from the pixel to a direction in place of T1 and S2.
+    lens_system: The way of the ray through a lens system, if the camera has one.
     """
 
     projection: str
@@ -263,6 +265,7 @@ class CameraSteps:
     direction: tuple[float, float, float]
     lens: bool
     mapping: SphereMapping | None
+    lens_system: LensSystem | None
 
 
 @dataclass(frozen=True)
@@ -483,6 +486,58 @@ class FoundSampling:
     choice: list[Derivation]
     density: float
     derivations: list[Derivation]
+
+
+@dataclass(frozen=True)
+class LensSurface:
+    """A surface of a lens system, and the ray there.
+
+    vertex: z of its vertex.
+    curvature_radius: Radius of curvature, positive where the centre lies toward the film; null for the
+        aperture stop.
+    aperture_radius: Radius of the part that light passes.
+    index_ratio: Index of refraction on the scene's side over that on the film's side; null for the aperture
+        stop.
+    point: The point where the ray meets it; null if it does not.
+    direction: The direction behind it, of unit length; null where there is none.
+    passes: Whether the ray passes.
+    """
+
+    vertex: float
+    curvature_radius: float | None
+    aperture_radius: float
+    index_ratio: float | None
+    point: tuple[float, float, float] | None
+    direction: tuple[float, float, float] | None
+    passes: bool
+
+
+@dataclass(frozen=True)
+class LensSystem:
+    """The way of a ray from the film through a lens system. Points and directions are in lens space: x to the
+    viewer's right, y up, z along the axis to the scene, the film in z = 0, in units of the world.
+
+    name: The lens file.
+    focal_length: Effective focal length.
+    f_number: That of a thin lens which would light the middle of the film as much.
+    focus_distance: Distance of the plane of focus from the film.
+    film: The point of the film.
+    direction: The direction from there to the rear surface, of unit length.
+    surfaces: Each surface, from the film to the front.
+    passes: Whether the ray passes all of them.
+    weight: The factor of its light: cos⁴ of its angle to the axis at the film, times the area of the pupil's
+        bounds, over the square of the rear surface's distance, times the exposure; 0 if it is blocked.
+    """
+
+    name: str
+    focal_length: float
+    f_number: float
+    focus_distance: float
+    film: tuple[float, float, float]
+    direction: tuple[float, float, float]
+    surfaces: list[LensSurface]
+    passes: bool
+    weight: float
 
 
 @dataclass(frozen=True)

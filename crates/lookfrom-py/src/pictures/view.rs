@@ -8,6 +8,8 @@ use pyo3::types::PyDict;
 
 /// The camera as a dictionary.
 ///
+/// A lens system is "perspective": the pinhole that sees its plane of focus as large.
+///
 /// projection: "perspective", "orthographic", "equirectangular" or "octahedral".
 /// lookfrom, and the axes right, up and forward, in the world.
 /// pixel: rows of the matrix from (x, y, 1), in pixels from the top left, to the point of the image plane, at distance 1 in the
@@ -19,7 +21,7 @@ pub(super) fn described<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound
     let plane: DMat4 = camera.s2 * camera.t1;
     let height = f64::from(camera.size[1]);
     let scale = match camera.projection {
-        Projection::Perspective { .. } => 1.0 / camera.distance,
+        Projection::Perspective { .. } | Projection::LensSystem(_) => 1.0 / camera.distance,
         _ => 1.0,
     };
     let [sx, sy] = [plane.x_axis.x * scale, plane.y_axis.y * scale];
@@ -28,7 +30,7 @@ pub(super) fn described<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound
     dict.set_item(
         "projection",
         match camera.projection {
-            Projection::Perspective { .. } => "perspective",
+            Projection::Perspective { .. } | Projection::LensSystem(_) => "perspective",
             Projection::Orthographic { .. } => "orthographic",
             Projection::Octahedral => "octahedral",
             _ => "equirectangular",

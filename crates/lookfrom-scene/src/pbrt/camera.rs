@@ -4,7 +4,6 @@ use glam::{DMat4, DVec3};
 
 use super::Reader;
 use super::params::{ParameterType, Parameters};
-use super::realistic::Optics;
 use super::state::Entity;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Location, Result};
@@ -26,22 +25,15 @@ impl Reader<'_, '_> {
         };
         let projection = match &**kind {
             "perspective" => Projection::Perspective { fov: field_of_view(parameters)? },
-            "realistic" => {
-                let diagonal = self.film_diagonal;
-                let optics = self.realistic(parameters, diagonal)?;
-                self.scene.image.sensor.imaging_ratio *= optics.map_or(1.0, Optics::exposure);
-                Projection::Perspective { fov: optics.map_or(50.0, |optics| optics.field_of_view(aspect)) }
-            }
+            "realistic" => self.realistic(parameters)?,
             "orthographic" => Projection::Orthographic { height: 2.0 },
-            "spherical" => parameters.choice(
-                "mapping",
-                Projection::Octahedral,
-                &[
-                    ("equalarea", Projection::Octahedral),
-                    ("equirectangular", Projection::EquirectangularPbrt),
-                    ("equirect", Projection::EquirectangularPbrt),
-                ],
-            )?,
+            "spherical" => {
+                let mappings = [("equalarea", false), ("equirectangular", true), ("equirect", true)];
+                match parameters.choice("mapping", false, &mappings)? {
+                    true => Projection::EquirectangularPbrt,
+                    false => Projection::Octahedral,
+                }
+            }
             _ => {
                 let known = ["perspective", "orthographic", "spherical", "realistic"];
                 return Err(Self::unknown(&parameters.place, "camera", kind, known));

@@ -97,7 +97,7 @@ mod tests {
         let right = w.cross(up).normalize();
         let to = p - lookfrom;
         let depth = to.dot(w);
-        let half = match camera.projection {
+        let half = match &camera.projection {
             Projection::Perspective { fov } => depth * (0.5 * fov.to_radians()).tan(),
             Projection::Orthographic { height } => 0.5 * height,
             other => panic!("{other:?}"),

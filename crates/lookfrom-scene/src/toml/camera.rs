@@ -1,11 +1,16 @@
 //! `[camera]`: position, orientation, projection and lens.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::camera::{Camera, Lens, Projection, View, Window, up_across};
 use crate::error::Result;
+use crate::image;
+use crate::lens::{self, ApertureShape, LensConvention, LensSurface, LensSystem};
 
 /// The keys of `[camera]`.
 pub(super) const KEYS: &[&str] = &[
@@ -18,15 +23,74 @@ pub(super) const KEYS: &[&str] = &[
     "aperture",
     "focus_distance",
     "focus",
+    "lens",
+    "film",
+    "aperture_shape",
+    "millimetre",
     "window",
     "distance",
     "medium",
 ];
+/// Those that only a lens system has.
+const OF_LENS: [&str; 3] = ["film", "aperture_shape", "millimetre"];
 /// The keys of `window`.
 pub(super) const WINDOW: &[&str] = &["x", "y"];
 
-/// The camera, if it is valid.
-pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
+impl Reader<'_, '_> {
+    /// The camera, if it is valid.
+    pub(super) fn camera(&mut self, table: &Table<'_>) -> Result<Camera> {
+        let surfaces = table.maybe("lens", |value| self.lens_surfaces(value));
+        let shape = table.or("aperture_shape", ApertureShape::Circle, |value| self.aperture_shape(value));
+        let lengths = [("millimetre", 1e-3), ("film", 35.0)];
+        let [millimetre, film_diagonal] =
+            lengths.map(|(key, default)| table.or(key, default, Value::positive));
+        let camera = camera(table)?;
+        let Some((name, surfaces)) = surfaces else { return Ok(camera) };
+        if let Some(value) = ["fov", "window"].iter().find_map(|key| table.find(key)) {
+            let message = format!("`{}` has no meaning with a `lens`", value.key());
+            return Err(value.error(message).hint("a lens sees as much as its `film` is large"));
+        }
+        let stop_diameter = table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre);
+        let system = LensSystem {
+            name,
+            surfaces,
+            stop_diameter,
+            shape,
+            focus_distance: camera.lens.map_or(1.0, |lens| lens.focus_distance),
+            film_diagonal,
+            millimetre,
+            convention: LensConvention::AsPinhole,
+        };
+        Ok(Camera { projection: Projection::LensSystem(Arc::new(system)), lens: None, ..camera })
+    }
+
+    /// The name of a lens file, and its surfaces.
+    fn lens_surfaces(&mut self, value: Value<'_>) -> Result<(String, Vec<LensSurface>)> {
+        let path = self.resolve(value, "the name of a lens file")?;
+        let surfaces = lens::read(&path, self.context).map_err(|error| value.blame(error))?;
+        Ok((path.display().to_string(), surfaces))
+    }
+
+    /// A shape by its name, or the picture of one.
+    fn aperture_shape(&mut self, value: Value<'_>) -> Result<ApertureShape> {
+        let name = value.as_text();
+        if let Some((_, shape)) = ApertureShape::NAMED.into_iter().find(|(word, _)| Some(*word) == name) {
+            return Ok(shape);
+        }
+        let path = self.resolve(
+            value,
+            "\"circle\", \"gaussian\", \"square\", \"pentagon\", \"star\", or the name of a picture",
+        )?;
+        let image = image::read(&path, self.context).map_err(|error| {
+            let names = ApertureShape::NAMED.map(|(name, _)| format!("{name:?}")).join(", ");
+            value.blame(error).hint(format!("give the name of a picture, or one of {names}"))
+        })?;
+        Ok(ApertureShape::Image(Arc::new(image)))
+    }
+}
+
+/// The camera without a lens system.
+fn camera(table: &Table<'_>) -> Result<Camera> {
     table.allow(&[KEYS]);
     let lookfrom = table.need("lookfrom", "[0, 1, 5]", DVec3::Z, Value::vector);
     let lookat = table.need("lookat", "[0, 0, 0]", DVec3::ZERO, Value::vector);
@@ -65,7 +129,9 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
             .error_at("focus", "`focus` is behind the camera")
             .hint("give a point in front of the camera"));
     }
-    let lens = aperture.filter(|&radius| radius > 0.0).map(|radius| Lens { radius, focus_distance });
+    // A lens system is focused as a thin lens is.
+    let radius = aperture.filter(|&radius| radius > 0.0).or(table.has("lens").then_some(0.0));
+    let lens = radius.map(|radius| Lens { radius, focus_distance });
     Ok(Camera {
         at: table.at(),
         view: View::Look { lookfrom, lookat, up },
@@ -80,7 +146,20 @@ pub(super) fn camera(table: &Table<'_>) -> Result<Camera> {
 
 /// The words for projections, each with those of its keys that not all projections have.
 pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
-    ("perspective", &["fov", "aperture", "focus", "focus_distance", "window"]),
+    (
+        "perspective",
+        &[
+            "fov",
+            "aperture",
+            "focus",
+            "focus_distance",
+            "window",
+            "lens",
+            "film",
+            "aperture_shape",
+            "millimetre",
+        ],
+    ),
     ("orthographic", &["height", "aperture", "focus", "focus_distance", "window"]),
     ("equirectangular", &[]),
     ("octahedral", &[]),
@@ -95,15 +174,26 @@ fn projection(table: &Table<'_>) -> Projection {
     }) else {
         return Projection::Octahedral;
     };
-    for key in ["fov", "height", "aperture", "focus", "focus_distance", "window"] {
+    let keys_of_some = ["fov", "height", "aperture", "focus", "focus_distance", "window", "lens"];
+    for key in keys_of_some.into_iter().chain(OF_LENS) {
         let Some(value) = table.find(key).filter(|_| !keys.contains(&key)) else { continue };
         let error = value.error(format!("`{key}` has no meaning in projection = {word:?}"));
         table.assume(if word == "orthographic" { &["height"] } else { &[] });
         value.note(error.hint(match (word, key) {
             ("perspective", _) => "give `fov` here, or the picture's `height` in [image]",
+            ("orthographic", "lens" | "film" | "aperture_shape" | "millimetre") => {
+                "a lens makes the projection \"perspective\""
+            }
             ("orthographic", _) => "give `height`, the height of the picture in the world",
             _ => "a panoramic camera has no lens: leave it out",
         }));
+    }
+    if !table.has("lens")
+        && !table.means(&["lens"])
+        && let Some(value) = OF_LENS.iter().find_map(|key| table.find(key)).filter(|_| word == "perspective")
+    {
+        let message = format!("`{}` needs a `lens`", value.key());
+        value.note(value.error(message).hint("add `lens = \"lens.dat\"`, the name of a lens file"));
     }
     match word {
         "perspective" => {
@@ -150,7 +240,7 @@ enum Focus {
 
 fn focus(table: &Table<'_>) -> Option<Focus> {
     let value = table.one_of(&["focus_distance", "focus"])?;
-    if !table.has("aperture") && !table.means(&["aperture"]) {
+    if !table.has("aperture") && !table.has("lens") && !table.means(&["aperture", "lens"]) {
         let message = format!("`{}` needs an `aperture`: without one the camera is a pinhole", value.key());
         value.note(value.error(message).hint("add `aperture = 0.05`, the radius of the lens"));
     }

@@ -1,5 +1,7 @@
 //! `[[mesh]]` with a `file`: import options and placement of a model file.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec4};
 
 use super::shape::{COMMON, OPERAND};
@@ -124,6 +126,7 @@ fn moved_camera(camera: Camera, matrix: &DMat4) -> Option<Camera> {
     let growth = moved.y_axis.truncate().length();
     let projection = match camera.projection {
         Projection::Orthographic { height } => Projection::Orthographic { height: height * growth },
+        Projection::LensSystem(system) => Projection::LensSystem(Arc::new(system.scaled(growth))),
         other => other,
     };
     Some(Camera { view: View::Matrix(view), projection, ..camera })

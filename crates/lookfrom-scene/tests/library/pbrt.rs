@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, View, Window};
+use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSystem};
 use lookfrom_scene::light::{LightKind, Power, Sky};
 use lookfrom_scene::material::{
     Color, Energy, Ior, MaterialKind, Metal, Pigment, Scalar, Subsurface, SubsurfaceMedium,
@@ -74,6 +75,50 @@ fn the_camera_sees_what_pbrts_sees() {
     assert_eq!((lens.radius, lens.focus_distance), (0.5, 7.0));
     assert_eq!(scene.image.crop, Some(PixelBounds { x0: 0, y0: 100, x1: 100, y1: 400 }));
     assert_eq!((scene.image.layers, scene.image.sensor.imaging_ratio), (Layers::Geometry, 2.0));
+}
+
+/// A realistic camera with these parameters.
+fn realistic(parameters: &str, lens: &str) -> lookfrom_scene::Result<(LensSystem, usize)> {
+    let text = format!(
+        "Camera \"realistic\" \"string lensfile\" \"a.dat\" {parameters}\n\
+         Film \"rgb\" \"float diagonal\" 24 WorldBegin"
+    );
+    let mut files = Memory([("s.pbrt".into(), text.into_bytes())].into());
+    if !lens.is_empty() {
+        files.0.insert("a.dat".into(), lens.into());
+    }
+    let mut context = LoadContext::new(&files);
+    let scene = load::scene(Path::new("s.pbrt"), &mut context)?;
+    let Some(Projection::LensSystem(system)) = scene.camera.map(|camera| camera.projection) else {
+        panic!("no lens system")
+    };
+    Ok(((*system).clone(), context.warnings.len()))
+}
+
+#[test]
+fn realistic_cameras_have_lens_systems() {
+    let lens = "# front\n30 4 1.5 20\n0 1 0 12\n-70 0 1 20\n";
+    let (system, warnings) =
+        realistic("\"float focusdistance\" 2 \"float aperturediameter\" 8", lens).expect("one");
+    assert_eq!((system.surfaces.len(), system.stop_diameter, warnings), (3, Some(8.0), 0));
+    assert_eq!((system.focus_distance, system.film_diagonal, system.millimetre), (2.0, 24.0, 1e-3));
+    assert_eq!((system.shape, system.convention), (ApertureShape::Circle, LensConvention::Pbrt));
+    let (system, _) = realistic("\"string aperture\" \"star\"", lens).expect("one");
+    assert_eq!(
+        (system.shape, system.stop_diameter, system.focus_distance),
+        (ApertureShape::Star, Some(1.0), 10.0)
+    );
+    let (_, warnings) = realistic("\"float aperturediameter\" 13", lens).expect("one");
+    assert_eq!(warnings, 1, "it is wider than its lens file allows");
+
+    let of =
+        |parameters: &str, lens: &str| realistic(parameters, lens).expect_err("no lens system").to_string();
+    assert!(of("", "").contains("a.dat"), "{}", of("", ""));
+    let both = of("\"string aperture\" \"no.png\"", "");
+    assert!(both.contains("a.dat") && both.contains("no.png"), "all that is missing: {both}");
+    assert!(of("", "30 4 1.5\n").contains("a.dat: 3 numbers"));
+    assert!(of("", "30 x 1.5 20\n").contains("a.dat:1"));
+    assert!(of("\"float focusdistance\" 0", lens).contains("focusdistance"));
 }
 
 #[test]

@@ -3,6 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+use lookfrom_scene::camera::{Look, Projection};
+use lookfrom_scene::lens::LensConvention;
 use lookfrom_scene::{Disk, LoadContext, load, toml};
 
 fn root() -> PathBuf {
@@ -66,6 +69,24 @@ fn the_guide_shows_every_small_scene() {
     }
 }
 
+#[test]
+fn a_lens_file_makes_a_lens_system() {
+    let path = root().join("docs/guide/scenes/camera-lens-system.toml");
+    let scene = load::scene(&path, &mut LoadContext::new(&Disk)).unwrap_or_else(|error| panic!("{error}"));
+    let camera = scene.camera.expect("a camera");
+    let Projection::LensSystem(system) = &camera.projection else { panic!("{:?}", camera.projection) };
+    assert_eq!((system.surfaces.len(), system.film_diagonal, system.millimetre), (11, 43.3, 0.012));
+    assert_eq!((system.stop_diameter, system.convention), (None, LensConvention::AsPinhole));
+    // Focused on a point at this distance along the axis, and still so after a move.
+    assert!((system.focus_distance - 5.746).abs() < 0.01, "{}", system.focus_distance);
+    let mut moved = camera.clone();
+    let look = Look { lookfrom: DVec3::new(0.0, 0.6, 3.0), lookat: DVec3::new(0.0, 0.6, 0.0), up: DVec3::Y };
+    moved.set_look(look, DVec3::ZERO);
+    assert_eq!(moved.focus_distance(), Some(3.0));
+    assert_eq!(camera.focus_distance(), Some(system.focus_distance));
+    assert_eq!(system.scaled(2.0).millimetre, 0.024);
+}
+
 /// Every snippet of the guide is a scene, or becomes one with what the guide takes for granted.
 #[test]
 fn the_snippets_of_the_guide_are_read() {
@@ -81,6 +102,9 @@ fn the_snippets_of_the_guide_are_read() {
         }
         let font = std::fs::read(root.join("docs/guide/scenes/parts/letters.ttf")).expect("our own font");
         files.0.insert("letters.ttf".into(), font);
+        let lens =
+            std::fs::read(root.join("docs/guide/scenes/parts/double-gauss.dat")).expect("our own lens");
+        files.0.insert("double-gauss.dat".into(), lens);
         files.0.insert("jack.obj".into(), b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n".to_vec());
         let fox = r#"{"asset": {"version": "2.0"}, "animations": [{"name": "Run", "channels": [], "samplers": []}]}"#;
         files.0.insert("fox.glb".into(), fox.into());

@@ -82,6 +82,14 @@ impl FirstSurfaces {
         }
     }
 
+    /// Notes the hits of some of `count` rays of the camera, with their slots; the others hit nothing.
+    pub(crate) fn note_outermost_of(&mut self, slots: impl Iterator<Item = u32>, hits: &[Hit], count: usize) {
+        if self.are_wanted() {
+            self.outermost.resize(count, Hit::MISS);
+            slots.zip(hits).for_each(|(slot, hit)| self.outermost[slot as usize] = *hit);
+        }
+    }
+
     /// Notes the hits of those that have passed the surfaces so far, with their slots.
     pub(crate) fn note_behind(&mut self, hits: impl Iterator<Item = (u32, RayHit)>) {
         if self.are_wanted() && self.go_on {

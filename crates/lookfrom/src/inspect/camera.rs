@@ -54,17 +54,18 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
             Projection::Equirectangular => "equirectangular",
             Projection::EquirectangularPbrt => "equirectangular, as pbrt's",
             Projection::Octahedral => "octahedral",
+            Projection::LensSystem(_) => "lens system",
         },
         p_k: ray.p_k.to_array(),
         steps,
         world_from_view: rows(&camera.world_from_view()),
         p_world: if mapping.is_some() { a + ray.direction } else { ray.p_world }.to_array(),
         a: a.to_array(),
-        b: if camera.lens.is_some() || mapping.is_some() { a + ray.direction } else { ray.p_world }
-            .to_array(),
+        b: if camera.has_lens() || mapping.is_some() { a + ray.direction } else { ray.p_world }.to_array(),
         direction: ray.direction.to_array(),
-        lens: camera.lens.is_some(),
+        lens: camera.has_lens(),
         mapping,
+        lens_system: super::lens_system::report(renderer, id, ray.weight),
     }
 }
 
@@ -72,7 +73,9 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
 fn mapping(camera: &Camera, ray: &CameraRay) -> Option<SphereMapping> {
     let [u, v] = [0, 1].map(|k| ray.p_k[k] / f64::from(camera.size[k]));
     let (does, formula, numbers) = match camera.projection {
-        Projection::Perspective { .. } | Projection::Orthographic { .. } => return None,
+        Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => {
+            return None;
+        }
         Projection::Equirectangular => (
             LONGITUDE_LATITUDE,
             "θ = π (1 − v), φ = 2π (u − ½); (−sin θ sin φ, cos θ, sin θ cos φ)",

@@ -229,6 +229,9 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
         let rest: Vec<f32> = addition.value.lanes.iter().map(|value| value / beta).collect();
         factors.push(NamedFactor::times("L", &rest));
     }
+    if inspection.camera.lens_system.is_some() {
+        factors.push(NamedFactor::times("lens", &[inspection.weight]));
+    }
     let product = factors.iter().enumerate().map(|(index, factor)| match (index, factor.is_divisor) {
         (0, _) => format!("{} {}", factor.name, three(factor.value)),
         (_, true) => format!(" / {} {}", factor.name, three(factor.value)),

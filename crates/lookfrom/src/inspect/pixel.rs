@@ -152,8 +152,8 @@ impl SampleSummary {
 
 /// Adds a sample to the film of one pixel.
 fn add(tile: &mut FilmTile, inspection: &Inspection) {
-    let &Inspection { sample, film, alpha, weight, .. } = inspection;
-    tile.add_with_alpha(0, 0, sample, film, alpha * weight);
+    let &Inspection { sample, film, alpha, filter_weight, .. } = inspection;
+    tile.add_with_alpha(0, 0, sample, film, alpha * filter_weight);
 }
 
 /// The picture of one pixel, and its bytes.
@@ -176,7 +176,8 @@ fn bytes(picture: &Picture, image: &ImageSettings) -> [u8; 3] {
 
 /// The colour of a sample alone as in an 8-bit picture.
 pub(super) fn color8(image: &ImageSettings, inspection: &Inspection) -> [u8; 3] {
-    let &Inspection { film, alpha, weight, .. } = inspection;
-    let alpha = if image.background == Background::Environment { Vec::new() } else { vec![alpha * weight] };
+    let &Inspection { film, alpha, filter_weight, .. } = inspection;
+    let alpha =
+        if image.background == Background::Environment { Vec::new() } else { vec![alpha * filter_weight] };
     bytes(&Picture { width: 1, height: 1, pixels: vec![film], alpha }, image)
 }

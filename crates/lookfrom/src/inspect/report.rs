@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::expression::Contribution;
 use super::segments::RaySegment;
 
-pub use camera::{CameraSteps, MatrixStep, SphereMapping};
+pub use camera::{CameraSteps, LensSurfaceReport, LensSystemReport, MatrixStep, SphereMapping};
 pub use light::{Blocker, BranchReport, LightReport, ShadowReport};
 pub use medium::{
     CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, ProfileReport, TrackingReport,
@@ -59,8 +59,11 @@ pub struct Inspection {
     pub radiance: Amount,
     /// Every addition to the sample, in the order in which they were made.
     pub additions: Vec<Addition>,
-    /// The filter's weight.
+    /// The filter's weight, times that of a ray through a lens system.
     pub weight: f32,
+    /// The filter's weight alone.
+    #[serde(skip)]
+    pub(crate) filter_weight: f32,
     /// What the sensor does to it.
     pub sensor: SensorReport,
     /// How a picture is developed from the film.

@@ -1,8 +1,9 @@
 //! The rays as a drawing (SVG): views from the side, from above, from behind, and the camera's own, with one colour for
-//! each kind of ray.
+//! each kind of ray; and a lens system in section.
 
 mod kinds;
 mod labels;
+mod lens;
 mod marks;
 mod outlines;
 mod panel;
@@ -15,6 +16,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use super::{Inspection, RayKind};
 use crate::render::Renderer;
+use lens::LensPanel;
 use panel::{NORMAL_COLOR, Panel};
 
 /// Width of a drawing of one view, and of a sheet of them, in units of the drawing.
@@ -41,6 +43,8 @@ pub enum SvgView {
     Front,
     /// The scene as the camera sees it.
     Camera,
+    /// The camera's lens system in section.
+    Lens,
 }
 
 impl SvgView {
@@ -51,6 +55,7 @@ impl SvgView {
         ("top", Self::Top),
         ("front", Self::Front),
         ("camera", Self::Camera),
+        ("lens", Self::Lens),
     ];
 
     /// The word for this view.
@@ -65,6 +70,7 @@ impl SvgView {
             Self::Top => "top: from above, forward is to the right",
             Self::Front => "front: from behind the camera",
             Self::Camera => "what the camera sees",
+            Self::Lens => "the lens in section",
         }
     }
 }
@@ -72,11 +78,25 @@ impl SvgView {
 /// Draws an inspection.
 ///
 /// # Errors
-/// `Request` for the camera's view where the camera sees all around.
+/// `Request` for the camera's view where the camera sees all around, and for the section of a camera without a lens system.
 pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Result<String> {
     let of = (renderer, inspection);
     let mut panels = Vec::new();
-    let (width, height) = if view == SvgView::Sheet {
+    let film_radius = renderer.view().camera().lens_system.as_ref().map(|system| system.film_radius());
+    let lens_of = |width: f64| {
+        let (report, film_radius) = inspection.camera.lens_system.as_ref().zip(film_radius)?;
+        Some(LensPanel::new(report, film_radius, width - 2.0 * GAP))
+    };
+    let mut lens = None;
+    let (width, height) = if view == SvgView::Lens {
+        let Some(panel) = lens_of(WIDTH) else {
+            let message = "this camera has no lens system to draw: choose another view";
+            return Err(Error::new(ErrorKind::Request, &Location::default(), message));
+        };
+        let height = HEADER + panel.height() + GAP;
+        lens = Some((panel, DVec2::new(GAP, HEADER)));
+        (WIDTH, height)
+    } else if view == SvgView::Sheet {
         let cell = DVec2::new(0.5 * (SHEET - 3.0 * GAP), 0.3 * SHEET);
         let views = [SvgView::Top, SvgView::Camera, SvgView::Side, SvgView::Front];
         for (index, view) in views.into_iter().enumerate() {
@@ -85,7 +105,13 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
             let place = DVec2::new((index % 2) as f64, (index / 2) as f64);
             panels.push((panel, DVec2::new(GAP, HEADER) + place * (cell + GAP)));
         }
-        (SHEET, HEADER + 2.0 * (cell.y + GAP))
+        let mut height = HEADER + 2.0 * (cell.y + GAP);
+        if let Some(panel) = lens_of(SHEET) {
+            let at = DVec2::new(GAP, height);
+            height += panel.height() + GAP;
+            lens = Some((panel, at));
+        }
+        (SHEET, height)
     } else {
         let Some(panel) = Panel::new(view, of, (WIDTH - 2.0 * GAP, None)) else {
             let message = "a camera that sees all around has no image plane to draw rays in: choose the side, the top or \
@@ -115,6 +141,9 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
         inspection.sample
     );
     for (panel, at) in panels {
+        panel.draw(&mut out, at);
+    }
+    if let Some((panel, at)) = lens {
         panel.draw(&mut out, at);
     }
     out.push_str(&legend);

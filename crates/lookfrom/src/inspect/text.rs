@@ -4,6 +4,7 @@
 mod camera;
 mod candidates;
 mod hit;
+mod lens_system;
 mod medium;
 mod microfacets;
 mod path;

@@ -1,5 +1,5 @@
 //! The start of a batch: random numbers of the camera, points of the image, and camera rays, eight side by side where the
-//! camera is linear.
+//! camera has an image plane.
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Ray;
@@ -10,7 +10,8 @@ use crate::core::lanes::{LANES, by_lane, filled, scatter};
 use crate::core::sampler::{self, lanes::PixelSamplers};
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
-use crate::view::camera::{Camera, CameraRay};
+use crate::view::camera::{Camera, CameraRay, StartingRay};
+use crate::view::lens_system::Crossing;
 use crate::world::World;
 
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
@@ -21,14 +22,15 @@ const WAVELENGTH_DIMENSION: u32 = 2;
 #[derive(Debug, Default)]
 pub(super) struct Start {
     /// Random numbers, empty where they are not needed.
-    lens: Vec<[f32; 2]>,
     wavelengths: Vec<[f32; 2]>,
-    /// Points of the image, in pixels, y up; empty where the camera is linear.
+    /// Points of the image, in pixels, y up; empty where the camera has an image plane.
     points: Vec<[f64; 2]>,
     /// The rays of the kernel.
     pub(super) rays: Vec<Ray>,
-    /// The filter's weights.
+    /// The factors of light: the filter's weights, times those of rays through a lens system.
     pub(super) weights: Vec<f32>,
+    /// The filter's weights alone; empty where they are all.
+    filter_weights: Vec<f32>,
 }
 
 impl Start {
@@ -36,6 +38,16 @@ impl Start {
     pub(super) fn modes(&self) -> impl Iterator<Item = SpectralMode> {
         let rgb = self.wavelengths.is_empty().then_some(SpectralMode::Rgb);
         rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
+    }
+
+    /// Whether a lens system blocks the ray of a slot.
+    pub(super) fn is_blocked(&self, slot: usize) -> bool {
+        !self.filter_weights.is_empty() && self.weights[slot] == 0.0
+    }
+
+    /// The filter's weight of a slot.
+    pub(super) fn filter_weight(&self, slot: usize) -> f32 {
+        *self.filter_weights.get(slot).unwrap_or(&self.weights[slot])
     }
 }
 
@@ -64,6 +76,14 @@ impl Renderer {
         (self.view.camera.ray(point, two(LENS_DIMENSION)), weight)
     }
 
+    /// How the camera ray of a sample crosses the lens system, if the camera has one.
+    pub(crate) fn crossings(&self, id: SampleId) -> Option<Vec<Crossing>> {
+        let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
+        let (point, _) = self.image_point(id.pixel.map(f64::from), two(sampler::PIXEL));
+        let camera = &self.view.camera;
+        Some(camera.lens_system.as_ref()?.crossings(camera.film_point(point)?, two(LENS_DIMENSION)))
+    }
+
     /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane.
     pub(super) fn kernel_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.ray_start + ray.a_from_eye;
@@ -72,25 +92,19 @@ impl Renderer {
 
     /// Replaces `start` by the camera rays of the samples.
     pub(super) fn start(&self, ids: &[SampleId], start: &mut Start) {
-        let Start { lens, wavelengths, points, rays, weights } = start;
+        let Start { wavelengths, points, rays, weights, filter_weights } = start;
         let camera = &self.view.camera;
-        let draw = |is_sampled: bool, dimension: u32, numbers: &mut Vec<[f32; 2]>| {
-            let count = if is_sampled { ids.len() } else { 0 };
-            self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), dimension, numbers);
-        };
-        draw(camera.lens.is_some(), LENS_DIMENSION, lens);
-        draw(self.is_spectral(), WAVELENGTH_DIMENSION, wavelengths);
-
+        let count = if self.is_spectral() { ids.len() } else { 0 };
+        self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), WAVELENGTH_DIMENSION, wavelengths);
         points.clear();
         weights.clear();
+        filter_weights.clear();
         rays.clear();
-        if camera.is_linear() {
-            dispatch(level(), LinearRays { renderer: self, ids, rays, weights });
+        if camera.is_flat() {
+            dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
         } else {
             dispatch(level(), ImagePoints { renderer: self, ids, points, weights });
-            rays.extend(points.iter().enumerate().map(|(slot, point)| {
-                self.kernel_ray(&camera.ray(*point, lens.get(slot).copied().unwrap_or_default()))
-            }));
+            rays.extend(points.iter().map(|point| self.kernel_ray(&camera.ray(*point, [0.5; 2]))));
         }
     }
 
@@ -104,9 +118,15 @@ impl Renderer {
         ([column + half + x.widen(), height - (row + half + y.widen())], weight)
     }
 
-    /// [`Self::image_point`] of up to eight samples, each with its random numbers. Unused lanes repeat the last one.
+    /// [`Self::image_point`] of up to eight samples, each with its random numbers, and those for the lens, if they are drawn.
+    /// Unused lanes repeat the last one.
     #[inline(always)]
-    fn image_points<S: Simd>(&self, simd: S, ids: &[SampleId]) -> ([f64x8<S>; 2], f32x8<S>) {
+    fn image_points<S: Simd>(
+        &self,
+        simd: S,
+        ids: &[SampleId],
+        has_lens: bool,
+    ) -> ([f64x8<S>; 2], f32x8<S>, [f32x8<S>; 2]) {
         let mut memory = None;
         let ids = filled(ids, &mut memory);
         let columns = f32x8::extend(u32x8::load_array(simd, by_lane!(lane => ids[lane].pixel[0])));
@@ -114,7 +134,12 @@ impl Renderer {
         let samples = u32x8::load_array(simd, by_lane!(lane => ids[lane].sample));
         let samplers = PixelSamplers::of_pixels(&self.sampler, columns | (rows << 32));
         let u = samplers.two(samples, u64x8::splat(simd, u64::from(sampler::PIXEL)));
-        self.image_point([below_2_to_52(columns), below_2_to_52(rows)], u)
+        let (point, weight) = self.image_point([below_2_to_52(columns), below_2_to_52(rows)], u);
+        let lens = match has_lens {
+            true => samplers.two(samples, u64x8::splat(simd, u64::from(LENS_DIMENSION))),
+            false => [f32x8::splat(simd, 0.5); 2],
+        };
+        (point, weight, lens)
     }
 }
 
@@ -141,7 +166,7 @@ impl Kernel for ImagePoints<'_> {
     fn run<S: Simd>(self, simd: S) {
         let Self { renderer, ids, points, weights } = self;
         for ids in ids.chunks(LANES) {
-            let ([x, y], weight) = renderer.image_points(simd, ids);
+            let ([x, y], weight, _) = renderer.image_points(simd, ids, false);
             let (x, y, weight): ([f64; LANES], [f64; LANES], [f32; LANES]) =
                 (x.into(), y.into(), weight.into());
             points.extend_from_slice(&by_lane!(lane => [x[lane], y[lane]])[..ids.len()]);
@@ -150,31 +175,39 @@ impl Kernel for ImagePoints<'_> {
     }
 }
 
-/// Appends the rays of a linear camera for samples, and the filter's weights.
-struct LinearRays<'a> {
+/// Appends the rays of a camera with an image plane for samples, the factors of their light, and the filter's weights where those
+/// are others.
+struct FlatRays<'a> {
     renderer: &'a Renderer,
     ids: &'a [SampleId],
     rays: &'a mut Vec<Ray>,
     weights: &'a mut Vec<f32>,
+    filter_weights: &'a mut Vec<f32>,
 }
 
-impl Kernel for LinearRays<'_> {
+impl Kernel for FlatRays<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { renderer, ids, rays, weights } = self;
+        let Self { renderer, ids, rays, weights, filter_weights } = self;
+        let camera = &renderer.view.camera;
         rays.reserve(ids.len());
         weights.reserve(ids.len());
+        let has_lens = camera.has_lens();
         let eye = Vector::splat(f64x8::splat(simd, 0.0), renderer.ray_start.to_array());
         for ids in ids.chunks(LANES) {
-            let (point, weight) = renderer.image_points(simd, ids);
-            let [a, direction] = renderer.view.camera.linear_ray(point);
+            let (point, weight, lens) = renderer.image_points(simd, ids, has_lens);
+            let StartingRay { a, direction, weight: of_lens } = camera.flat_ray(point, lens);
             let origins = scatter(Vector::<f32x8<S>>::narrow(eye + a));
             let directions = scatter(Vector::<f32x8<S>>::narrow(direction));
             rays.extend_from_slice(&by_lane!(lane => Ray::new(origins[lane], directions[lane]))[..ids.len()]);
-            let weight: [f32; LANES] = weight.into();
-            weights.extend_from_slice(&weight[..ids.len()]);
+            let mut all: [f32; LANES] = weight.into();
+            if camera.lens_system.is_some() {
+                filter_weights.extend_from_slice(&all[..ids.len()]);
+                all = (weight * of_lens).into();
+            }
+            weights.extend_from_slice(&all[..ids.len()]);
         }
     }
 }

@@ -55,13 +55,17 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             texts.push(("camera.matrix_by_columns", columns.join(" ")));
         }
     }
-    match camera.projection {
+    match &camera.projection {
         Projection::Perspective { fov } => texts.push(("camera.fov", fov.to_string())),
         Projection::Orthographic { height } => texts.push(("camera.height", height.to_string())),
         Projection::Equirectangular | Projection::EquirectangularPbrt => {
             texts.push(("camera.projection", "equirectangular".to_owned()));
         }
         Projection::Octahedral => texts.push(("camera.projection", "octahedral".to_owned())),
+        Projection::LensSystem(system) => {
+            texts.push(("camera.lens", system.name.clone()));
+            texts.push(("camera.focus_distance", system.focus_distance.to_string()));
+        }
     }
     if let Some(lens) = camera.lens {
         texts.push(("camera.lens_radius", lens.radius.to_string()));

@@ -16,13 +16,16 @@
 //! Everything here is f64; the resulting ray is rounded to f32 in *render space*, the world translated to the camera
 //! (see `world`). The first step in the computation of a pixel.
 
-use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window, up_across};
 use lookfrom_scene::{Error, Location, Result};
-use lookfrom_simd::Float;
+use lookfrom_simd::{Float, Real};
 
 use crate::core::vector::Vector;
 use crate::core::warp;
+use crate::view::lens_system::{LeavingRay, LensSystem};
 
 /// The camera as matrices.
 #[derive(Clone, Debug)]
@@ -37,8 +40,10 @@ pub struct Camera {
     pub t4: DMat4,
     /// The projection.
     pub projection: Projection,
-    /// The lens, on which rays start, if there is one.
+    /// The thin lens, on which rays start, if there is one.
     pub lens: Option<Lens>,
+    /// The lens system of a [`Projection::LensSystem`], focused.
+    pub lens_system: Option<Arc<LensSystem>>,
     /// `d`.
     pub distance: f64,
     /// `nx`, `ny`.
@@ -62,6 +67,18 @@ pub struct CameraRay {
     pub a_from_eye: DVec3,
     /// `b − a`; not of unit length: `t = 1` is the image plane.
     pub direction: DVec3,
+    /// The factor of its light: 1, but for that of a lens system, which is 0 for a ray that the system blocks. That is the ray of a
+    /// pinhole then.
+    pub weight: f32,
+}
+
+/// Rays of a camera as they are computed, in view space or in the world: origins relative to `lookfrom`, directions, and factors
+/// of their light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StartingRay<R: Real> {
+    pub(crate) a: Vector<R::Double>,
+    pub(crate) direction: Vector<R::Double>,
+    pub(crate) weight: R,
 }
 
 impl Camera {
@@ -69,7 +86,7 @@ impl Camera {
     ///
     /// # Errors
     /// `Invalid` for each degenerate camera: `lookfrom = lookat`, `up` zero or parallel to the view, `θ ∉ (0°, 180°)`,
-    /// `d ≤ 0`, no pixels, an impossible lens or matrix, any value that is not finite.
+    /// `d ≤ 0`, no pixels, an impossible lens or matrix, any value that is not finite; as [`LensSystem::new`].
     pub fn new(written: &Written, width: u32, height: u32) -> Result<Self> {
         let at = &written.at;
         if width == 0 || height == 0 {
@@ -79,6 +96,11 @@ impl Camera {
             ));
         }
         let d = positive(at, "distance", written.distance)?;
+        let (nx, ny) = (f64::from(width), f64::from(height));
+        let lens_system = match &written.projection {
+            Projection::LensSystem(system) => Some(Arc::new(LensSystem::new(system, at)?)),
+            _ => None,
+        };
         // h, the height of the image on the image plane
         let h = match written.projection {
             Projection::Perspective { fov } if fov > 0.0 && fov < 180.0 => {
@@ -93,6 +115,11 @@ impl Camera {
             Projection::Orthographic { height } => positive(at, "height", height)?,
             // There is no image plane as in the notes here; it is taken to be 2 × 2.
             Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => 2.0,
+            // That of a pinhole which sees the plane of focus as large.
+            Projection::LensSystem(_) => lens_system.as_ref().map_or(2.0, |system| {
+                let film = 2.0 * system.film_radius() * ny / (nx * nx + ny * ny).sqrt();
+                film * d / system.pinhole_distance()
+            }),
         };
         if let Some(Lens { radius, focus_distance }) = written.lens {
             positive(at, "focus_distance", focus_distance)?;
@@ -115,7 +142,6 @@ impl Camera {
                 (linear, matrix.w_axis.truncate())
             }
         };
-        let (nx, ny) = (f64::from(width), f64::from(height));
         let window = written.window.unwrap_or(Window { x: [-nx / ny, nx / ny], y: [-1.0, 1.0] });
         // the size of a pixel and the pixel on the axis
         let across = |[low, high]: [f64; 2], pixels: f64| {
@@ -137,8 +163,9 @@ impl Camera {
             s2: DMat4::from_scale(DVec3::new(-pixel_x, pixel_y, 1.0)),
             r3: DMat4::from_mat3(r3),
             t4: DMat4::from_translation(lookfrom),
-            projection: written.projection,
+            projection: written.projection.clone(),
             lens: written.lens.filter(|lens| lens.radius > 0.0),
+            lens_system,
             distance: d,
             size: [width, height],
         })
@@ -164,17 +191,24 @@ impl Camera {
         self.lens.is_none() && matches!(self.projection, Projection::Orthographic { .. })
     }
 
-    /// Whether its rays are those of [`Camera::linear_ray`].
-    pub(crate) fn is_linear(&self) -> bool {
-        let is_panoramic =
-            !matches!(self.projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
-        self.lens.is_none() && !is_panoramic
+    /// Whether it has an image plane, so that its rays are those of [`Camera::flat_ray`].
+    pub(crate) fn is_flat(&self) -> bool {
+        match self.projection {
+            Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => {
+                true
+            }
+            Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => false,
+        }
     }
 
-    /// The rays of a perspective or orthographic camera without a lens, as [`Camera::ray`] gives them, at any width:
-    /// origins relative to `lookfrom`, and directions.
+    /// Whether its rays start at places of a lens, which random numbers choose.
+    pub(crate) fn has_lens(&self) -> bool {
+        self.lens.is_some() || self.lens_system.is_some()
+    }
+
+    /// The rays of a camera with an image plane, as [`Camera::ray`] gives them, at any width.
     #[inline(always)]
-    pub(crate) fn linear_ray<F: Float<Scalar = f64>>(&self, [x_k, y_k]: [F; 2]) -> [Vector<F>; 2] {
+    pub(crate) fn flat_ray<R: Real>(&self, [x_k, y_k]: [R::Double; 2], lens: [R; 2]) -> StartingRay<R> {
         let zero = x_k.like(0.0);
         // S2 · T1 · P_k; its other terms are zero
         let image_point = Vector {
@@ -182,21 +216,37 @@ impl Camera {
             y: (y_k + y_k.like(self.t1.w_axis.y)) * y_k.like(self.s2.y_axis.y) + zero,
             z: x_k.like(self.distance),
         };
-        let [a, direction] = self.linear_ray_in_view(image_point);
-        [self.rotated(a), self.rotated(direction)]
+        let StartingRay { a, direction, weight } = self.flat_ray_in_view(image_point, lens);
+        StartingRay { a: self.rotated(a), direction: self.rotated(direction), weight }
     }
 
-    /// The rays through points of the image plane, in view space: origins and directions. Parallel ones if the camera
-    /// is orthographic, else from a pinhole.
+    /// The rays through points of the image plane, in view space.
     #[inline(always)]
-    fn linear_ray_in_view<F: Float<Scalar = f64>>(&self, image_point: Vector<F>) -> [Vector<F>; 2] {
+    fn flat_ray_in_view<R: Real>(&self, image_point: Vector<R::Double>, lens: [R; 2]) -> StartingRay<R> {
         let zero = image_point.x.like(0.0);
-        match self.projection {
+        let one = lens[0].like(1.0);
+        // Parallel rays if the camera is orthographic, else from a pinhole.
+        let (start, straight) = match self.projection {
             Projection::Orthographic { .. } => {
-                [Vector { z: zero, ..image_point }, Vector { x: zero, y: zero, z: image_point.z }]
+                (Vector { z: zero, ..image_point }, Vector { x: zero, y: zero, z: image_point.z })
             }
-            _ => [Vector { x: zero, y: zero, z: zero }, image_point],
+            _ => (Vector { x: zero, y: zero, z: zero }, image_point),
+        };
+        if let Some(system) = &self.lens_system {
+            return through_lens_system(system, image_point, lens);
         }
+        let Some(Lens { radius, focus_distance }) = self.lens else {
+            return StartingRay { a: start, direction: straight, weight: one };
+        };
+        // every ray from the lens intersects the pinhole's ray in the plane of focus
+        let pinhole = image_point - start;
+        let focus = start + pinhole * (zero.like(focus_distance) / pinhole.z);
+        let [x, y] = warp::concentric_disk(lens);
+        let radius = zero.like(radius);
+        let (x, y) = (x.widen() * radius, y.widen() * radius);
+        let a = start + Vector { x, y, z: zero };
+        let direction = (focus - a) * zero.like(self.distance / focus_distance);
+        StartingRay { a, direction, weight: one }
     }
 
     /// `R3` times vectors of view space.
@@ -218,33 +268,22 @@ impl Camera {
         let after_s2 = self.s2 * after_t1;
         let after_r3 = self.r3 * after_s2;
         let p_world = (self.t4 * after_r3).truncate();
-        // in view space: the origin of the ray and its point on the image plane
-        let image_point = after_s2.truncate();
-        let (start, straight) = match self.projection {
-            Projection::Perspective { .. } | Projection::Orthographic { .. } => {
-                let [start, straight] = self.linear_ray_in_view(image_point.into());
-                (start.into(), straight.into())
+        // in view space: the origin of the ray and its direction
+        let (a, direction, weight) = match self.projection {
+            Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => {
+                let StartingRay { a, direction, weight } =
+                    self.flat_ray_in_view::<f32>(after_s2.truncate().into(), lens);
+                (a.into(), direction.into(), weight)
             }
             Projection::Equirectangular | Projection::EquirectangularPbrt => {
                 let [u, v] = [x_k / f64::from(self.size[0]), y_k / f64::from(self.size[1])];
                 let is_pbrts = self.projection == Projection::EquirectangularPbrt;
-                (DVec3::ZERO, if is_pbrts { equirectangular_pbrt(u, v) } else { equirectangular(u, v) })
+                (DVec3::ZERO, if is_pbrts { equirectangular_pbrt(u, v) } else { equirectangular(u, v) }, 1.0)
             }
             Projection::Octahedral => {
                 let square = [x_k / f64::from(self.size[0]), 1.0 - y_k / f64::from(self.size[1])];
                 let direction = warp::octahedral_direction(square.map(|u| u as f32)).as_dvec3();
-                (DVec3::ZERO, DVec3::new(-direction.x, direction.z, direction.y))
-            }
-        };
-        let (a, direction) = match self.lens {
-            None => (start, straight),
-            Some(Lens { radius, focus_distance }) => {
-                // every ray from the lens intersects the pinhole's ray in the plane of focus
-                let pinhole = image_point - start;
-                let focus = start + pinhole * (focus_distance / pinhole.z);
-                let on_lens = DVec2::from(warp::concentric_disk(lens).map(f64::from)) * radius;
-                let a = start + on_lens.extend(0.0);
-                (a, (focus - a) * (self.distance / focus_distance))
+                (DVec3::ZERO, DVec3::new(-direction.x, direction.z, direction.y), 1.0)
             }
         };
         CameraRay {
@@ -255,7 +294,45 @@ impl Camera {
             p_world,
             a_from_eye: self.rotated(a.into()).into(),
             direction: self.rotated(direction.into()).into(),
+            weight,
         }
+    }
+
+    /// The point of the film of a lens system, in lens space, where the point `(x_k, y_k)` of the image is: upside down, left and right
+    /// interchanged.
+    pub(crate) fn film_point(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+        let system = self.lens_system.as_ref()?;
+        let image_point = (self.s2 * self.t1 * DVec4::new(point[0], point[1], 0.0, 1.0)).truncate();
+        Some(film_point(system, image_point.into()))
+    }
+}
+
+/// The points of the film for points of the image plane in view space, whose x is to the left.
+#[inline(always)]
+fn film_point<F: Float<Scalar = f64>>(system: &LensSystem, image_point: Vector<F>) -> [F; 2] {
+    let size = image_point.x.like(system.pinhole_distance()) / image_point.z;
+    [image_point.x * size, -(image_point.y * size)]
+}
+
+/// The rays that leave a lens system, in view space; of unit length.
+#[inline(always)]
+fn through_lens_system<R: Real>(
+    system: &LensSystem,
+    image_point: Vector<R::Double>,
+    lens: [R; 2],
+) -> StartingRay<R> {
+    let zero = image_point.x.like(0.0);
+    let LeavingRay { origin, direction, weight } = system.leaving(film_point(system, image_point), lens);
+    let is_blocked = weight.widen().eq(zero);
+    let nowhere = Vector { x: zero, y: zero, z: zero };
+    StartingRay {
+        a: Vector::select(is_blocked, nowhere, Vector { x: -origin.x, ..origin }),
+        direction: Vector::select(
+            is_blocked,
+            image_point.normalize(),
+            Vector { x: -direction.x, ..direction },
+        ),
+        weight,
     }
 }
 
@@ -306,7 +383,10 @@ fn view_axes(at: &Location, lookfrom: DVec3, lookat: DVec3, up: DVec3) -> Result
 
 #[cfg(test)]
 mod tests {
+    use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, f64x8, prelude::*};
+
     use super::*;
+    use crate::core::lanes::scatter_f64;
 
     fn look(lookfrom: [f64; 3], lookat: [f64; 3], up: [f64; 3]) -> Written {
         Written {
@@ -369,15 +449,48 @@ mod tests {
     }
 
     #[test]
-    fn linear_rays_are_the_same() {
+    fn rays_in_lanes_are_the_same() {
+        struct Eight<'a>(&'a Camera, [[f64; 2]; 8], [[f32; 2]; 8]);
+        impl Kernel for Eight<'_> {
+            type Output = [([f64; 3], [f64; 3], f32); 8];
+            #[inline(always)]
+            fn run<S: Simd>(self, simd: S) -> Self::Output {
+                let [points, lens] = [0, 1]
+                    .map(|axis| {
+                        let points = f64x8::load_array(simd, self.1.map(|point| point[axis]));
+                        (points, f32x8::load_array(simd, self.2.map(|u| u[axis])))
+                    })
+                    .into();
+                let ray = self.0.flat_ray([points.0, lens.0], [points.1, lens.1]);
+                let (a, direction) = (scatter_f64(ray.a), scatter_f64(ray.direction));
+                let weight: [f32; 8] = ray.weight.into();
+                std::array::from_fn(|lane| (a[lane], direction[lane], weight[lane]))
+            }
+        }
         let mut written = look([3.0, 1.0, -4.0], [-2.0, 5.0, 7.0], [0.1, 1.0, 0.2]);
-        for projection in [Projection::Perspective { fov: 40.0 }, Projection::Orthographic { height: 3.0 }] {
-            written.projection = projection;
+        let thin = Some(Lens { radius: 0.3, focus_distance: 4.0 });
+        let systems = crate::view::lens_system::tests::examples();
+        let cases = [
+            (Projection::Perspective { fov: 40.0 }, None),
+            (Projection::Perspective { fov: 40.0 }, thin),
+            (Projection::Orthographic { height: 3.0 }, None),
+            (Projection::Orthographic { height: 3.0 }, thin),
+        ];
+        let systems = systems.into_iter().map(|system| (Projection::LensSystem(Arc::new(system)), None));
+        for (projection, lens) in cases.into_iter().chain(systems) {
+            (written.projection, written.lens) = (projection, lens);
             let camera = Camera::new(&written, 300, 200).unwrap();
-            assert!(camera.is_linear());
-            for point in [[0.25, 199.5], [150.0, 100.0], [-0.75, 0.0], [299.1, 13.7]] {
-                let (ray, [a, direction]) = (camera.ray(point, [0.5; 2]), camera.linear_ray(point));
-                assert_eq!([ray.a_from_eye, ray.direction], [a.into(), direction.into()]);
+            assert!(camera.is_flat());
+            let points = [[0.25, 199.5], [150.0, 100.0], [-0.75, 0.0], [299.1, 13.7]];
+            let points: [[f64; 2]; 8] = std::array::from_fn(|lane| points[lane % 4]);
+            let lens = std::array::from_fn(|lane| [0.1 + 0.11 * lane as f32, 0.95 - 0.07 * lane as f32]);
+            for level in [Level::baseline(), lookfrom_simd::level()] {
+                let eight = dispatch(level, Eight(&camera, points, lens));
+                for (lane, (a, direction, weight)) in eight.into_iter().enumerate() {
+                    let ray = camera.ray(points[lane], lens[lane]);
+                    let one = (ray.a_from_eye.to_array(), ray.direction.to_array(), ray.weight);
+                    assert_eq!(one, (a, direction, weight), "{:?} lane {lane}", camera.projection);
+                }
             }
         }
     }
@@ -421,8 +534,8 @@ mod tests {
             let written = Written { projection, ..look([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]) };
             Camera::new(&written, 400, 200).unwrap()
         };
-        let sees = |projection, u: f64, direction: [f64; 3]| {
-            let ray = camera(projection).ray([400.0 * u, 100.0], [0.5; 2]);
+        let sees = |projection: Projection, u: f64, direction: [f64; 3]| {
+            let ray = camera(projection.clone()).ray([400.0 * u, 100.0], [0.5; 2]);
             assert!(
                 ray.direction.distance(direction.into()) < 1e-12,
                 "{projection:?} {u}: {}",

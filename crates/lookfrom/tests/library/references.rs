@@ -40,6 +40,7 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("hair/scene", "hair", 256, 16, 0.005),
     ("measured/scene", "measured", 256, 16, 0.005),
     ("lights-image/scene", "lights-image", 256, 16, 0.005),
+    ("lens-realistic/scene", "lens-realistic", 384, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how
@@ -133,9 +134,10 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 #[ignore = "needs LOOKFROM_SHARED"]
 fn normals_are_pbrts() {
     let shared = lookfrom_test_data::shared("");
-    // Those of the sensor and of subsurface scattering have no `Ns`, and those of media have what is seen where nothing was scattered.
-    let has_normals =
-        |name: &str| !["cornell-sensor", "subsurface"].contains(&name) && !name.starts_with("medium-");
+    // Those of the sensor, of lenses and of subsurface scattering have no `Ns`, and those of media have what is seen where nothing was scattered.
+    let has_normals = |name: &str| {
+        !["cornell-sensor", "subsurface", "lens-realistic"].contains(&name) && !name.starts_with("medium-")
+    };
     for (scene, name, ..) in SCENES.iter().filter(|(_, name, ..)| has_normals(name)) {
         let reference = shared.join(format!("reference/{name}.exr"));
         let found = alike(&shared.join(format!("scenes/{scene}.pbrt")), &reference);

@@ -27,8 +27,8 @@ impl Projection {
         let (ahead, upward) =
             if level.length() > 0.3 { (level.normalize(), DVec3::Y) } else { (forward, up) };
         let right = ahead.cross(upward);
-        let is_perspective = match (view, camera.projection) {
-            (SvgView::Camera, OfCamera::Perspective { .. }) => true,
+        let is_perspective = match (view, &camera.projection) {
+            (SvgView::Camera, OfCamera::Perspective { .. } | OfCamera::LensSystem(_)) => true,
             (SvgView::Camera, OfCamera::Orthographic { .. }) => false,
             (SvgView::Camera, _) => return None,
             _ => false,
@@ -37,7 +37,7 @@ impl Projection {
             SvgView::Side => [ahead, upward, -right],
             SvgView::Top => [ahead, -right, -upward],
             SvgView::Front => [right, upward, ahead],
-            SvgView::Camera | SvgView::Sheet => [-left, up, forward],
+            SvgView::Camera | SvgView::Sheet | SvgView::Lens => [-left, up, forward],
         };
         let eye = if view == SvgView::Camera { camera.lookfrom() } else { DVec3::ZERO };
         let rows = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), DVec4::W).transpose();

@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use super::lens_system::write_lens_system;
 use super::{short, vector, vector32};
 use crate::inspect::{Inspection, SphereMapping};
 
@@ -9,6 +10,11 @@ impl Inspection {
     pub(super) fn write_camera(&self, f: &mut String) -> fmt::Result {
         let camera = &self.camera;
         match &camera.mapping {
+            None if camera.lens_system.is_some() => writeln!(
+                f,
+                "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k, of a pinhole at the middle of the film that sees the plane \
+                 of focus as large"
+            )?,
             None => writeln!(f, "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k")?,
             Some(_) => writeln!(f, "From the pixel to the world: a direction, {}", camera.projection)?,
         }
@@ -51,11 +57,20 @@ impl Inspection {
         )?;
         let moved = if camera.lens { "   (a point of the lens)" } else { "" };
         writeln!(f, "  a        = {}{moved}", vector(&camera.a))?;
-        let on_plane =
-            if camera.lens { "where the ray from the lens crosses the image plane" } else { "P_world" };
+        let on_plane = if camera.lens_system.is_some() {
+            "at a distance of 1 along the ray"
+        } else if camera.lens {
+            "where the ray from the lens crosses the image plane"
+        } else {
+            "P_world"
+        };
         writeln!(f, "  b        = {}   ({on_plane})", vector(&camera.b))?;
-        let plane = if camera.mapping.is_some() { "" } else { "; t = 1 is the image plane" };
-        writeln!(f, "  b − a    = {}   p(t) = a + t (b − a){plane}", vector(&camera.direction))
+        let plane = match (&camera.mapping, &camera.lens_system) {
+            (None, None) => "; t = 1 is the image plane",
+            _ => "",
+        };
+        writeln!(f, "  b − a    = {}   p(t) = a + t (b − a){plane}", vector(&camera.direction))?;
+        camera.lens_system.as_ref().map_or(Ok(()), |report| write_lens_system(f, report))
     }
 
     /// Writes the wavelengths of the lanes, in spectral mode.

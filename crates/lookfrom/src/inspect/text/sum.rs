@@ -11,7 +11,8 @@ impl Inspection {
         for addition in &self.additions {
             writeln!(f, "  {}   ray {} {}", amount(&addition.value), addition.address, addition.term)?;
         }
-        writeln!(f, "  = {}   times the filter's weight {}", amount(&self.radiance), self.weight)?;
+        let of = if self.camera.lens_system.is_some() { "and the lens's " } else { "" };
+        writeln!(f, "  = {}   times the filter's {of}weight {}", amount(&self.radiance), self.weight)?;
         let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
         self.write_sensor(f)?;
         writeln!(f, "  = {}   what the film received: {verdict}", lanes(&self.film))

@@ -36,7 +36,8 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("noise", "hash vector"),
     ("filter", "sampler"),
     ("distribution", "sampler lanes"),
-    ("camera", "math vector warp"),
+    ("lens_system", "lanes vector"),
+    ("camera", "lanes lens_system math vector warp"),
     ("interior_stack", ""),
     ("texture", "color hash lanes noise spectrum vector"),
     ("interaction", "interior_stack math points texture"),
@@ -70,7 +71,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ),
     (
         "render",
-        "aov interior_stack camera clock color film filter footprint integrator lanes light material math \
+        "aov interior_stack camera clock color film filter footprint integrator lanes lens_system light material math \
          parallel sampler spectrum interaction texture vector view warp world",
     ),
     (
@@ -125,7 +126,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "contents files",
             "digest inputs packed spectrum",
             "excerpt image medium",
-            "atmosphere light settings",
+            "atmosphere lens light settings",
             "shape texture",
             "composite scene text",
             "builder chain count duplicates model nanovdb",
@@ -143,6 +144,7 @@ pub(super) const LADDERS: &[Ladder] = &[
                 "ids of a scene's parts are in `scene`",
                 "camera > scene, light > scene, material > scene, medium > scene, shape > scene, texture > scene",
             ),
+            ("a camera's lens system has the picture of its aperture", "camera > lens"),
             (
                 "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
                 "spectrum > model, model > format, model > obj, model > ply, model > source, model > stl, model > subdivision",
