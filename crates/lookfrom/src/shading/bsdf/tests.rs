@@ -95,8 +95,8 @@ fn measured(azimuths: usize) -> Bsdf {
         digest: format!("made for tests, {azimuths}"),
     };
     assert!(written.is_consistent());
-    let tables = super::measured::MeasuredTables::kept(&written);
-    Bsdf::Measured(super::measured::Measured::new(tables, &SpectralMode::Rgb))
+    let tables = measured::MeasuredTables::kept(&written);
+    Bsdf::Measured(measured::Measured::new(tables, &SpectralMode::Rgb))
 }
 
 fn whitted() -> WhittedBsdf {
