@@ -21,9 +21,9 @@ impl Window {
     ///
     /// # Errors
     /// `Request` for what is not in the picture, or where there is none yet.
-    pub(crate) fn answer_to(&self, question: Request) -> Result<Outgoing> {
+    pub(crate) fn answer_to(&self, question: &Request) -> Result<Outgoing> {
         let text = |answer: Answer| Outgoing::Text(answer.text());
-        match question {
+        match *question {
             Request::Pixel { id, x, y } => self.pixel(id, [x, y]).map(text),
             Request::Inspect { id, x, y, sample, depth, min_contribution } => {
                 self.inspection(id, [x, y], sample, depth, min_contribution).map(text)
@@ -35,10 +35,10 @@ impl Window {
                 let tables = toml::vocabulary().into_iter().map(|(title, keys)| TableAnswer { title, keys });
                 Ok(text(Answer::Vocabulary { id, tables: tables.collect() }))
             }
-            Request::Space { id, camera, size } => {
+            Request::Space { id, ref camera, size } => {
                 let loaded = self.loaded.as_ref().ok_or_else(nothing_yet)?;
                 let session = self.render.as_ref().map_or(&loaded.session, |render| &render.session);
-                Ok(Outgoing::Binary(space::frame(session, id, &camera, size)?))
+                Ok(Outgoing::Binary(space::frame(session, id, camera, size)?))
             }
             Request::Save { id, format } => self.file(id, format),
             Request::Handout { id, pixel, sample } => {

@@ -116,7 +116,7 @@ impl Window {
                 Ok(())
             }
             Task::Request(question) => {
-                let answer = self.answer_to(question)?;
+                let answer = self.answer_to(&question)?;
                 self.mailbox.send(answer);
                 Ok(())
             }
