@@ -110,10 +110,12 @@ export interface CameraSteps {
     a: Vector;
     /** `b`: its intersection with the image plane; `P_world`, unless a lens moved `a` away. */
     b: Vector;
-    /** `b − a`: its direction, not of unit length; `t = 1` is the image plane. */
+    /** `b − a`: its direction, not of unit length; `t = 1` is the image plane. Of a lens system of unit length. */
     direction: Vector;
     /** Whether a lens moved `a` away from `lookfrom`. */
     lens: boolean;
+    /** The way of the ray through a lens system, if the camera has one. */
+    lens_system: LensSystem | null;
     /** The camera's position. */
     lookfrom: Vector;
     /** For cameras that see all around, the way from the pixel to a direction in place of T1 and S2. */
@@ -122,8 +124,8 @@ export interface CameraSteps {
     p_k: Quadruple;
     /** `P_world`: the point of the image plane in the world. */
     p_world: Vector;
-    /** How the camera projects: `perspective`, `orthographic`, or all around. */
-    projection: "perspective" | "orthographic" | "equirectangular" | "equirectangular, as pbrt's" | "octahedral";
+    /** How the camera projects: `perspective`, `orthographic`, all around, or `lens system`. */
+    projection: "perspective" | "orthographic" | "equirectangular" | "equirectangular, as pbrt's" | "octahedral" | "lens system";
     /** Each matrix by name, its product with those before, and the point after it. */
     steps: MatrixStep[];
     /** To the viewer's left. */
@@ -310,6 +312,46 @@ export interface InputFile {
     path: string;
     /** Its SHA-256. */
     sha256: string;
+}
+
+/** A surface of a lens system, and the ray there. */
+export interface LensSurface {
+    /** Radius of the part that light passes. */
+    aperture_radius: number;
+    /** Radius of curvature, positive where the centre lies toward the film; null for the aperture stop. */
+    curvature_radius: number | null;
+    /** The direction behind it, of unit length; null where there is none. */
+    direction: Vector | null;
+    /** Index of refraction on the scene's side over that on the film's side; null for the aperture stop. */
+    index_ratio: number | null;
+    /** Whether the ray passes. */
+    passes: boolean;
+    /** The point where the ray meets it; null if it does not. */
+    point: Vector | null;
+    /** z of its vertex. */
+    vertex: number;
+}
+
+/** The way of a ray from the film through a lens system. Points and directions are in lens space: x to the viewer's right, y up, z along the axis to the scene, the film in z = 0, in units of the world. */
+export interface LensSystem {
+    /** The direction from there to the rear surface, of unit length. */
+    direction: Vector;
+    /** That of a thin lens which would light the middle of the film as much. */
+    f_number: number;
+    /** The point of the film. */
+    film: Vector;
+    /** Effective focal length. */
+    focal_length: number;
+    /** Distance of the plane of focus from the film. */
+    focus_distance: number;
+    /** The lens file. */
+    name: string;
+    /** Whether the ray passes all of them. */
+    passes: boolean;
+    /** Each surface, from the film to the front. */
+    surfaces: LensSurface[];
+    /** The factor of its light: cos⁴ of its angle to the axis at the film, times the area of the pupil's bounds, over the square of the rear surface's distance, times the exposure; 0 if it is blocked. */
+    weight: number;
 }
 
 /** The way from a point of a triangle to the smooth surface that its vertex normals describe (Hanika 2021): `lift = Σ w_k max(0, −(p − P_k)·n_k) n_k`, with `p = Σ w_k P_k`. */
@@ -715,7 +757,7 @@ export interface Sample {
     sensor: Sensor;
     /** The wavelengths of the four lanes; null where light is red, green and blue. */
     wavelengths: Wavelengths | null;
-    /** The filter's weight. */
+    /** The filter's weight, times that of a ray through a lens system. */
     weight: number;
 }
 

@@ -331,13 +331,17 @@ impl Renderer {
         self.start(ids, start);
         output.queues.start(ids.len(), start.modes());
         let modes = &output.queues.modes;
-        let unblocked = start.rays.iter().enumerate().filter(|(slot, _)| !start.is_blocked(*slot));
-        output.paths.extend(unblocked.map(|(slot, ray)| Path {
+        let path = |(slot, ray): (usize, &Ray)| Path {
             beta: modes[slot].one(),
             slot: slot as u32,
             light_path,
             ..self.root(*ray)
-        }));
+        };
+        let all = start.rays.iter().enumerate();
+        match start.are_any_blocked() {
+            true => output.paths.extend(all.filter(|(slot, _)| !start.is_blocked(*slot)).map(path)),
+            false => output.paths.extend(all.map(path)),
+        }
         rays_traced.camera = output.paths.len() as u64;
         let starting = std::mem::take(&mut output.paths);
         output.start_layers(&self.world, &starting);

@@ -40,9 +40,14 @@ impl Start {
         rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
     }
 
-    /// Whether a lens system blocks the ray of a slot.
+    /// Whether there may be rays that a lens system blocks.
+    pub(super) fn are_any_blocked(&self) -> bool {
+        !self.filter_weights.is_empty()
+    }
+
+    /// Whether a lens system blocks the ray of a slot, where it may.
     pub(super) fn is_blocked(&self, slot: usize) -> bool {
-        !self.filter_weights.is_empty() && self.weights[slot] == 0.0
+        self.weights[slot] == 0.0
     }
 
     /// The filter's weight of a slot.

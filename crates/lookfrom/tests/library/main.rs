@@ -23,6 +23,7 @@ mod inspect_numbers;
 mod inspect_segments;
 mod labels;
 mod layers;
+mod lens_systems;
 mod light_paths;
 mod media;
 mod nested;
