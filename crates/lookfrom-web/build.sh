@@ -2,16 +2,18 @@
 # The page without a server, dist/page/index.html: crates/lookfrom-web/build.sh
 #
 # Compiles the library to WebAssembly by a compiler from Debian's packages (.ci/rustc-web), or by RUSTC and WASM_LD where both are set, and
-# puts it, the page of `lookfrom view` and the scenes of the notes and the guide into one file. Needs node and npm; says
-# "skipped", with code 3, where something cannot be had.
+# puts it, the page of `lookfrom view` and the scenes of the notes and the guide into one file. Needs node, npm and
+# zstd; says "skipped", with code 3, where something cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")"
 root=$(realpath ../..)
 target=$(realpath -m "${CARGO_TARGET_DIR:-$root/target}")
 
 skip() { printf 'skipped: %s\n' "$1"; exit 3; }
-command -v node > /dev/null && command -v npm > /dev/null || skip "node is not installed"
-[[ -d node_modules/esbuild ]] || npm ci --no-audit --no-fund --silent --fetch-retries 1 --fetch-timeout 20000 2> /dev/null \
+for tool in node npm zstd; do
+    command -v "$tool" > /dev/null || skip "$tool is not installed"
+done
+[[ -d node_modules/esbuild && -d node_modules/fzstd ]] || npm ci --no-audit --no-fund --silent --fetch-retries 1 --fetch-timeout 20000 2> /dev/null \
     || skip "npm's packages cannot be had"
 if [[ -z ${RUSTC:-} || -z ${WASM_LD:-} ]]; then
     tools=$("$root/.ci/rustc-web") || skip "there is no compiler for WebAssembly"

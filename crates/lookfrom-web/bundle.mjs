@@ -3,6 +3,7 @@
 // A page that is opened as a file may load nothing: so scripts, styles and the program are in index.html. Its content security policy
 // names the scripts by their hashes, and allows no connection at all.
 
+import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { mkdir, readFile, readdir, writeFile } from "node:fs/promises";
 import { dirname, join, relative } from "node:path";
@@ -21,8 +22,8 @@ async function script(entry) {
     return outputFiles[0].text.trim();
 }
 
-/** Compressed data as text. */
-const data = (bytes) => gzipSync(bytes, { level: 9 }).toString("base64");
+/** Data as text, packed by Zstandard: a quarter smaller than by gzip. */
+const data = (bytes) => execFileSync("zstd", ["--ultra", "-22", "--quiet", "--stdout"], { input: bytes, maxBuffer: 2 ** 28 }).toString("base64");
 
 /** All files below folders, by their paths from the root. */
 async function filesIn(...folders) {

@@ -1,6 +1,6 @@
 // What the page holds in itself, as compressed data: the program, and the scenes of the notes and the guide.
 
-import { inflated } from "./zip.js";
+import { decompress } from "fzstd";
 
 /** The bytes of a text in base64. @param {string} text */
 function bytesOf(text) {
@@ -10,16 +10,16 @@ function bytesOf(text) {
     return bytes;
 }
 
-/** The bytes of an element of data. @param {string} id */
-async function data(id) {
+/** The bytes of an element of data, packed by Zstandard. @param {string} id */
+function data(id) {
     const element = document.getElementById(id);
-    const bytes = await inflated(bytesOf(element?.textContent?.trim() ?? ""), "gzip");
+    const bytes = decompress(bytesOf(element?.textContent?.trim() ?? ""));
     element?.remove();
     return bytes;
 }
 
 /** The program. */
-export const program = async () => WebAssembly.compile(await data("program"));
+export const program = async () => WebAssembly.compile(data("program"));
 
 /** The text of the worker's script. */
 export const workerScript = () => document.getElementById("worker")?.textContent ?? "";
@@ -35,7 +35,7 @@ export const workerScript = () => document.getElementById("worker")?.textContent
 /** The scenes that the page holds, with all of their files. */
 export async function examples() {
     /** @type {{scenes: Example[], files: Record<string, string | [string]>}} */
-    const { scenes, files } = JSON.parse(new TextDecoder().decode(await data("scenes")));
+    const { scenes, files } = JSON.parse(new TextDecoder().decode(data("scenes")));
     const utf8 = new TextEncoder();
     const contents = Object.entries(files).map(([path, content]) => ({ path, bytes: typeof content === "string" ? utf8.encode(content) : bytesOf(content[0]) }));
     return { scenes, files: contents };
