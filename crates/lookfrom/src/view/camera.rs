@@ -455,13 +455,9 @@ mod tests {
             type Output = [([f64; 3], [f64; 3], f32); 8];
             #[inline(always)]
             fn run<S: Simd>(self, simd: S) -> Self::Output {
-                let [points, lens] = [0, 1]
-                    .map(|axis| {
-                        let points = f64x8::load_array(simd, self.1.map(|point| point[axis]));
-                        (points, f32x8::load_array(simd, self.2.map(|u| u[axis])))
-                    })
-                    .into();
-                let ray = self.0.flat_ray([points.0, lens.0], [points.1, lens.1]);
+                let [x, y] = [0, 1].map(|axis| f64x8::load_array(simd, self.1.map(|point| point[axis])));
+                let [u, v] = [0, 1].map(|axis| f32x8::load_array(simd, self.2.map(|lens| lens[axis])));
+                let ray = self.0.flat_ray([x, y], [u, v]);
                 let (a, direction) = (scatter_f64(ray.a), scatter_f64(ray.direction));
                 let weight: [f32; 8] = ray.weight.into();
                 std::array::from_fn(|lane| (a[lane], direction[lane], weight[lane]))
