@@ -79,3 +79,4 @@ of_scene star.pbrt --width 320 --height 240 --samples 128 --fireflies median
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --depth 2 --svg-view side --svg docs/guide/img/inspector-glass.svg > /dev/null
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg-view side --svg docs/guide/img/inspector-path.svg > /dev/null
 "$LOOKFROM" inspect scenes/hero.toml 330 300 --integrator path --sample 4 --svg docs/guide/img/inspector-sheet.svg > /dev/null
+"$LOOKFROM" inspect docs/guide/scenes/camera-lens-system.toml 40 200 --svg-view lens --svg docs/guide/img/inspector-lens.svg > /dev/null

@@ -124,7 +124,11 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
     };
 
     let mut legend = String::new();
-    let rows = draw_legend(&mut legend, (width, height), inspection);
+    // A section has no ray but that of the camera.
+    let rows = match view {
+        SvgView::Lens => 0.0,
+        _ => draw_legend(&mut legend, (width, height), inspection),
+    };
     let total = height + 22.0 * rows + GAP;
     let mut out = String::new();
     let _ = writeln!(

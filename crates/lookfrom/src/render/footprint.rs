@@ -15,7 +15,8 @@ pub(super) fn of_pixels(camera: &Camera) -> PixelFootprint {
     let camera_from_world = world_from_camera.inverse();
     let ray = |pixel: [f64; 2]| {
         let ray = camera.ray(pixel, [0.5; 2]);
-        [ray.a_from_eye, ray.direction].map(|v| camera_from_world * v)
+        // Where a lens blocks it, it is another ray.
+        (ray.weight != 0.0).then(|| [ray.a_from_eye, ray.direction].map(|v| camera_from_world * v))
     };
     let [width, height] = camera.size.map(f64::from);
     let mut origins = [DVec3::INFINITY; 2];
@@ -23,13 +24,13 @@ pub(super) fn of_pixels(camera: &Camera) -> PixelFootprint {
     for index in 0..PIXELS {
         let along = index as f64 / (PIXELS - 1) as f64;
         let at = [along * width, along * height];
-        let [origin, direction] = ray(at);
+        let Some([origin, direction]) = ray(at) else { continue };
         let z = direction.normalize();
         let (x, y) = warp::basis_about::<f64>(z.into());
         let [x, y] = [x, y].map(DVec3::from);
         let local = |v: DVec3| DVec3::new(v.dot(x), v.dot(y), v.dot(z));
         for (axis, next) in [[at[0] + 1.0, at[1]], [at[0], at[1] + 1.0]].into_iter().enumerate() {
-            let [next_origin, next_direction] = ray(next);
+            let Some([next_origin, next_direction]) = ray(next) else { continue };
             let moved = [local(next_origin - origin), local(next_direction.normalize() - z)];
             for (least, moved) in [&mut origins, &mut directions].into_iter().zip(moved) {
                 if moved.length() < least[axis].length() {

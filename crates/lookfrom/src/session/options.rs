@@ -273,11 +273,20 @@ impl Options {
     pub(super) fn apply_to_camera(&self, camera: &mut Camera, middle: DVec3) -> Result<bool> {
         let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up_of_camera().is_some();
         if let Some(degrees) = self.fov {
-            let Projection::Perspective { fov } = &mut camera.projection else {
-                return Err(unsuitable(
-                    "a field of view has no meaning here: the rays of this scene's camera are parallel"
-                        .to_owned(),
-                ));
+            let fov = match &mut camera.projection {
+                Projection::Perspective { fov } => fov,
+                Projection::LensSystem(_) => {
+                    return Err(unsuitable(
+                        "a field of view has no meaning here: this scene's camera has a lens, and sees as much as its film is large"
+                            .to_owned(),
+                    ));
+                }
+                _ => {
+                    return Err(unsuitable(
+                        "a field of view has no meaning here: the rays of this scene's camera are parallel"
+                            .to_owned(),
+                    ));
+                }
             };
             *fov = degrees;
         }

@@ -13,7 +13,7 @@ mod pupil;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use lookfrom_scene::lens::{LensConvention, LensSystem as Written};
+use lookfrom_scene::lens::{LensConvention, LensSurface, LensSystem as Written};
 use lookfrom_scene::{Error, Location, Result};
 use lookfrom_simd::{Float, Real};
 
@@ -33,6 +33,8 @@ pub struct LensSystem {
     rear: f64,
     /// Radius of the rear surface.
     rear_radius: f64,
+    /// Radius of the stop nearest to the film, which shapes fill.
+    stop_radius: f64,
     /// Half the film's diagonal.
     film_radius: f64,
     /// Focal length, principal planes and magnification.
@@ -53,7 +55,7 @@ struct Surface {
     curvature: f64,
     /// Index of refraction on the film's side over that on the scene's side; `None` for the stop.
     ratio: Option<f64>,
-    /// The square of the radius of its aperture.
+    /// The square of the radius of its aperture, or of a circle around the shape of the stop.
     radius_squared: f64,
 }
 
@@ -121,7 +123,9 @@ impl LensSystem {
                 return Err(Error::invalid(at, format!("{what} is {value}; expected a positive number")));
             }
         }
-        let aperture = ApertureImage::new(&written.shape, at)?;
+        // Without a stop there is nothing that has a shape.
+        let has_stop = written.surfaces.iter().any(LensSurface::is_stop);
+        let aperture = ApertureImage::new(&written.shape, at)?.filter(|_| has_stop);
         let thick = focus::focused(written, at)?;
         let mut vertex = thick.rear;
         let mut surfaces: Vec<Surface> = Vec::with_capacity(written.surfaces.len());
@@ -146,12 +150,19 @@ impl LensSystem {
             });
         }
         let rear_radius = surfaces.first().map_or(0.0, |rear| rear.radius_squared.sqrt());
+        let stop = surfaces.iter().find(|surface| surface.ratio.is_none());
+        let stop_radius = stop.map_or(rear_radius, |stop| stop.radius_squared.sqrt());
+        let reach = aperture.as_ref().map_or(1.0, ApertureImage::reach);
+        for stop in surfaces.iter_mut().filter(|surface| surface.ratio.is_none()) {
+            stop.radius_squared *= reach * reach;
+        }
         let film_radius = 0.5 * written.film_diagonal * written.millimetre;
         let mut system = Self {
             surfaces,
             aperture,
             rear: thick.rear,
             rear_radius,
+            stop_radius,
             film_radius,
             thick,
             pupil: ExitPupil::default(),
@@ -235,14 +246,8 @@ impl LensSystem {
         let one = R::narrow(x).like(1.0);
         match &self.aperture {
             None => one,
-            Some(aperture) => R::narrow(x).zip(R::narrow(y), |x, y| aperture.at([x, y], self.stop_radius())),
+            Some(aperture) => R::narrow(x).zip(R::narrow(y), |x, y| aperture.at([x, y], self.stop_radius)),
         }
-    }
-
-    /// The radius of the stop nearest to the front, which shapes have.
-    fn stop_radius(&self) -> f64 {
-        let stop = self.surfaces.iter().rev().find(|surface| surface.ratio.is_none());
-        stop.map_or(self.rear_radius, |stop| stop.radius_squared.sqrt())
     }
 
     /// How a ray from a point of the film, through the point of the exit pupil that `u` chooses, crosses each surface, from the
@@ -272,7 +277,7 @@ impl LensSystem {
         self.surfaces.iter().map(|surface| Section {
             vertex: surface.vertex,
             curvature: surface.curvature,
-            radius: surface.radius_squared.sqrt(),
+            radius: surface.ratio.map_or(self.stop_radius, |_| surface.radius_squared.sqrt()),
             index_ratio: surface.ratio.map(|ratio| 1.0 / ratio),
         })
     }

@@ -41,11 +41,9 @@ pub(super) struct ExitPupil(Vec<[f32; 4]>);
 impl ExitPupil {
     /// The bounds of a system.
     pub(super) fn of(system: &LensSystem, convention: LensConvention) -> Self {
-        // Film points all around the axis see a shape turned: without the bias of pbrt's convention its circle counts.
-        let around = match (&system.aperture, convention) {
-            (Some(aperture), LensConvention::AsPinhole) => Some(system.with_circle(aperture.reach())),
-            _ => None,
-        };
+        // Film points all around the axis see a shape turned: without the bias of pbrt's convention the circle around it counts.
+        let around = (convention == LensConvention::AsPinhole && system.aperture.is_some())
+            .then(|| LensSystem { aperture: None, ..system.clone() });
         let system = around.as_ref().unwrap_or(system);
         let step = system.film_radius / INTERVALS as f64;
         let mut ends: Vec<Option<Rectangle>> = Vec::with_capacity(INTERVALS + 1);
@@ -90,17 +88,6 @@ pub(super) fn irradiance(system: &LensSystem) -> f64 {
         }
     }
     sum * cell[0] * cell[1] / (system.rear * system.rear)
-}
-
-impl LensSystem {
-    /// The system with a stop that is a circle, of a radius in radii of the stop.
-    fn with_circle(&self, reach: f64) -> Self {
-        let mut system = Self { aperture: None, ..self.clone() };
-        for stop in system.surfaces.iter_mut().filter(|surface| surface.ratio.is_none()) {
-            stop.radius_squared *= reach * reach;
-        }
-        system
-    }
 }
 
 /// The bounds of the exit pupil for the film point at a distance from the axis; `None` if no light passes.

@@ -33,8 +33,16 @@ pub(crate) fn examples() -> Vec<Written> {
         Written { shape: ApertureShape::Star, ..gauss() },
         Written { shape: ApertureShape::Pentagon, convention: LensConvention::AsPinhole, ..gauss() },
         Written { film_diagonal: 60.0, ..gauss() },
-        written("30 4 1.5 20\n-70 0 1 20"),
+        Written { shape: corners(), ..gauss() },
+        Written { shape: corners(), convention: LensConvention::AsPinhole, ..gauss() },
+        Written { shape: ApertureShape::Star, ..written("30 4 1.5 20\n-70 0 1 20") },
     ]
+}
+
+/// An image with light in its corners, outside of the stop's circle.
+fn corners() -> ApertureShape {
+    let texels = [[1.0; 3], [0.0; 3], [1.0; 3], [0.0; 3], [0.5; 3], [0.0; 3], [1.0; 3], [0.0; 3], [0.0; 3]];
+    ApertureShape::Image(Image::from_linear("corners.png", 3, 3, texels.into()).into())
 }
 
 fn system(written: &Written) -> LensSystem {
@@ -140,7 +148,7 @@ fn rays_are_those_of_a_slow_tracer() {
     let mut random = Random(2);
     let (mut passed, mut blocked) = (0, 0);
     for written in examples() {
-        let system = LensSystem { aperture: None, ..system(&written) };
+        let system = system(&Written { shape: ApertureShape::Circle, ..written });
         for _ in 0..5000 {
             let reach = 1.5 * system.rear_radius;
             let mut place = |reach: f64| [random.between(-reach, reach), random.between(-reach, reach)];
