@@ -455,17 +455,9 @@ mod tests {
             type Output = [([f64; 3], [f64; 3], f32); 8];
             #[inline(always)]
             fn run<S: Simd>(self, simd: S) -> Self::Output {
-<<<<<<< HEAD
-                let [along_x, along_y] = [0, 1].map(|axis| {
-                    let points = f64x8::load_array(simd, self.1.map(|point| point[axis]));
-                    (points, f32x8::load_array(simd, self.2.map(|u| u[axis])))
-                });
-                let ray = self.0.flat_ray([along_x.0, along_y.0], [along_x.1, along_y.1]);
-=======
                 let [x, y] = [0, 1].map(|axis| f64x8::load_array(simd, self.1.map(|point| point[axis])));
                 let [u, v] = [0, 1].map(|axis| f32x8::load_array(simd, self.2.map(|lens| lens[axis])));
                 let ray = self.0.flat_ray([x, y], [u, v]);
->>>>>>> lenses
                 let (a, direction) = (scatter_f64(ray.a), scatter_f64(ray.direction));
                 let weight: [f32; 8] = ray.weight.into();
                 std::array::from_fn(|lane| (a[lane], direction[lane], weight[lane]))
