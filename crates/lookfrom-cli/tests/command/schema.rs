@@ -82,7 +82,7 @@ file = "roof.obj"
 "#;
 
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 29] = [
+const INSPECTED: [&str; 30] = [
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
@@ -104,6 +104,7 @@ const INSPECTED: [&str; 29] = [
     "scenes/materials.toml 20 20 --width 40 --samples 2 --sample 1",
     "scenes/environment.toml 20 20 --width 40 --samples 2",
     "docs/guide/scenes/shape-disk.toml 8 11 --width 40",
+    "docs/guide/scenes/camera-lens-system.toml 20 15 --width 40",
     "docs/guide/scenes/material-gltf-volume.toml 20 15 --width 40 --integrator path",
     "docs/guide/scenes/material-subsurface.toml 20 14 --width 40 --samples 8 --sample 0",
     "scenes/star.pbrt 20 20 --width 40 --height 30 --samples 4 --sample 2",
