@@ -11,6 +11,7 @@ mod compile;
 mod hair;
 mod interior;
 mod kind;
+mod measured;
 mod pictures;
 mod principled;
 mod rows;
@@ -28,7 +29,6 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
-use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::whitted::WhittedBsdf;
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
@@ -342,7 +342,7 @@ impl Evaluator<'_> {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
             MaterialKind::Hair(hair) => Bsdf::Hair(self.hair(hair)),
-            MaterialKind::Measured(tables) => Bsdf::Measured(Measured::new(tables, self.mode)),
+            MaterialKind::Measured(tables) => Bsdf::Measured(self.measured(tables)),
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
             // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),

@@ -15,10 +15,8 @@ use lookfrom_scene::measured as written;
 
 use self::interpolant::{Between, Interpolant};
 use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, same_side};
-use crate::core::color::{DenselySampledSpectrum, standard_illuminant};
 use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
 use crate::core::spectrum::Spectrum;
-use crate::shading::texture::SpectralMode;
 
 /// The tables of a measured material, compiled.
 pub struct MeasuredTables {
@@ -40,8 +38,8 @@ impl fmt::Debug for MeasuredTables {
 }
 
 impl MeasuredTables {
-    /// Compiles tables.
-    pub fn new(written: &written::Measured) -> Self {
+    /// Compiles tables. For each wavelength there is the colour, in linear Rec. 709, of what is 1 there and 0 at its neighbours.
+    pub fn new(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> Self {
         let written::Measured { phi, theta, wavelengths, .. } = written;
         Self {
             is_isotropic: written.is_isotropic(),
@@ -50,19 +48,20 @@ impl MeasuredTables {
             vndf: Interpolant::density(&written.vndf, [phi, theta]),
             luminance: Interpolant::density(&written.luminance, [phi, theta]),
             spectra: Interpolant::plain(&written.spectra, [phi, theta, wavelengths]),
-            colors: Interpolant::plain(&colors(written), [phi, theta, &[0.0, 1.0, 2.0]]),
+            colors: Interpolant::plain(&colors(written, of_wavelengths), [phi, theta, &[0.0, 1.0, 2.0]]),
             digest: written.digest.clone(),
         }
     }
 
     /// The compiled tables of a file, which are kept as long as the process, once for each content: BSDFs are copied, and refer to them.
-    pub fn kept(written: &written::Measured) -> &'static Self {
+    /// As [`Self::new`].
+    pub fn kept(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> &'static Self {
         static KEPT: Mutex<Vec<&'static MeasuredTables>> = Mutex::new(Vec::new());
         let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
         match kept.iter().find(|tables| tables.digest == written.digest) {
             Some(tables) => tables,
             None => {
-                let tables: &'static Self = Box::leak(Box::new(Self::new(written)));
+                let tables: &'static Self = Box::leak(Box::new(Self::new(written, of_wavelengths)));
                 kept.push(tables);
                 tables
             }
@@ -72,7 +71,7 @@ impl MeasuredTables {
     /// The fraction of light from all around that is reflected straight up, in linear Rec. 709.
     pub(crate) fn albedo(&'static self) -> [f32; 3] {
         const COUNT: u32 = 256;
-        let bsdf = Measured::new(self, &SpectralMode::Rgb);
+        let bsdf = Measured::new(self, None);
         let numbers =
             |index: u32| [(index as f32 + 0.5) / COUNT as f32, index.reverse_bits() as f32 * 2_f32.powi(-32)];
         let mut sum = Spectrum::BLACK;
@@ -86,36 +85,16 @@ impl MeasuredTables {
     }
 }
 
-/// Spectra as colours in linear Rec. 709 under daylight, in place of three wavelengths.
-fn colors(written: &written::Measured) -> written::Table {
-    let wavelengths = &written.wavelengths;
-    let daylight = standard_illuminant();
-    // The colour of the piecewise linear function that is 1 at one of the wavelengths.
-    let colors: Vec<[f32; 3]> = (0..wavelengths.len())
-        .map(|index| {
-            let at = |nm: f32| {
-                let between = |one: usize, other: usize| match wavelengths.get(other) {
-                    Some(other) => 1.0 - (nm - wavelengths[one]) / (other - wavelengths[one]),
-                    None => 1.0,
-                };
-                let hat = match nm < wavelengths[index] {
-                    true => between(index, index.wrapping_sub(1)),
-                    false => between(index, index + 1),
-                };
-                hat.max(0.0)
-            };
-            let lit = std::array::from_fn(|i| at(360.0 + i as f32) * daylight.samples()[i]);
-            DenselySampledSpectrum::from_samples(lit).to_rgb()
-        })
-        .collect();
+/// Spectra as colours, in place of three wavelengths.
+fn colors(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> written::Table {
     let area = written.spectra.area();
-    let mut values = Vec::with_capacity(written.spectra.values.len() / wavelengths.len() * 3);
-    for tables in written.spectra.values.chunks(area * wavelengths.len()) {
+    let count = written.wavelengths.len();
+    let mut values = Vec::with_capacity(written.spectra.values.len() / count * 3);
+    for tables in written.spectra.values.chunks(area * count) {
         for channel in 0..3 {
             values.extend((0..area).map(|place| {
-                let terms =
-                    colors.iter().enumerate().map(|(k, color)| color[channel] * tables[k * area + place]);
-                terms.sum::<f32>().max(0.0)
+                let terms = of_wavelengths.iter().enumerate();
+                terms.map(|(k, color)| color[channel] * tables[k * area + place]).sum::<f32>().max(0.0)
             }));
         }
     }
@@ -144,12 +123,8 @@ struct Seen {
 }
 
 impl Measured {
-    /// By its tables, for a sample.
-    pub fn new(tables: &'static MeasuredTables, mode: &SpectralMode) -> Self {
-        let wavelengths = match mode {
-            SpectralMode::Rgb => None,
-            SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda()),
-        };
+    /// By its tables, for the wavelengths of a sample in nm; without them, for red, green and blue.
+    pub fn new(tables: &'static MeasuredTables, wavelengths: Option<[f32; 4]>) -> Self {
         Self { tables, wavelengths }
     }
 

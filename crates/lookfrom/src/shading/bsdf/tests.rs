@@ -9,7 +9,6 @@ use super::whitted::WhittedBsdf;
 use super::*;
 use crate::core::hash;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
-use crate::shading::texture::SpectralMode;
 use std::f32::consts::PI;
 use std::f64::consts::TAU;
 
@@ -95,8 +94,8 @@ fn measured(azimuths: usize) -> Bsdf {
         digest: format!("made for tests, {azimuths}"),
     };
     assert!(written.is_consistent());
-    let tables = measured::MeasuredTables::kept(&written);
-    Bsdf::Measured(measured::Measured::new(tables, &SpectralMode::Rgb))
+    let tables = measured::MeasuredTables::kept(&written, &[[0.2, 0.3, 0.9], [0.8, 0.7, 0.1]]);
+    Bsdf::Measured(measured::Measured::new(tables, None))
 }
 
 fn whitted() -> WhittedBsdf {

@@ -10,9 +10,8 @@ use super::kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
     Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
-use super::{Material, albedo, approximate, pictures, principled};
+use super::{Material, albedo, approximate, measured, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
-use crate::shading::bsdf::measured::MeasuredTables;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bssrdf::table::ProfileTable;
@@ -98,7 +97,7 @@ impl<'a> Compiler<'a> {
                 MaterialKind::Mix { materials: materials.map(|id| id.0), amount: (*amount).into() }
             }
             Written::Hair(hair) => MaterialKind::Hair(Box::new(self.hair(hair))),
-            Written::Measured(measured) => MaterialKind::Measured(MeasuredTables::kept(measured)),
+            Written::Measured(measured) => MaterialKind::Measured(measured::tables(measured)),
             Written::Subsurface(below) => MaterialKind::Subsurface(Box::new(self.subsurface(below))),
             Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
             Written::Unlit { color } => MaterialKind::Unlit {

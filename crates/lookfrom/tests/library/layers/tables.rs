@@ -44,7 +44,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("footprint", "interaction texture"),
     (
         "material",
-        "bsdf bssrdf footprint interior_stack math optics points spectrum interaction texture vector warp",
+        "bsdf bssrdf color elementary footprint interior_stack math optics points spectrum interaction texture vector warp",
     ),
     ("primitive", "lanes math points interaction texture vector warp"),
     (
@@ -125,7 +125,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "budget camera material warning",
             "contents files",
             "digest inputs packed spectrum",
-            "excerpt image medium",
+            "excerpt image measured medium",
             "atmosphere lens light settings",
             "shape texture",
             "composite scene text",
@@ -145,6 +145,7 @@ pub(super) const LADDERS: &[Ladder] = &[
                 "camera > scene, light > scene, material > scene, medium > scene, shape > scene, texture > scene",
             ),
             ("a camera's lens system has the picture of its aperture", "camera > lens"),
+            ("a measured material has its tables", "material > measured"),
             (
                 "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
                 "spectrum > model, model > format, model > obj, model > ply, model > source, model > stl, model > subdivision",
