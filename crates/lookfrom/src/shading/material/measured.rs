@@ -35,7 +35,7 @@ fn color(wavelengths: &[f32], index: usize) -> [f32; 3] {
 impl Evaluator<'_> {
     /// The BSDF for the wavelengths of the sample.
     pub(super) fn measured(&self, tables: &'static MeasuredTables) -> Measured {
-        let wavelengths = match self.mode {
+        let wavelengths = match &*self.mode {
             SpectralMode::Rgb => None,
             SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda()),
         };
