@@ -35,6 +35,30 @@ async function filesIn(...folders) {
     return files.sort();
 }
 
+/** Words of a guide as comments of a scene, in lines that the editor shows whole. */
+const comments = (words) => words.replace(/\[([^\]]*)\]\([^)]*\)/g, "$1").trim().split(/\n\n+/)
+    .map((paragraph) => [...paragraph.replace(/\s+/g, " ").matchAll(/(.{1,56})(?: |$)/g)].map(([, line]) => `# ${line}`).join("\n")).join("\n#\n");
+
+/** The tutorial as a path through the editor: after each of its blocks the scene so far, with its words as comments. */
+async function tutorial() {
+    const guide = await readFile(join(root, "docs/guide/tutorial.md"), "utf8");
+    const steps = [];
+    let whole = "";
+    for (const section of guide.split(/^## /m).slice(1)) {
+        const [words, ...blocks] = section.split("```toml\n");
+        const [title, ...introduction] = words.split("\n");
+        let before = introduction.join("\n");
+        for (const [index, block] of blocks.entries()) {
+            const [scene, after] = block.split("```\n");
+            whole += `${whole && "\n"}${index === 0 ? `# ${title}\n#\n` : ""}${comments(before)}\n\n${scene}`;
+            before = after;
+        }
+        // The first has no shape yet.
+        if (blocks.length > 0 && whole.includes("[[")) steps.push({ path: `tutorial/${steps.length + 1}.toml`, title: `${steps.length + 1}. ${title}`, text: whole });
+    }
+    return steps;
+}
+
 /** The scenes, each with a title and its group, and all files that they may name. */
 async function scenes() {
     const paths = (await filesIn("scenes", "docs/guide/scenes")).filter((path) => /\.(toml|pbrt|obj|ply|png|hdr|ies|ttf|gltf|bin|jpg|ktx2)$/.test(path));
@@ -48,6 +72,10 @@ async function scenes() {
     const titled = (path, group, prefix) => ({ path, group, title: path.slice(prefix.length).replace(/\.(toml|pbrt)$/, "").replaceAll("-", " ") });
     const shown = [["scenes/", "Scenes"], ["docs/guide/scenes/", "Guide"]].flatMap(([prefix, group]) =>
         paths.filter((path) => path.startsWith(prefix) && /^[^/]+\.(toml|pbrt)$/.test(path.slice(prefix.length))).map((path) => titled(path, group, prefix)));
+    for (const { path, title, text } of await tutorial()) {
+        files[path] = text;
+        shown.push({ path, group: "Tutorial: a still life", title });
+    }
     const first = shown.find(({ path }) => path.endsWith("/notes-exercise.toml"));
     return JSON.stringify({ scenes: [first, ...shown.filter((scene) => scene !== first)], files });
 }

@@ -336,3 +336,25 @@ test("wherever a scene of the repository has a key, that key would have been off
     }
     assert.ok(count > 500, `${count} keys`);
 });
+
+test("the tutorial is a path through the editor: each of its steps is a scene, and says what is new", async () => {
+    const { page, context, errors } = await open(browser, `${FILE}#${SMALL}`);
+    await finished(page);
+    const steps = await page.locator('#examples optgroup[label^="Tutorial"] option').evaluateAll((options) => options.map(({ value }) => value));
+    assert.equal(steps.length, 7);
+    await page.getByRole("tab", { name: "Scene" }).click();
+    let before = "";
+    for (const step of steps) {
+        await page.locator("#examples").selectOption(step);
+        await until(`the picture of ${step}`, async () => page.url().includes(encodeURIComponent(step)) || page.url().includes(step));
+        await until(`the text of ${step}`, async () => (await page.getByLabel("Text of the scene").inputValue()).length > before.length);
+        await page.locator("#failure").waitFor({ state: "hidden" });
+        const text = await page.getByLabel("Text of the scene").inputValue();
+        assert.ok(text.startsWith(before), "each step goes on from the one before");
+        assert.match(text.slice(before.length), /^\n?# \w/);
+        before = text;
+    }
+    await screenshot(page, "web-tutorial");
+    assert.deepEqual(errors, []);
+    await context.close();
+});
