@@ -136,6 +136,12 @@ test("each step of the course has something to drag, by keys too", async () => {
     }
     // The sphere of step 5, off its ray and back to its origin.
     await page.getByLabel("Lesson").selectOption({ label: "5. A ray and a sphere" });
+    // A new depth has asked for the sample anew; its answer draws the step again.
+    await until("the step rests", async () => {
+        const before = await text();
+        await new Promise((resolve) => setTimeout(resolve, 500));
+        return (await text()) === before && (await page.locator("#picture").getAttribute("data-done")) === "true";
+    });
     const box = await page.getByRole("slider", { name: "The centre of the sphere" }).boundingBox();
     const drag = async (right, down) => {
         const [x, y] = [box.x + box.width / 2, box.y + box.height / 3];
@@ -147,9 +153,9 @@ test("each step of the course has something to drag, by keys too", async () => {
     const words = () => page.locator(".lesson .number.centred").textContent();
     assert.match((await words()) ?? "", /two roots, the nearer one counts/);
     await drag(0, -90);
-    assert.match((await words()) ?? "", /no real root/);
+    await until("the ray misses", async () => /no real root/.test((await words()) ?? ""));
     await drag(-box.width, 90);
-    assert.match((await words()) ?? "", /the origin is in the sphere|behind the origin/);
+    await until("the sphere is at the origin", async () => /the origin is in the sphere|behind the origin/.test((await words()) ?? ""));
     // The camera of step 3, which the picture follows.
     await page.getByLabel("Lesson").selectOption({ label: "3. The exercise: M_vw = I" });
     const verdict = page.locator("#exercise-verdict");
