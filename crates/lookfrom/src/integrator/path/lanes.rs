@@ -164,7 +164,7 @@ impl Waiting {
     }
 
     /// Takes a path that has arrived at an interface of media which it may cross beside others.
-    #[inline]
+    #[inline(always)]
     pub(super) fn takes_at_interface(&mut self, world: &World, path: &Path, hit: &Hit) -> bool {
         let Some(kind) = Interfaces::kind(world, hit).filter(|_| self.in_lanes) else { return false };
         self.interfaces.push(kind, self.at_interfaces.len());
