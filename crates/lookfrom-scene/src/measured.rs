@@ -31,7 +31,7 @@ pub struct Measured {
     pub vndf: Table,
     /// The density of normals by what they reflect, over the numbers that choose one of [`Self::vndf`]; for each φ and θ.
     pub luminance: Table,
-    /// What is reflected at each wavelength, over the same numbers; for each φ, θ and wavelength.
+    /// The reflectance at each wavelength, over the same numbers; for each φ, θ and wavelength.
     pub spectra: Table,
     /// The digest of the file: equal tables have the same.
     pub digest: String,

@@ -196,7 +196,7 @@ impl ViewRender {
         self.film.is_some() && self.stage == Stage::Done
     }
 
-    /// How far the view of this number is.
+    /// The progress of the view of this number.
     pub(crate) fn progress(&self, view: u64) -> Answer {
         let seconds = self.spent.as_secs_f64();
         Answer::Progress {

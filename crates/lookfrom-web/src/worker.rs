@@ -22,9 +22,9 @@ const MEMORY: u64 = 3 << 30;
 
 /// A worker: texts and files in, messages out.
 pub(crate) struct Worker {
-    /// What the page writes before it calls.
+    /// The arguments of a call, written by the page before it.
     pub(crate) input: Vec<u8>,
-    /// What the page reads after a call.
+    /// The result of a call, read by the page after it.
     pub(crate) output: Vec<u8>,
     files: Dropped,
     desk: Desk,

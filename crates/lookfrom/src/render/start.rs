@@ -81,7 +81,7 @@ impl Renderer {
         (self.view.camera.ray(point, two(LENS_DIMENSION)), weight)
     }
 
-    /// How the camera ray of a sample crosses the lens system, if the camera has one.
+    /// The crossings of the lens system by the camera ray of a sample, if the camera has one.
     pub(crate) fn crossings(&self, id: SampleId) -> Option<Vec<Crossing>> {
         let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
         let (point, _) = self.image_point(id.pixel.map(f64::from), two(sampler::PIXEL));

@@ -65,7 +65,7 @@ struct LensRay<F: Float> {
     p: Vector<F>,
     /// Of unit length.
     d: Vector<F>,
-    /// Where they crossed the stop, in x and y.
+    /// Their points in the plane of the stop, x and y.
     on_stop: [F; 2],
     passes: F::Mask,
 }
@@ -250,7 +250,7 @@ impl LensSystem {
         }
     }
 
-    /// How a ray from a point of the film, through the point of the exit pupil that `u` chooses, crosses each surface, from the
+    /// The crossings of each surface by a ray from a point of the film, through the point of the exit pupil that `u` chooses, from the
     /// film on, up to the one that blocks it: first the point of the film and the direction from there.
     pub fn crossings(&self, film: [f64; 2], u: [f32; 2]) -> Vec<Crossing> {
         let (on_rear, _) = self.on_rear_plane::<f32>(film, u);

@@ -26,7 +26,7 @@ pub struct MeasuredTables {
     vndf: Interpolant<2>,
     luminance: Interpolant<2>,
     spectra: Interpolant<3>,
-    /// What is reflected of red, green and blue, as wavelengths 0, 1 and 2 of a table.
+    /// Reflectances of red, green and blue, as wavelengths 0, 1 and 2 of a table.
     colors: Interpolant<3>,
     digest: String,
 }
