@@ -1,6 +1,5 @@
 //! The other end of a page without a server: one window, on the thread of its caller.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -41,11 +40,6 @@ impl Desk {
             _ => self.window = Some(Window::new(self.mailbox.clone(), document, Some(self.slice))),
         }
         self.mailbox.put(Task::SceneChanged);
-    }
-
-    /// The name of the scene that was opened last.
-    pub fn scene(&self) -> Option<&Path> {
-        self.window.as_ref().map(|window| window.document.settings().scene.as_path())
     }
 
     /// Takes a message of the page, which is answered at the next turn.
