@@ -5,6 +5,7 @@
 
 mod collapse;
 mod masks;
+mod moving;
 mod parallel;
 mod plan;
 mod primitives;
@@ -13,11 +14,13 @@ mod reinsert;
 mod sah;
 mod split;
 
+use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
+use crate::aabb::Aabb;
 use crate::affine::Affine;
-use crate::bvh::{Bvh, Instance};
+use crate::bvh::{Bvh, Instance, Moving};
 use crate::masks::Masks;
 use crate::node::Child;
 use crate::procedural::Procedural;
@@ -25,7 +28,7 @@ use crate::sphere::Sphere;
 use lookfrom_simd::level;
 
 use plan::Plan;
-use primitives::{Geometry, Primitives};
+use primitives::{Geometry, Part, Primitives};
 pub(crate) use primitives::{has_area, has_surface};
 
 /// Triangles with shared corners, borrowed while the builder copies them. Rays hit both faces.
@@ -79,6 +82,18 @@ pub enum Quality {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BuildError {
+    /// Something moves that has another number of times than all else that moves, or fewer than two.
+    TimeCount {
+        /// Its number.
+        times: usize,
+        /// The number of all else.
+        expected: usize,
+    },
+    /// A geometry that moves has different numbers of positions.
+    PositionCount {
+        /// The geometry.
+        geometry: u32,
+    },
     /// A triangle refers to a position that does not exist.
     IndexOutOfRange {
         /// The geometry, as the builder numbered it.
@@ -158,6 +173,17 @@ impl fmt::Display for BuildError {
             Self::MaskCount { geometry, masks, primitives } => {
                 write!(f, "geometry {geometry} has {primitives} primitives, but {masks} masks; give each one")
             }
+            Self::TimeCount { times, expected } => write!(
+                f,
+                "positions or maps at {times} times, where {expected} are expected; everything that moves in a tree has the \
+                 same number, at least 2"
+            ),
+            Self::PositionCount { geometry } => {
+                write!(
+                    f,
+                    "geometry {geometry} has different numbers of positions at its times; give each vertex one"
+                )
+            }
             Self::TooMany { primitives } => {
                 write!(
                     f,
@@ -198,6 +224,10 @@ pub struct Builder {
     geometries: Vec<Geometry>,
     instances: Arc<Vec<Instance>>,
     masks: Masks,
+    /// The number of times of what moves.
+    times: Option<usize>,
+    /// The maps of instances that move, by id.
+    motions: HashMap<u32, Box<[Affine]>>,
     error: Option<BuildError>,
 }
 
@@ -236,8 +266,13 @@ impl Builder {
     /// assert_eq!((builder.triangles(triangles), builder.triangles(triangles)), (0, 1));
     /// ```
     pub fn triangles(&mut self, triangles: Triangles<'_>) -> u32 {
-        let geometry = self.geometries.len() as u32;
-        let Triangles { positions, indices } = triangles;
+        let corners = self.corners(triangles);
+        self.geometries.push(Geometry::Triangles(corners));
+        self.geometries.len() as u32 - 1
+    }
+
+    /// The corners of the triangles of the next geometry; none where an index is out of range.
+    fn corners(&mut self, Triangles { positions, indices }: Triangles<'_>) -> Vec<[[f32; 3]; 3]> {
         let out_of_range =
             |indices: &[u32; 3]| indices.iter().copied().find(|&i| i as usize >= positions.len());
         let is_wrong = |indices: &[[u32; 3]]| indices.iter().any(|indices| out_of_range(indices).is_some());
@@ -245,17 +280,13 @@ impl Builder {
             let mut wrong =
                 indices.iter().enumerate().filter_map(|(i, indices)| Some((i, out_of_range(indices)?)));
             if let Some((triangle, index)) = wrong.next() {
-                let (triangle, positions) = (triangle as u32, positions.len());
-                let error = BuildError::IndexOutOfRange { geometry, triangle, index, positions };
-                self.error.get_or_insert(error);
+                let (geometry, triangle) = (self.geometries.len() as u32, triangle as u32);
+                let positions = positions.len();
+                self.fail(BuildError::IndexOutOfRange { geometry, triangle, index, positions });
             }
-            self.geometries.push(Geometry::Triangles(Vec::new()));
-            return geometry;
+            return Vec::new();
         }
-        let corners =
-            parallel::collect(indices.len(), parallel::GRAIN, |i| indices[i].map(|i| positions[i as usize]));
-        self.geometries.push(Geometry::Triangles(corners));
-        geometry
+        parallel::collect(indices.len(), parallel::GRAIN, |i| indices[i].map(|i| positions[i as usize]))
     }
 
     /// Adds spheres and returns their geometry's number.
@@ -353,10 +384,31 @@ impl Builder {
         if let Some(error) = &self.error {
             return Err(error.clone());
         }
-        let primitives = Primitives::new(&self.geometries, &self.instances)?;
+        let (maps, times) = self.maps();
+        let (mut bvh, mut bounds) = self.part(Part::Standing, &maps)?;
+        if let Some(times) = times {
+            let (topology, _) = self.part(Part::Moving, &maps)?;
+            let corners =
+                |time: usize, (geometry, primitive): (u32, u32)| match &self.geometries[geometry as usize] {
+                    Geometry::MovingTriangles(times) => times[time][primitive as usize],
+                    _ => [[0.0; 3]; 3],
+                };
+            let moving = Moving::new(topology, &self.instances, maps, times, corners);
+            bounds.unite(&moving.bounds);
+            bvh.moving = Some(Arc::new(moving));
+        }
+        bvh.set_bounds(bounds);
+        bvh.instances = self.instances.clone();
+        bvh.masks = self.masks.clone();
+        Ok(bvh)
+    }
+
+    /// The tree over what stands still, or over the boxes of what moves, and the box around that.
+    fn part(&self, part: Part, maps: &[Box<[Affine]>]) -> Result<(Bvh, Aabb), BuildError> {
+        let primitives = Primitives::new((&self.geometries, &self.instances), maps, part)?;
         let mut references = primitives.references();
         let bounds = primitives.bounds_of(&references);
-        let left_out = primitives.count() - references.len();
+        let left_out = primitives.count_in_part() - references.len();
         let mut binary = sah::build(&mut references, self.quality, level());
         let mut plan = Plan::new(&binary, &references);
         if self.quality == Quality::Best
@@ -369,10 +421,7 @@ impl Builder {
             }
         }
         let mut bvh = collapse::collapse(&binary, &plan, &references, &primitives);
-        bvh.set_bounds(bounds);
-        bvh.instances = self.instances.clone();
-        bvh.masks = self.masks.clone();
         bvh.statistics = bvh.count(left_out);
-        Ok(bvh)
+        Ok((bvh, bounds))
     }
 }

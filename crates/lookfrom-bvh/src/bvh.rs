@@ -12,9 +12,12 @@ use crate::procedural::Procedural;
 use crate::statistics::Statistics;
 use lookfrom_simd::{Level, level};
 
+mod fit;
 mod instance;
+mod moving;
 
 pub(crate) use instance::Instance;
+pub(crate) use moving::{Moment, Moving};
 
 /// A bounding volume hierarchy (BVH) for tracing rays. Made by a [`Builder`](crate::Builder); immutable, and shared
 /// between threads.
@@ -45,6 +48,8 @@ pub struct Bvh {
     /// By id, as the builder numbered them; shared with the builder.
     pub(crate) instances: Arc<Vec<Instance>>,
     pub(crate) masks: Masks,
+    /// What moves, if anything does.
+    pub(crate) moving: Option<Arc<Moving>>,
     pub(crate) bounds: Aabb,
     pub(crate) statistics: Statistics,
     /// The largest coordinate of a triangle.
@@ -66,6 +71,7 @@ impl Default for Bvh {
             procedural_shapes: Vec::new(),
             instances: Arc::default(),
             masks: Masks::default(),
+            moving: None,
             bounds: Aabb::EMPTY,
             statistics: Statistics::default(),
             largest: 0.0,
@@ -75,7 +81,7 @@ impl Default for Bvh {
 }
 
 impl Bvh {
-    /// The box around everything; [`Aabb::EMPTY`] for an empty tree.
+    /// The box around everything, at all times; [`Aabb::EMPTY`] for an empty tree.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};
@@ -89,7 +95,7 @@ impl Bvh {
         self.bounds
     }
 
-    /// The map of an instance, world from object.
+    /// The map of an instance, world from object; of one that moves, at the time 0.
     ///
     /// # Panics
     /// If there is no such instance.
@@ -106,6 +112,31 @@ impl Bvh {
     #[inline]
     pub fn instance_map(&self, instance: u32) -> &Affine {
         &self.instances[instance as usize].world_from_object
+    }
+
+    /// The map of an instance that moves ([`Builder::moving_instance`](crate::Builder::moving_instance), or an instance of a
+    /// tree in which something moves) at a time, world from object; `None` for others.
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Affine, Builder};
+    /// # use std::sync::Arc;
+    /// # let mut builder = Builder::new();
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// let instance = builder.moving_instance(Arc::new(Builder::new().build()?), &[Affine::IDENTITY, up]);
+    /// assert_eq!(builder.build()?.instance_map_at(instance, 0.5).unwrap().translation, [0.0, 0.0, 2.0]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn instance_map_at(&self, instance: u32, time: f32) -> Option<Affine> {
+        self.moving.as_ref()?.map(instance, time)
+    }
+
+    /// Whether anything in the tree moves, so that queries depend on the time ([`Query::times`](crate::Query::times)).
+    ///
+    /// ```
+    /// assert!(!lookfrom_bvh::Bvh::default().is_moving());
+    /// ```
+    pub fn is_moving(&self) -> bool {
+        self.moving.is_some()
     }
 
     /// The tree of an instance, which others may share.
@@ -155,9 +186,10 @@ impl Bvh {
             + size_of_val(&*self.procedural_shapes)
             + size_of_val(&*self.instances)
             + self.masks.memory()
+            + self.moving.as_ref().map_or(0, |moving| moving.memory())
     }
 
-    /// Statistics of the tree, counted when it was built.
+    /// Statistics of the tree without what moves, counted when it was built.
     ///
     /// ```
     /// # use lookfrom_bvh::{Builder, Ray, Sphere};

@@ -15,6 +15,12 @@ pub(crate) trait Collector {
 
     /// Takes a hit beyond the ray's `t_min`. Returns true if no more hits are needed.
     fn commit(&mut self, hit: Hit) -> bool;
+
+    /// Whether no more hits are needed.
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        false
+    }
 }
 
 /// A query of packets: its state is restored ray by ray.
@@ -37,6 +43,9 @@ pub(crate) trait BatchQuery: PacketCollector {
     fn start(ray: &Ray) -> Self;
 
     fn result(&self) -> Self::Result;
+
+    /// The state after a part of the tree, which gave this result.
+    fn after(ray: &Ray, result: &Self::Result) -> Self;
 
     /// The places of the closest hits of a packet with these results; none for any-hit queries.
     fn hits_of(results: &mut [Self::Result]) -> &mut [Hit];
@@ -103,6 +112,11 @@ impl BatchQuery for ClosestHit {
     }
 
     #[inline(always)]
+    fn after(ray: &Ray, hit: &Hit) -> Self {
+        Self::resume(ray, *hit, ray.t_max)
+    }
+
+    #[inline(always)]
     fn hits_of(hits: &mut [Hit]) -> &mut [Hit] {
         hits
     }
@@ -129,6 +143,11 @@ impl Collector for AnyHit {
     #[inline(always)]
     fn commit(&mut self, hit: Hit) -> bool {
         self.found |= hit.t < self.t_max;
+        self.found
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
         self.found
     }
 }
@@ -161,6 +180,11 @@ impl BatchQuery for AnyHit {
     #[inline(always)]
     fn result(&self) -> bool {
         self.found
+    }
+
+    #[inline(always)]
+    fn after(ray: &Ray, found: &bool) -> Self {
+        Self { t_max: ray.t_max, found: *found }
     }
 
     #[inline(always)]

@@ -157,6 +157,34 @@ impl TriangleBlock {
         block
     }
 
+    /// This block with its corners on the way to those of another with the same triangles.
+    #[inline(always)]
+    pub(crate) fn between(&self, later: &Self, fraction: f32) -> Self {
+        let (part, rest) = (fraction, 1.0 - fraction);
+        let mut block = self.clone();
+        for corner in 0..3 {
+            for axis in 0..3 {
+                let [a, b] = [&self.corners[corner][axis], &later.corners[corner][axis]];
+                for lane in 0..BLOCK {
+                    block.corners[corner][axis][lane] = a[lane] * rest + b[lane] * part;
+                }
+            }
+        }
+        let mut extent = [0.0_f32; BLOCK];
+        for corner in 1..3 {
+            for axis in 0..3 {
+                for lane in 0..BLOCK {
+                    let edge = block.corners[corner][axis][lane] - block.corners[0][axis][lane];
+                    extent[lane] = extent[lane].max(edge.abs());
+                }
+            }
+        }
+        for lane in 0..BLOCK {
+            block.extent[lane] = if self.extent[lane] == UNUSED { UNUSED } else { extent[lane] };
+        }
+        block
+    }
+
     /// The corners of all triangles, `[corner][axis]`, and their extents.
     #[inline(always)]
     pub(crate) fn lanes<S: Simd>(&self, simd: S) -> TriangleLanes<S> {

@@ -22,6 +22,7 @@ mod interleaved;
 mod item;
 mod lanes;
 mod masks;
+mod moving;
 mod nearest;
 mod node;
 mod observer;

@@ -161,6 +161,34 @@ impl Node {
         f32x8::load_array_ref(simd, &self.bounds[axis][side & 1])
     }
 
+    /// Pads the boxes of all children.
+    pub(crate) fn pad(&mut self) {
+        for slot in 0..WIDTH {
+            let bounds = self.child_bounds(slot);
+            if !bounds.is_empty() {
+                self.place(slot, &bounds.padded(), self.child(slot));
+            }
+        }
+    }
+
+    /// This node with its boxes on the way to those of another with the same children.
+    #[inline(always)]
+    pub(crate) fn between(&self, later: &Self, fraction: f32) -> Self {
+        let (part, rest) = (fraction, 1.0 - fraction);
+        let mut node = self.clone();
+        for axis in 0..3 {
+            for side in 0..2 {
+                for slot in 0..WIDTH {
+                    let [a, b] = [self.bounds[axis][side][slot], later.bounds[axis][side][slot]];
+                    // Empty boxes stay as they are: infinite.
+                    let mixed = a * rest + b * part;
+                    node.bounds[axis][side][slot] = if a.is_finite() { mixed } else { a };
+                }
+            }
+        }
+        node
+    }
+
     /// Asks for all of the node's cache lines ahead of a visit.
     #[inline(always)]
     pub(crate) fn prefetch(&self) {

@@ -68,7 +68,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hit(&self, ray: &Ray) -> Hit {
-        single::closest_hit_of_everything(self, ray)
+        single::closest_hit_of_everything(self, ray, 0.0)
     }
 
     /// True if anything is hit in the ray's range.
@@ -83,7 +83,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded(&self, ray: &Ray) -> bool {
-        single::occluded_by_everything(self, ray)
+        single::occluded_by_everything(self, ray, 0.0)
     }
 
     /// [`Self::closest_hit`] for each ray, on several threads where there are many. Coherent rays are traced in
@@ -194,6 +194,45 @@ impl<'a, O> Query<'a, O> {
     /// ```
     pub fn origins(mut self, origins: &'a [OriginPrimitive]) -> Self {
         self.settings.origins = origins;
+        self
+    }
+
+    /// The time of all rays, 0 … 1, for what moves ([`Builder::moving_triangles`](crate::Builder::moving_triangles),
+    /// [`Builder::moving_instance`](crate::Builder::moving_instance)); 0 without it.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// let mut builder = Builder::new();
+    /// builder.moving_instance(ball.build()?.into(), &[Affine::IDENTITY, up]);
+    /// let (bvh, ray) = (builder.build()?, Ray::new([0.0; 3], [0.0, 0.0, 1.0]));
+    /// assert_eq!(bvh.query().time(0.5).closest_hit(&ray).t, 1.0);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn time(mut self, time: f32) -> Self {
+        self.settings.time = time;
+        self
+    }
+
+    /// The time of each ray, in the order of the rays; those beyond the end have that of [`Self::time`].
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Hit, Ray, Sphere};
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// let mut builder = Builder::new();
+    /// builder.moving_instance(ball.build()?.into(), &[Affine::IDENTITY, up]);
+    /// let (bvh, ray) = (builder.build()?, Ray::new([0.0, 0.0, -2.0], [0.0, 0.0, 1.0]));
+    /// let mut hits = [Hit::MISS; 2];
+    /// bvh.query().times(&[0.0, 1.0]).closest_hits(&[ray, ray], &mut hits);
+    /// assert_eq!(hits.map(|hit| hit.t), [1.0, 5.0]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn times(mut self, times: &'a [f32]) -> Self {
+        self.settings.times = times;
         self
     }
 

@@ -7,12 +7,9 @@
 
 use std::fmt;
 
-use crate::aabb::Aabb;
 use crate::build::{Triangles, has_area, has_surface};
-use crate::bvh::{Bvh, Instance};
+use crate::bvh::Bvh;
 use crate::conservative::TriangleBlock;
-use crate::item::Leaf;
-use crate::node::{Content, WIDTH};
 use crate::sphere::Sphere;
 
 /// The new positions of a geometry: all of its primitives, in the order in which they were added.
@@ -88,8 +85,8 @@ impl fmt::Display for RefitError {
 impl std::error::Error for RefitError {}
 
 impl Bvh {
-    /// Moves geometries of this tree and refits its boxes. Other geometries stay where they are. Of several motions
-    /// of one geometry the last counts.
+    /// Moves geometries of this tree and refits its boxes. Other geometries stay where they are, or move in time as before. Of
+    /// several motions of one geometry the last counts.
     ///
     /// The results of queries are those of a new tree. The time is proportional to the whole tree, a small part of
     /// the build time.
@@ -120,7 +117,11 @@ impl Bvh {
         if self.nodes.is_empty() {
             return Ok(());
         }
-        let [exact, _] = self.fit(0);
+        let instances = self.instances.clone();
+        let [mut exact, _] = self.fit(0, &|id| instances[id].bounds());
+        if let Some(moving) = &self.moving {
+            exact.unite(&moving.bounds);
+        }
         self.set_bounds(exact);
         self.statistics = self.count(self.statistics.left_out);
         Ok(())
@@ -184,53 +185,6 @@ impl Bvh {
             item.shape = spheres[item.primitive as usize];
         }
     }
-
-    /// Refits the boxes of a node and of all below it. Returns the box around their primitives, and the node's own,
-    /// which contains the primitives' padded boxes.
-    fn fit(&mut self, number: usize) -> [Aabb; 2] {
-        let mut all = [Aabb::EMPTY; 2];
-        for slot in 0..WIDTH {
-            let kept = self.nodes[number].child_bounds(slot);
-            if kept.is_empty() {
-                continue;
-            }
-            let child = self.nodes[number].child(slot);
-            let [exact, padded] = match child.content() {
-                Content::Node(below) => self.fit(below),
-                Content::Triangles(block) => {
-                    let block = &self.triangles[block];
-                    around((0..block.count()).map(|lane| Aabb::around(&block.corners(lane))))
-                }
-                Content::Leaf(leaf) => match self.leaves[leaf] {
-                    Leaf::Spheres { first, count } => {
-                        let range = first as usize..(first + count) as usize;
-                        around(self.spheres[range].iter().map(|item| item.shape.bounds()))
-                    }
-                    Leaf::Procedurals { .. } => [kept; 2],
-                    Leaf::Instances { first, count } => {
-                        let range = first as usize..(first + count) as usize;
-                        around(self.instances[range].iter().map(Instance::bounds))
-                    }
-                },
-            };
-            self.nodes[number].place(slot, &padded, child);
-            if let Content::Leaf(leaf) = child.content() {
-                self.leaf_bounds[leaf] = padded;
-            }
-            all[0].unite(&exact);
-            all[1].unite(&padded);
-        }
-        all
-    }
-}
-
-/// The box around some boxes, and the box around these boxes padded.
-fn around(boxes: impl Iterator<Item = Aabb>) -> [Aabb; 2] {
-    boxes.fold([Aabb::EMPTY; 2], |[mut exact, mut padded], bounds| {
-        exact.unite(&bounds);
-        padded.unite(&bounds.padded());
-        [exact, padded]
-    })
 }
 
 /// For each triangle, whether rays can hit it.

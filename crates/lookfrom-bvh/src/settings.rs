@@ -16,6 +16,9 @@ pub struct Settings<'a> {
     /// The origin primitive of rays for which `origins` has none.
     pub(crate) origin: OriginPrimitive,
     pub(crate) origins: &'a [OriginPrimitive],
+    /// The time of rays for which `times` has none.
+    pub(crate) time: f32,
+    pub(crate) times: &'a [f32],
 }
 
 /// The kind of visibility that settings need; each has a type in `visibility`.
@@ -35,6 +38,8 @@ impl<'a> Settings<'a> {
             crossings: false,
             origin: OriginPrimitive::NONE,
             origins: &[],
+            time: 0.0,
+            times: &[],
         }
     }
 
@@ -55,8 +60,15 @@ impl<'a> Settings<'a> {
         self.origins.get(number).copied().unwrap_or(self.origin)
     }
 
+    /// The time of the ray with index `number`.
+    #[inline(always)]
+    pub(crate) fn time_of(&self, number: usize) -> f32 {
+        self.times.get(number).copied().unwrap_or(self.time)
+    }
+
     /// Settings for the rays from the index `first` on.
     pub(crate) fn from(self, first: usize) -> Self {
-        Self { origins: self.origins.get(first..).unwrap_or_default(), ..self }
+        let origins = self.origins.get(first..).unwrap_or_default();
+        Self { origins, times: self.times.get(first..).unwrap_or_default(), ..self }
     }
 }

@@ -4,6 +4,7 @@ use crate::batch;
 use crate::bvh::Bvh;
 use crate::collector::{AllHits, AnyHit, BatchQuery, ClosestHit, Collector};
 use crate::dispatch::dispatch;
+use crate::moving::continued;
 use crate::observer::Observer;
 use crate::ray::{Hit, Ray};
 use crate::settings::{Settings, VisibilityKind};
@@ -17,6 +18,7 @@ use lookfrom_simd::{Kernel, Simd};
 struct Trace<'a, F, V, O> {
     bvh: &'a Bvh,
     ray: &'a Ray,
+    time: f32,
     start: F,
     visibility: V,
     observer: O,
@@ -26,17 +28,23 @@ impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Observer> Ker
     type Output = C;
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> C {
-        let Self { bvh, ray, start, visibility, observer } = self;
+        let Self { bvh, ray, time, start, visibility, mut observer } = self;
         with_stack(
             #[inline(always)]
-            |stack| trace(simd, bvh, ray, start, visibility, observer, stack),
+            |stack| {
+                let collector = trace(simd, bvh, ray, start, visibility, &mut observer, stack);
+                match bvh.moving.is_some() {
+                    false => collector,
+                    true => continued(simd, bvh, (ray, time), collector, (visibility, observer), stack),
+                }
+            },
         )
     }
 }
 
 #[inline(always)]
-fn trace_everything<C: Collector>(bvh: &Bvh, ray: &Ray, start: impl FnOnce(&Ray) -> C) -> C {
-    dispatch(bvh.level, Trace { bvh, ray, start, visibility: Everything, observer: () })
+fn trace_everything<C: Collector>(bvh: &Bvh, (ray, time): (&Ray, f32), start: impl FnOnce(&Ray) -> C) -> C {
+    dispatch(bvh.level, Trace { bvh, ray, time, start, visibility: Everything, observer: () })
 }
 
 /// The general case, with any settings.
@@ -47,24 +55,24 @@ fn trace_selected<C: Collector>(
     start: impl FnOnce(&Ray) -> C,
     observer: impl Observer,
 ) -> C {
-    let bvh = settings.bvh;
-    dispatch(bvh.level, Trace { bvh, ray, start, visibility: Masked::of(settings, 0), observer })
+    let (bvh, time) = (settings.bvh, settings.time_of(0));
+    dispatch(bvh.level, Trace { bvh, ray, time, start, visibility: Masked::of(settings, 0), observer })
 }
 
 /// The closest hit in the whole tree.
-pub(crate) fn closest_hit_of_everything(bvh: &Bvh, ray: &Ray) -> Hit {
-    trace_everything(bvh, ray, ClosestHit::start).hit
+pub(crate) fn closest_hit_of_everything(bvh: &Bvh, ray: &Ray, time: f32) -> Hit {
+    trace_everything(bvh, (ray, time), ClosestHit::start).hit
 }
 
 /// True if anything in the tree is hit.
-pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray) -> bool {
-    trace_everything(bvh, ray, AnyHit::start).found
+pub(crate) fn occluded_by_everything(bvh: &Bvh, ray: &Ray, time: f32) -> bool {
+    trace_everything(bvh, (ray, time), AnyHit::start).found
 }
 
 /// The closest hit.
 pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
     if let VisibilityKind::Everything = settings.visibility_kind() {
-        return closest_hit_of_everything(settings.bvh, ray);
+        return closest_hit_of_everything(settings.bvh, ray, settings.time_of(0));
     }
     let mut hit = [Hit::MISS];
     batch::closest_hits(settings, &[*ray], &mut hit);
@@ -74,7 +82,7 @@ pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &Ray) -> Hit {
 /// True if there is a hit.
 pub(crate) fn occluded(settings: &Settings<'_>, ray: &Ray) -> bool {
     if let VisibilityKind::Everything = settings.visibility_kind() {
-        return occluded_by_everything(settings.bvh, ray);
+        return occluded_by_everything(settings.bvh, ray, settings.time_of(0));
     }
     let mut occluded = [false];
     batch::occluded_many(settings, &[*ray], &mut occluded);
@@ -86,7 +94,7 @@ pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) 
     let room = std::mem::take(hits);
     let all = move |ray: &Ray| AllHits::new(ray, room);
     *hits = match settings.visibility_kind() {
-        VisibilityKind::Everything => trace_everything(settings.bvh, ray, all).hits,
+        VisibilityKind::Everything => trace_everything(settings.bvh, (ray, settings.time_of(0)), all).hits,
         _ => trace_selected(settings, ray, all, ()).hits,
     };
     sort(hits);

@@ -252,6 +252,21 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
     false
 }
 
+/// Tests the triangles of a block that lasts only for the test.
+#[inline(always)]
+pub(crate) fn test_block<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    simd: S,
+    block: &TriangleBlock,
+    ray_lanes: &RayLanes<S>,
+    exact: &ExactRay,
+    end: &mut f32,
+    state: &mut TraversalState<C, V, O>,
+) -> bool {
+    let mut deferred = None;
+    triangles(simd, block, ray_lanes, || *exact, end, &mut deferred, state)
+        || deferred.is_some_and(|hit| intersect_sure(hit.block, hit.lane, || *exact, state))
+}
+
 /// A sure hit with bounds of its distance, whose exact test is deferred.
 struct DeferredHit<'a> {
     block: &'a TriangleBlock,

@@ -4,9 +4,12 @@
 //! rays whose numbers are f32 the results agree with single precision, but are finer: hits at equal t in f32 are
 //! distinguished.
 
+use std::borrow::Cow;
+
 use crate::aabb::Aabb;
 use crate::batch::for_each;
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Moment, Moving};
+use crate::conservative::TriangleBlock;
 use crate::exact::ExactRay;
 use crate::item::Leaf;
 use crate::node::{Child, Content, Node, WIDTH};
@@ -80,11 +83,41 @@ fn traverse(
 ) {
     let bvh = settings.bvh;
     let exact = ExactRay { origin: ray.origin, direction: ray.direction, t_min: ray.t_min };
-    if ray.t_min < ray.t_max && !bvh.nodes.is_empty() && is_usable(&exact) {
+    if ray.t_min < ray.t_max && is_usable(&exact) {
         let visibility = Masked::of(settings, 0);
-        let mut traversal =
-            Traversal { outer: bvh, ray, end: ray.t_max, visibility, observer, commit: &mut commit };
-        traversal.node(bvh, &exact, NONE, 0);
+        let (time, commit) = (settings.time_of(0), &mut commit);
+        let mut traversal = Traversal { outer: bvh, ray, time, end: ray.t_max, visibility, observer, commit };
+        traversal.tree(bvh, &exact, NONE);
+    }
+}
+
+/// A tree, or its moving part at a moment.
+#[derive(Clone, Copy)]
+enum Part<'t> {
+    Standing(&'t Bvh),
+    Moving(&'t Moving, Moment),
+}
+
+impl<'t> Part<'t> {
+    fn node(self, number: usize) -> Cow<'t, Node> {
+        match self {
+            Self::Standing(bvh) => Cow::Borrowed(&bvh.nodes[number]),
+            Self::Moving(moving, moment) => Cow::Owned(moving.node(number, moment)),
+        }
+    }
+
+    fn block(self, number: usize) -> Cow<'t, TriangleBlock> {
+        match self {
+            Self::Standing(bvh) => Cow::Borrowed(&bvh.triangles[number]),
+            Self::Moving(moving, moment) => Cow::Owned(moving.block(number, moment)),
+        }
+    }
+
+    fn leaf(self, number: usize) -> Leaf {
+        match self {
+            Self::Standing(bvh) => bvh.leaves[number],
+            Self::Moving(moving, _) => moving.leaves[number],
+        }
     }
 }
 
@@ -93,6 +126,7 @@ struct Traversal<'a, O> {
     outer: &'a Bvh,
     /// The ray in world space.
     ray: &'a RayF64,
+    time: f32,
     /// Hits beyond this are ignored.
     end: f64,
     visibility: Masked<'a>,
@@ -101,25 +135,36 @@ struct Traversal<'a, O> {
 }
 
 impl<O: Observer> Traversal<'_, O> {
-    /// Visits a node of a tree and all nodes below it, with the ray in the tree's space.
-    fn node(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, number: usize) {
+    /// Traces a ray through a tree and its moving part, with the ray in the tree's space.
+    fn tree(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32) {
+        if !bvh.nodes.is_empty() {
+            self.node(Part::Standing(bvh), ray, instance, 0);
+        }
+        if let Some(moving) = bvh.moving.as_ref().filter(|moving| !moving.is_empty()) {
+            self.node(Part::Moving(moving, moving.moment(self.time)), ray, instance, 0);
+        }
+    }
+
+    /// Visits a node and all nodes below it.
+    fn node(&mut self, part: Part<'_>, ray: &ExactRay<f64>, instance: u32, number: usize) {
         self.observer.node(instance, number as u32);
-        let (mut entered, count) = enter(&bvh.nodes[number], ray, self.ray.t_min);
+        let node = part.node(number);
+        let (mut entered, count) = enter(&node, ray, self.ray.t_min);
         let entered = &mut entered[..count];
         entered.sort_by(|a, b| a.0.total_cmp(&b.0));
         let is_beyond = |near: f64, end: f64| near - near.abs() * ROOM > end;
         if O::LISTENS {
             let reached = entered.iter().filter(|(near, _)| !is_beyond(*near, self.end)).count();
-            self.observer.boxes(instance, bvh.nodes[number].count() as u32, reached as u32);
+            self.observer.boxes(instance, node.count() as u32, reached as u32);
         }
         for &(near, child) in entered.iter() {
             if is_beyond(near, self.end) {
                 continue;
             }
             match child.content() {
-                Content::Node(below) => self.node(bvh, ray, instance, below),
-                Content::Triangles(block) => self.triangles(bvh, ray, instance, block),
-                Content::Leaf(leaf) => self.leaf(bvh, ray, instance, bvh.leaves[leaf]),
+                Content::Node(below) => self.node(part, ray, instance, below),
+                Content::Triangles(block) => self.triangles(&part.block(block), ray, instance),
+                Content::Leaf(leaf) => self.leaf(part, ray, instance, leaf),
             }
         }
     }
@@ -137,8 +182,7 @@ impl<O: Observer> Traversal<'_, O> {
         self.visibility.shows(geometry, primitive)
     }
 
-    fn triangles(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, block: usize) {
-        let block = &bvh.triangles[block];
+    fn triangles(&mut self, block: &TriangleBlock, ray: &ExactRay<f64>, instance: u32) {
         for lane in 0..block.count() {
             let (ids, corners) = (block.ids(lane), block.corners(lane));
             if self.is_candidate(instance, ids)
@@ -152,9 +196,14 @@ impl<O: Observer> Traversal<'_, O> {
         }
     }
 
-    fn leaf(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32, leaf: Leaf) {
+    fn leaf(&mut self, part: Part<'_>, ray: &ExactRay<f64>, instance: u32, leaf: usize) {
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
-        match leaf {
+        let bvh = match part {
+            Part::Standing(bvh) => bvh,
+            // The leaves of what moves hold instances, which are the outer tree's.
+            Part::Moving(..) => self.outer,
+        };
+        match part.leaf(leaf) {
             Leaf::Spheres { first, count } => {
                 for item in &bvh.spheres[range(first, count)] {
                     let ids = (item.geometry, item.primitive);
@@ -194,10 +243,15 @@ impl<O: Observer> Traversal<'_, O> {
             Leaf::Instances { first, count } => {
                 let outer = self.outer;
                 for place in range(first, count) {
-                    let inside = &outer.instances[place];
-                    let inner = inside.ray_in_object(ray);
-                    if is_usable(&inner) && self.visibility.enter_instance(place) {
-                        self.node(&inside.bvh, &inner, place as u32, 0);
+                    let instance = &outer.instances[place];
+                    let inside = match outer.instance_map_at(place as u32, self.time) {
+                        None => Some(instance.ray_in_object(ray)),
+                        Some(map) => instance.moved(map).map(|moved| moved.ray_in_object(ray)),
+                    };
+                    if let Some(inside) = inside.filter(is_usable)
+                        && self.visibility.enter_instance(place)
+                    {
+                        self.tree(&instance.bvh, &inside, place as u32);
                         self.visibility.leave_instance();
                     }
                 }

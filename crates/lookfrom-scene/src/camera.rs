@@ -7,6 +7,7 @@ use glam::{DMat3, DMat4, DVec3};
 
 use crate::error::Location;
 use crate::lens::LensSystem;
+use crate::motion::Motion;
 use crate::scene::MediumId;
 
 /// An up vector, along an axis, that is not parallel to a direction: y, or z for what looks up or down.
@@ -34,6 +35,8 @@ pub struct Camera {
     pub distance: f64,
     /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,
+    /// Its motion, if it moves: in the world, from where it is when the shutter opens.
+    pub motion: Option<Arc<Motion>>,
 }
 
 /// Position and orientation of a camera.
@@ -199,6 +202,7 @@ impl Default for Camera {
             window: None,
             distance: 1.0,
             medium: None,
+            motion: None,
         }
     }
 }

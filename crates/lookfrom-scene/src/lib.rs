@@ -35,6 +35,7 @@ pub mod material;
 pub mod measured;
 pub mod medium;
 pub mod model;
+pub mod motion;
 pub mod nanovdb;
 pub mod npy;
 pub mod obj;

@@ -81,6 +81,8 @@ pub(crate) fn from_bytes(
         state: State::default(),
         stack: Vec::new(),
         coordinate_systems: BTreeMap::new(),
+        transform_times: [0.0, 1.0],
+        shutter: [0.0, 1.0],
         in_world: false,
         options: Options::default(),
         materials: BTreeMap::new(),
@@ -122,7 +124,12 @@ struct Reader<'s, 'f> {
     state: State,
     /// Open blocks.
     stack: Vec<Opened>,
-    coordinate_systems: BTreeMap<String, DMat4>,
+    /// Named matrices at the start and the end of the transform times.
+    coordinate_systems: BTreeMap<String, [DMat4; 2]>,
+    /// The times of the two matrices.
+    transform_times: [f64; 2],
+    /// The times when the shutter opens and closes.
+    shutter: [f32; 2],
     /// Whether `WorldBegin` has been read.
     in_world: bool,
     /// Settings before `WorldBegin`.
@@ -136,7 +143,7 @@ struct Reader<'s, 'f> {
     /// The open object, to which shapes are added.
     object: Option<ObjectId>,
     /// Instances, whose objects are looked up at the end.
-    instances: Vec<(String, Place, DMat4)>,
+    instances: Vec<(String, Place, [DMat4; 2])>,
     curves: BTreeMap<String, CurveId>,
     /// Images by path and conversion of their values.
     images: BTreeMap<(PathBuf, String), ImageId>,

@@ -3,6 +3,8 @@
 //!
 //! Units: lengths are the scene's own; angles are in degrees; colours are linear Rec. 709 (sRGB primaries), unbounded above.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3};
 
 use crate::camera::Camera;
@@ -12,6 +14,7 @@ use crate::image::Image;
 use crate::light::Light;
 use crate::material::Material;
 use crate::medium::Medium;
+use crate::motion::Motion;
 use crate::settings::{ImageSettings, RenderSettings};
 use crate::shape::{Mesh, Shape};
 use crate::spectrum::Curve;
@@ -130,10 +133,13 @@ pub struct Instance {
     pub at: Location,
     /// The instanced object.
     pub object: ObjectId,
-    /// From the object's space to the world: any invertible affine matrix, including reflections.
+    /// From the object's space to the world: any invertible affine matrix, including reflections. Of an instance that moves the
+    /// matrix when the shutter opens.
     pub world_from_object: DMat4,
     /// Replaces every material in the object.
     pub material: Option<MaterialId>,
+    /// Its motion from the object's space to the world, if it moves.
+    pub motion: Option<Arc<Motion>>,
 }
 
 /// An axis-aligned box; empty when `min > max`.
@@ -199,17 +205,29 @@ impl Scene {
             + shapes(&self.shapes)
             + self.objects.iter().map(|object| shapes(&object.shapes)).sum::<u64>()
             + size_of_val(&*self.instances) as u64
+            + self
+                .instances
+                .iter()
+                .filter_map(|instance| instance.motion.as_deref())
+                .map(Motion::bytes)
+                .sum::<u64>()
             + self.media.iter().map(Medium::bytes).sum::<u64>()
     }
 
-    /// The bounding box of everything that is placed in the world.
+    /// The bounding box of everything that is placed in the world, at all times of the shutter.
     pub fn bounds(&self) -> Bounds {
         let of = |shapes: &[Shape]| {
             shapes.iter().fold(Bounds::EMPTY, |bounds, shape| bounds.union(shape.bounds(&self.meshes)))
         };
         let objects: Vec<Bounds> = self.objects.iter().map(|object| of(&object.shapes)).collect();
         self.instances.iter().fold(of(&self.shapes), |bounds, instance| {
-            bounds.union(objects[instance.object.index()].transformed(&instance.world_from_object))
+            let of_object = objects[instance.object.index()];
+            match &instance.motion {
+                None => bounds.union(of_object.transformed(&instance.world_from_object)),
+                Some(motion) => {
+                    motion.maps().iter().fold(bounds, |bounds, map| bounds.union(of_object.transformed(map)))
+                }
+            }
         })
     }
 }

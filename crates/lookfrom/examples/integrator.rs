@@ -45,7 +45,7 @@ impl Integrator for DirectLighting {
         }
 
         // Holes, by alpha: the path goes on as if there were nothing.
-        let surface = world.surface(&path.ray, hit);
+        let surface = world.surface_at(&path.ray, hit, output.time(&path));
         if path.goes_through(world, &surface, stream.presence(world, &surface)) {
             return output.paths.push(path.passed(&surface));
         }

@@ -76,7 +76,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         }),
     };
 
-    let mut log = TraceLogBuilder::new(renderer, traced.mode, with_tests);
+    let mut log = TraceLogBuilder::new(renderer, (traced.mode, renderer.time(id)), with_tests);
     events.iter().for_each(|event| log.record(event));
     let told = log.end();
     let film = renderer.rgb(told.sum * traced.weight, &traced.mode);

@@ -252,6 +252,8 @@ pub struct Queues {
     pub radiance: Vec<Spectrum>,
     /// The spectral mode, by slot.
     pub modes: SpectralModes,
+    /// The times of the samples while the shutter is open, by slot; empty where nothing moves.
+    pub(crate) times: Vec<f32>,
     /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
     /// Shadow rays.
@@ -281,6 +283,12 @@ impl Queues {
         self.layers.clear();
         self.first_surfaces.start(count);
         self.last_scatterings.clear();
+    }
+
+    /// The time of a slot while the shutter is open, from 0 to 1; 0 where nothing moves.
+    #[inline]
+    pub fn time(&self, slot: u32) -> f32 {
+        self.times.get(slot as usize).copied().unwrap_or(0.0)
     }
 
     #[cold]
@@ -357,6 +365,12 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         let Some(light_paths) = self.light_paths else { return };
         self.queues.layers.resize(paths.len() * light_paths.count(), Spectrum::BLACK);
         paths.iter().for_each(|path| self.set_transmittance(world, path, path.beta));
+    }
+
+    /// The time of a path while the shutter is open, from 0 to 1; 0 where nothing moves.
+    #[inline]
+    pub fn time(&self, path: &Path<S>) -> f32 {
+        self.queues.time(path.slot)
     }
 
     /// Adds light to a path's sample.

@@ -138,6 +138,8 @@ struct Batch {
     /// Paths under way, and those that are next.
     paths: Scratch,
     rays: Vec<Ray>,
+    /// The times of `rays`; empty where nothing moves.
+    times: Vec<f32>,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
     /// The samples' light in RGB, by slot.
@@ -314,7 +316,7 @@ impl Renderer {
         batch: &mut Batch,
     ) -> Rays {
         let mut rays_traced = Rays::default();
-        let Batch { start, queues, paths, rays, origin_primitives, hits, .. } = batch;
+        let Batch { start, queues, paths, rays, times, origin_primitives, hits, .. } = batch;
         let mut both = paths.take::<[Vec<Path<I::State>>; 2]>();
         let [mut under_way, next] = std::mem::take(&mut *both);
         let light_paths = self.light_paths.as_deref();
@@ -330,6 +332,7 @@ impl Renderer {
         // Start: a ray from the camera for each sample that no lens system blocks.
         self.start(ids, start);
         output.queues.start(ids.len(), start.modes());
+        output.queues.times.clone_from(&start.times);
         let modes = &output.queues.modes;
         let path = |(slot, ray): (usize, &Ray)| Path {
             beta: modes[slot].one(),
@@ -348,6 +351,7 @@ impl Renderer {
         output.paths = starting;
 
         let streams = BatchStreams { sampler: &self.sampler, ids };
+        let moves = !start.times.is_empty();
         let mut are_from_camera = true;
         while !output.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
@@ -356,12 +360,14 @@ impl Renderer {
             // All are replaced.
             hits.resize(under_way.len(), Hit::MISS);
             if are_from_camera && under_way.len() == ids.len() {
-                self.world.bvh.closest_hits(&start.rays, hits);
+                self.world.bvh.query().times(&start.times).closest_hits(&start.rays, hits);
                 output.queues.first_surfaces.note_outermost(hits);
             } else if are_from_camera {
                 rays.clear();
                 rays.extend(under_way.iter().map(|path| path.ray));
-                self.world.bvh.closest_hits(rays, hits);
+                times.clear();
+                times.extend(under_way.iter().filter(|_| moves).map(|path| output.time(path)));
+                self.world.bvh.query().times(times).closest_hits(rays, hits);
                 let slots = under_way.iter().map(|path| path.slot);
                 output.queues.first_surfaces.note_outermost_of(slots, hits, ids.len());
             } else {
@@ -369,7 +375,10 @@ impl Renderer {
                 rays.extend(under_way.iter().map(|path| path.ray));
                 origin_primitives.clear();
                 origin_primitives.extend(under_way.iter().map(|path| path.origin_primitive));
-                self.world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+                times.clear();
+                times.extend(under_way.iter().filter(|_| moves).map(|path| output.time(path)));
+                let query = self.world.bvh.query().origins(origin_primitives).times(times);
+                query.closest_hits(rays, hits);
                 output.queues.first_surfaces.note_behind(straight(&under_way, hits));
             }
             are_from_camera = false;

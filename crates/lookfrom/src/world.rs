@@ -118,17 +118,21 @@ pub(crate) struct Instance {
     pub(crate) object: u32,
     /// Replaces the materials of the object.
     pub(crate) material: Option<u32>,
-    /// From render space to the object's.
+    /// Whether it moves, or something in its object does.
+    pub(crate) moves: bool,
+    /// From render space to the object's; of an instance that moves when the shutter opens.
     object_from_render: Affine,
     /// The amplification of errors by both maps.
     amplification: [[f64; 3]; 3],
 }
 
-/// An instance in its place.
+/// An instance in its place, at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedInstance<'a> {
     pub(crate) instance: &'a Instance,
-    pub(crate) placement: StoredPlacement<'a>,
+    render_from_object: Affine,
+    object_from_render: Affine,
+    amplification: [[f64; 3]; 3],
 }
 
 impl World {
@@ -162,29 +166,50 @@ impl World {
         &self.light_choice
     }
 
-    /// The primitives that a hit belongs to and the instance, if it is in one.
+    /// The primitives that a hit belongs to and the instance, if it is in one, at a time of the shutter (0 … 1).
     #[inline]
-    pub fn primitives(&self, hit: &Hit) -> (&Primitives, Option<PlacedInstance<'_>>) {
+    pub fn primitives(&self, hit: &Hit, time: f32) -> (&Primitives, Option<PlacedInstance<'_>>) {
         if hit.instance == NONE {
             return (&self.primitives[hit.geometry as usize], None);
         }
-        let placed = self.instance(hit.instance);
+        let placed = self.instance(hit.instance, time);
         (&self.objects[placed.instance.object as usize][hit.geometry as usize], Some(placed))
     }
 
-    /// An instance, by the kernel's id.
-    pub(crate) fn instance(&self, id: u32) -> PlacedInstance<'_> {
+    /// An instance, by the kernel's id, at a time.
+    pub(crate) fn instance(&self, id: u32, time: f32) -> PlacedInstance<'_> {
         let instance = &self.instances[id as usize];
-        let affine = self.bvh.instance_map(id);
-        let Instance { object_from_render, amplification, .. } = instance;
-        let placement = StoredPlacement { affine, inverse: &object_from_render.matrix, amplification };
-        PlacedInstance { instance, placement }
+        match self.bvh.instance_map_at(id, time) {
+            None => {
+                let Instance { object_from_render, amplification, .. } = *instance;
+                let render_from_object = *self.bvh.instance_map(id);
+                PlacedInstance { instance, render_from_object, object_from_render, amplification }
+            }
+            Some(render_from_object) => {
+                let object_from_render = inverse(&render_from_object);
+                let amplification = amplification(&render_from_object);
+                PlacedInstance { instance, render_from_object, object_from_render, amplification }
+            }
+        }
     }
 
-    /// The surface interaction of `ray` at `hit`.
+    /// The placement of an instance that stands still.
+    #[inline]
+    fn standing_placement(&self, id: u32) -> StoredPlacement<'_> {
+        let Instance { object_from_render, amplification, .. } = &self.instances[id as usize];
+        let affine = self.bvh.instance_map(id);
+        StoredPlacement { affine, inverse: &object_from_render.matrix, amplification }
+    }
+
+    /// The surface interaction of `ray` at `hit`; of what moves when the shutter opens.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
+        self.surface_at(ray, hit, 0.0)
+    }
+
+    /// The surface interaction of `ray` at `hit` at a time of the shutter (0 … 1), at which the ray was traced.
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit, time: f32) -> SurfaceInteraction {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let at_primitive = match self.primitives(hit) {
+        let at_primitive = match self.primitives(hit, time) {
             (primitives, None) => primitives.point(hit, origin, direction),
             (primitives, Some(instance)) => {
                 let (origin, direction) = instance.in_object(origin, direction);
@@ -413,22 +438,25 @@ impl World {
 
 impl Instance {
     /// An instance with a map from the object's space to render space.
-    fn new(object: u32, material: Option<u32>, render_from_object: &Affine) -> Self {
-        let inverse = math::matrix(render_from_object).inverse();
-        let object_from_render = math::affine(&inverse);
-        Self { object, material, object_from_render, amplification: amplification(render_from_object) }
+    fn new(object: u32, material: Option<u32>, render_from_object: &Affine, moves: bool) -> Self {
+        let object_from_render = inverse(render_from_object);
+        Self { object, material, moves, object_from_render, amplification: amplification(render_from_object) }
     }
+}
+
+fn inverse(map: &Affine) -> Affine {
+    math::affine(&math::matrix(map).inverse())
 }
 
 impl PlacedInstance<'_> {
     /// From the object's space to render space.
     pub fn render_from_object(&self) -> DMat4 {
-        math::matrix(self.placement.affine)
+        math::matrix(&self.render_from_object)
     }
 
     /// The inverse.
     pub fn object_from_render(&self) -> DMat4 {
-        math::matrix(&self.instance.object_from_render)
+        math::matrix(&self.object_from_render)
     }
 
     /// A ray's origin and direction in the object's space; its t stays the same.
@@ -439,7 +467,12 @@ impl PlacedInstance<'_> {
 
     /// A surface point of the object, in render space.
     fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
-        let placement = self.placement.placement();
+        let stored = StoredPlacement {
+            affine: &self.render_from_object,
+            inverse: &self.object_from_render.matrix,
+            amplification: &self.amplification,
+        };
+        let placement = stored.placement();
         let vector = |v: DVec3| placement.vector(v.into()).into();
         let normal = |n: DVec3| placement.normal(n.into()).normalize().into();
         let mut binding = of_object.binding;

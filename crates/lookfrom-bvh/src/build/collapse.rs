@@ -124,9 +124,12 @@ fn triangle_block(node: &Binary, references: &[Reference], primitives: &Primitiv
     let mut triangles = [Default::default(); Kind::MOST_IN_A_LEAF];
     for (triangle, &number) in triangles.iter_mut().zip(&numbers[..count]) {
         let (geometry, primitive) = primitives.ids(number);
-        if let Geometry::Triangles(corners) = &primitives.geometries[geometry as usize] {
-            *triangle = (corners[primitive as usize], geometry, primitive);
-        }
+        let corners = match &primitives.geometries[geometry as usize] {
+            Geometry::Triangles(corners) => corners,
+            Geometry::MovingTriangles(times) => &times[0],
+            _ => continue,
+        };
+        *triangle = (corners[primitive as usize], geometry, primitive);
     }
     TriangleBlock::new(&triangles[..count])
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::aabb::{Aabb, LARGEST_COORDINATE};
+use crate::affine::Affine;
 use crate::bvh::Instance;
 use crate::conservative::BLOCK;
 use crate::node::Child;
@@ -19,6 +20,8 @@ use super::{BuildError, parallel};
 pub(super) enum Geometry {
     /// Three corners per triangle.
     Triangles(Vec<[[f32; 3]; 3]>),
+    /// Three corners per triangle, for each time.
+    MovingTriangles(Vec<Vec<[[f32; 3]; 3]>>),
     Spheres(Vec<Sphere>),
     Procedural(Arc<dyn Procedural>),
 }
@@ -26,7 +29,7 @@ pub(super) enum Geometry {
 impl Geometry {
     fn kind(&self) -> Kind {
         match self {
-            Self::Triangles(_) => Kind::Triangle,
+            Self::Triangles(_) | Self::MovingTriangles(_) => Kind::Triangle,
             Self::Spheres(_) => Kind::Sphere,
             Self::Procedural(_) => Kind::Procedural,
         }
@@ -35,6 +38,7 @@ impl Geometry {
     pub(super) fn count(&self) -> usize {
         match self {
             Self::Triangles(corners) => corners.len(),
+            Self::MovingTriangles(times) => times.first().map_or(0, Vec::len),
             Self::Spheres(spheres) => spheres.len(),
             Self::Procedural(shapes) => shapes.count() as usize,
         }
@@ -43,31 +47,57 @@ impl Geometry {
     fn bounds(&self, primitive: u32) -> Aabb {
         match self {
             Self::Triangles(corners) => Aabb::around(&corners[primitive as usize]),
+            Self::MovingTriangles(times) => {
+                around_all(times.iter().map(|at| Aabb::around(&at[primitive as usize])))
+            }
             Self::Spheres(spheres) => spheres[primitive as usize].bounds(),
             Self::Procedural(shapes) => shapes.bounds(primitive),
         }
     }
 
-    /// True if a ray can hit a primitive, apart from its box.
+    /// True if a ray can hit a primitive, at any time, apart from its box.
     fn is_usable(&self, primitive: u32) -> bool {
         match self {
             Self::Triangles(corners) => has_area(&corners[primitive as usize]),
+            Self::MovingTriangles(times) => times.iter().any(|at| has_area(&at[primitive as usize])),
             Self::Spheres(spheres) => has_surface(&spheres[primitive as usize]),
             Self::Procedural(_) => true,
         }
     }
 }
 
+/// The part of a tree that is built: what stands still, or what moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Standing,
+    Moving,
+}
+
+/// The box around boxes at several times.
+fn around_all(boxes: impl Iterator<Item = Aabb>) -> Aabb {
+    boxes.fold(Aabb::EMPTY, |mut all, bounds| {
+        all.unite(&bounds);
+        all
+    })
+}
+
 /// All candidates for the tree, numbered: the primitives of one geometry after the other, then the instances.
 pub(super) struct Primitives<'a> {
     pub(super) geometries: &'a [Geometry],
     pub(super) instances: &'a [Instance],
+    /// The maps of instances that move, by id.
+    maps: &'a [Box<[Affine]>],
+    part: Part,
     /// The first number of each geometry, and of the instances.
     first: Vec<u32>,
 }
 
 impl<'a> Primitives<'a> {
-    pub(super) fn new(geometries: &'a [Geometry], instances: &'a [Instance]) -> Result<Self, BuildError> {
+    pub(super) fn new(
+        (geometries, instances): (&'a [Geometry], &'a [Instance]),
+        maps: &'a [Box<[Affine]>],
+        part: Part,
+    ) -> Result<Self, BuildError> {
         let mut primitives = 0;
         let mut first = vec![0];
         for geometry in geometries {
@@ -78,11 +108,23 @@ impl<'a> Primitives<'a> {
         if primitives >= Child::LIMIT || geometries.len() as u64 >= u64::from(NONE) {
             return Err(BuildError::TooMany { primitives });
         }
-        Ok(Self { geometries, instances, first })
+        Ok(Self { geometries, instances, maps, part, first })
     }
 
     pub(super) fn count(&self) -> usize {
         self.first[self.geometries.len()] as usize + self.instances.len()
+    }
+
+    /// The number of candidates in the part that is built.
+    pub(super) fn count_in_part(&self) -> usize {
+        let moving =
+            self.geometries.iter().filter(|geometry| matches!(geometry, Geometry::MovingTriangles(_)));
+        let moving = moving.map(Geometry::count).sum::<usize>()
+            + self.maps.iter().filter(|maps| !maps.is_empty()).count();
+        match self.part {
+            Part::Standing => self.count() - moving,
+            Part::Moving => moving,
+        }
     }
 
     /// Geometry and primitive; for an instance, the number of geometries and the instance's index.
@@ -95,8 +137,24 @@ impl<'a> Primitives<'a> {
         let (geometry, primitive) = self.ids(number);
         match self.geometries.get(geometry as usize) {
             Some(geometry) => geometry.bounds(primitive),
-            None => self.instances[primitive as usize].bounds(),
+            None => match self.maps.get(primitive as usize) {
+                Some(maps) if !maps.is_empty() => {
+                    let object = &self.instances[primitive as usize].bvh;
+                    around_all(maps.iter().map(|map| object.bounds_under(map)))
+                }
+                _ => self.instances[primitive as usize].bounds(),
+            },
         }
+    }
+
+    /// Whether a primitive is in the part of the tree that is built.
+    fn is_in_part(&self, number: u32) -> bool {
+        let (geometry, primitive) = self.ids(number);
+        let moves = match self.geometries.get(geometry as usize) {
+            Some(geometry) => matches!(geometry, Geometry::MovingTriangles(_)),
+            None => self.maps.get(primitive as usize).is_some_and(|maps| !maps.is_empty()),
+        };
+        moves == (self.part == Part::Moving)
     }
 
     /// The reference with its padded box, which is empty where no ray can hit the primitive.
@@ -107,7 +165,11 @@ impl<'a> Primitives<'a> {
             None => (true, Kind::Instance),
         };
         let bounds = self.bounds(number);
-        let bounds = if usable && bounds.is_valid() { bounds.padded() } else { Aabb::EMPTY };
+        let bounds = if usable && bounds.is_valid() && self.is_in_part(number) {
+            bounds.padded()
+        } else {
+            Aabb::EMPTY
+        };
         Reference::new(&bounds, number, kind)
     }
 

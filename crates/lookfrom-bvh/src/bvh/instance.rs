@@ -41,17 +41,24 @@ impl Instance {
         }
     }
 
-    /// The box in the world: around the eight corners of the object's box, rounded outwards.
+    /// The box in the world.
     pub(crate) fn bounds(&self) -> Aabb {
-        let object = self.bvh.bounds();
+        self.bvh.bounds_under(&self.world_from_object)
+    }
+}
+
+impl Bvh {
+    /// The box around the eight corners of the tree's box under a map, rounded outwards.
+    pub(crate) fn bounds_under(&self, map: &Affine) -> Aabb {
+        let object = self.bounds();
         if object.is_empty() {
             return Aabb::EMPTY;
         }
         let sides = [wide(object.min), wide(object.max)];
         let mut bounds = Aabb::EMPTY;
         for axis in 0..3 {
-            let row = self.world_from_object.matrix[axis];
-            let shift = self.world_from_object.translation[axis];
+            let row = map.matrix[axis];
+            let shift = map.translation[axis];
             // Each term takes its minimum and maximum independently.
             let (mut least, mut greatest, mut magnitude) = (shift, shift, shift.abs());
             for column in 0..3 {

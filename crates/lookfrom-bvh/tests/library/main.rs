@@ -11,6 +11,7 @@ mod double;
 mod extremes;
 mod hit_points;
 mod instances;
+mod motion;
 mod origins;
 mod query;
 mod refit;

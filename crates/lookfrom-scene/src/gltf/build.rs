@@ -366,7 +366,13 @@ impl Builder<'_, '_, '_> {
     fn instance(&mut self, at: Location, object: ObjectId, world_from_object: DMat4) {
         let is_empty = self.model.objects[object.index()].shapes.is_empty();
         if !is_empty && is_invertible(&world_from_object) {
-            self.model.instances.push(Instance { at, object, world_from_object, material: None });
+            self.model.instances.push(Instance {
+                at,
+                object,
+                world_from_object,
+                material: None,
+                motion: None,
+            });
         }
     }
 

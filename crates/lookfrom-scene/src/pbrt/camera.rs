@@ -1,5 +1,7 @@
 //! The `Camera` directive: position and projection.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3};
 
 use super::Reader;
@@ -7,13 +9,14 @@ use super::params::{ParameterType, Parameters};
 use super::state::Entity;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Location, Result};
+use crate::motion::Motion;
 
 impl Reader<'_, '_> {
-    /// Converts the camera, with its matrix from world to camera space and the medium around it; without one, pbrt's
+    /// Converts the camera, with its matrices from world to camera space at the start and the end, and the medium around it; without one, pbrt's
     /// default: at the origin, along +z.
-    pub(super) fn camera(&mut self, camera: Option<&(Entity, DMat4)>, medium: &str) -> Result<()> {
+    pub(super) fn camera(&mut self, camera: Option<&(Entity, [DMat4; 2])>, medium: &str) -> Result<()> {
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
-        let Some((Entity { kind, parameters }, camera_from_world)) = camera else {
+        let Some((Entity { kind, parameters }, cameras_from_world)) = camera else {
             self.scene.camera = Some(Camera {
                 at: Location { file: self.scene.materials[0].at.file.clone(), ..Location::default() },
                 view: View::Matrix(DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0))),
@@ -52,7 +55,12 @@ impl Reader<'_, '_> {
         let window = window(given.transpose()?, aspect);
         let lens = lens(parameters)?;
         // Our camera space has x to the left.
-        let world_from_camera = camera_from_world.inverse() * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let flip = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let [start, end] = cameras_from_world.map(|camera_from_world| camera_from_world.inverse());
+        let motion = Motion::between(&start, &end, self.shutter_fractions());
+        let at_opening = motion.as_ref().map_or(start, Motion::at_opening);
+        let motion = motion.map(|motion| Arc::new(motion.with(|map| *map * at_opening.inverse())));
+        let world_from_camera = at_opening * flip;
         self.scene.camera = Some(Camera {
             at: parameters.place.location(),
             view: View::Matrix(world_from_camera),
@@ -60,6 +68,7 @@ impl Reader<'_, '_> {
             lens: lens.filter(|_| is_flat),
             window: window.filter(|_| is_flat),
             medium: self.medium_around(medium, &parameters.place)?,
+            motion,
             ..Camera::default()
         });
         Ok(())

@@ -1,6 +1,7 @@
 //! Execution of directives.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
@@ -11,7 +12,8 @@ use super::state::{Entity, Opened, TARGETS};
 use super::text::Place;
 use super::{Reader, transform, version3};
 use crate::camera::Target;
-use crate::error::{ErrorKind, Result};
+use crate::error::{ErrorKind, Location, Result};
+use crate::motion::Motion;
 use crate::scene::{Instance, MaterialId, Object, ObjectId};
 use crate::spectrum::space;
 use crate::suggest::nearest;
@@ -85,42 +87,42 @@ impl Reader<'_, '_> {
             b"Attribute" => self.attribute(place, lexer)?,
 
             // Transforms.
-            b"Identity" => self.set_matrix(DMat4::IDENTITY, place),
+            b"Identity" => self.set_matrices([DMat4::IDENTITY; 2]),
             b"Translate" => {
                 let offset = transform::numbers(lexer)?;
-                self.concatenate(DMat4::from_translation(DVec3::from_array(offset)), place);
+                self.concatenate(DMat4::from_translation(DVec3::from_array(offset)));
             }
             b"Scale" => {
                 let factors = transform::numbers(lexer)?;
-                self.concatenate(DMat4::from_scale(DVec3::from_array(factors)), place);
+                self.concatenate(DMat4::from_scale(DVec3::from_array(factors)));
             }
             b"Rotate" => {
                 let turn = transform::numbers(lexer)?;
-                self.concatenate(transform::rotate(turn, place)?, place);
+                self.concatenate(transform::rotate(turn, place)?);
             }
             b"LookAt" => {
                 let view = transform::numbers(lexer)?;
-                self.concatenate(transform::look_at(view, place)?, place);
+                self.concatenate(transform::look_at(view, place)?);
                 let [_, _, _, x, y, z, ux, uy, uz] = view;
                 let target = Target { lookat: DVec3::new(x, y, z), up: DVec3::new(ux, uy, uz) };
                 self.options.look = self.state.at_start.then(|| target.transformed(&self.state.matrix));
             }
             b"Transform" => {
                 let matrix = transform::matrix(lexer, place)?;
-                self.set_matrix(matrix, place);
+                self.set_matrices([matrix; 2]);
             }
             b"ConcatTransform" => {
                 let matrix = transform::matrix(lexer, place)?;
-                self.concatenate(matrix, place);
+                self.concatenate(matrix);
             }
             b"CoordinateSystem" => {
                 let name = lexer.string("a quoted name of a coordinate system")?;
-                self.coordinate_systems.insert(name, self.state.matrix);
+                self.coordinate_systems.insert(name, self.state.matrices());
             }
             b"CoordSysTransform" => {
                 let name = lexer.string("a quoted name of a coordinate system")?;
                 match self.coordinate_systems.get(&name) {
-                    Some(&matrix) => self.set_matrix(matrix, place),
+                    Some(&matrices) => self.set_matrices(matrices),
                     None => {
                         let known = self.coordinate_systems.keys().map(String::as_str);
                         let hint = nearest(&name, known).map(|meant| format!("; did you mean {meant:?}?"));
@@ -135,7 +137,7 @@ impl Reader<'_, '_> {
             b"ActiveTransform" => self.active_transform(lexer)?,
             b"TransformTimes" => {
                 self.before_world_only(word, place)?;
-                transform::numbers::<2>(lexer)?;
+                self.transform_times = transform::numbers(lexer)?;
             }
 
             // Materials, textures and lights.
@@ -179,21 +181,21 @@ impl Reader<'_, '_> {
                     let error = place.invalid("an ObjectInstance cannot be in an object");
                     return Err(error.hint("end the object with ObjectEnd before it"));
                 }
-                self.instances.push((name, lexer.place(start), self.state.matrix));
+                self.instances.push((name, lexer.place(start), self.state.matrices()));
             }
 
             // Before the world.
             b"Camera" => {
                 let entity = self.option(word, place, lexer)?;
-                let matrix = self.state.matrix;
-                if !transform::is_invertible(&matrix) {
+                let matrices @ [matrix, _] = self.state.matrices();
+                if !matrices.iter().all(transform::is_invertible) {
                     return Err(
                         place.invalid("the current transform is singular: a camera needs an invertible one")
                     );
                 }
-                self.coordinate_systems.insert("camera".to_owned(), matrix.inverse());
+                self.coordinate_systems.insert("camera".to_owned(), matrices.map(|matrix| matrix.inverse()));
                 self.options.target = self.options.look.map(|look| look.transformed(&matrix.inverse()));
-                self.options.camera = Some((entity, matrix));
+                self.options.camera = Some((entity, matrices));
                 let media = self.state.media.as_deref();
                 self.options.camera_medium = media.map(|[_, outside]| outside.clone()).unwrap_or_default();
             }
@@ -317,7 +319,9 @@ impl Reader<'_, '_> {
             return Err(error.hint(format!("write {begun}End before it")));
         }
         match word {
-            "Transform" => self.state.matrix = opened.state.matrix,
+            "Transform" => {
+                (self.state.matrix, self.state.end_matrix) = (opened.state.matrix, opened.state.end_matrix);
+            }
             _ => self.state = opened.state,
         }
         if word == "Object" {
@@ -344,20 +348,20 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn concatenate(&mut self, matrix: DMat4, place: &Place) {
+    fn concatenate(&mut self, matrix: DMat4) {
         let look = self.options.look;
-        self.set_matrix(self.state.matrix * matrix, place);
+        self.set_matrices(self.state.matrices().map(|before| before * matrix));
         self.options.look = look;
     }
 
-    fn set_matrix(&mut self, matrix: DMat4, place: &Place) {
+    /// Sets the matrices at those times that are active.
+    fn set_matrices(&mut self, [start, end]: [DMat4; 2]) {
         if self.state.at_start {
-            self.state.matrix = matrix;
+            self.state.matrix = start;
             self.options.look = None;
         }
-        if self.state.at_start != self.state.at_end {
-            let message = "motion blur is not rendered yet: transforms are those of the start time";
-            self.warn_once("motion", place, message);
+        if self.state.at_end {
+            self.state.end_matrix = end;
         }
     }
 
@@ -394,18 +398,30 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn place_instances(&mut self) -> Result<()> {
-        for (name, place, matrix) in std::mem::take(&mut self.instances) {
+        for (name, place, matrices) in std::mem::take(&mut self.instances) {
             let Some(&object) = self.objects.get(&name) else {
                 return Err(Self::unknown(&place, "object", &name, self.objects.keys().map(String::as_str)));
             };
-            if !transform::is_invertible(&matrix) {
+            if !matrices.iter().all(transform::is_invertible) {
                 self.context.warn(&place.location(), "left out: its transform flattens it to nothing");
                 continue;
             }
-            let at = place.location();
-            self.scene.instances.push(Instance { at, object, world_from_object: matrix, material: None });
+            self.push_instance(place.location(), object, matrices);
         }
         Ok(())
+    }
+
+    /// Places an object by its matrices at the start and the end of the transform times.
+    pub(super) fn push_instance(&mut self, at: Location, object: ObjectId, [start, end]: [DMat4; 2]) {
+        let motion = Motion::between(&start, &end, self.shutter_fractions()).map(Arc::new);
+        let world_from_object = motion.as_ref().map_or(start, |motion| motion.at_opening());
+        self.scene.instances.push(Instance { at, object, world_from_object, material: None, motion });
+    }
+
+    /// The opening and the closing of the shutter as fractions of the transform times.
+    pub(super) fn shutter_fractions(&self) -> [f64; 2] {
+        let [start, end] = self.transform_times;
+        self.shutter.map(|time| (f64::from(time) - start) / (end - start))
     }
 
     /// The material with this name, which may be defined later.
@@ -423,8 +439,9 @@ impl Reader<'_, '_> {
             return Err(error.hint(format!("write {}End before it", opened.word)));
         }
         self.in_world = true;
-        (self.state.matrix, self.state.at_start, self.state.at_end) = (DMat4::IDENTITY, true, true);
-        self.coordinate_systems.insert("world".to_owned(), DMat4::IDENTITY);
+        (self.state.matrix, self.state.end_matrix) = (DMat4::IDENTITY, DMat4::IDENTITY);
+        (self.state.at_start, self.state.at_end) = (true, true);
+        self.coordinate_systems.insert("world".to_owned(), [DMat4::IDENTITY; 2]);
         self.settle_options()
     }
 

@@ -24,6 +24,7 @@ impl Reader<'_, '_> {
                 if !(close > open) {
                     return Err(parameters.refuse("shutterclose", "a time after that of \"shutteropen\""));
                 }
+                self.shutter = [open, close];
                 close - open
             }
             None => 1.0,

@@ -1,9 +1,12 @@
 //! The `Shape` directive.
 
+use glam::DMat4;
+
 use super::params::Parameters;
 use super::{Reader, transform};
 use crate::error::Result;
 use crate::material::Scalar;
+use crate::scene::{Object, ObjectId};
 use crate::shape::{Geometry, Shape};
 
 const KINDS: &[&str] =
@@ -24,8 +27,8 @@ impl Reader<'_, '_> {
         };
         let alpha = self.scalar_or_none(p, "alpha")?.filter(|&alpha| alpha != Scalar::Value(1.0));
         let Some(geometry) = geometry else { return Ok(()) };
-        let matrix = self.state.matrix;
-        if !transform::is_invertible(&matrix) {
+        let matrices @ [matrix, end] = self.state.matrices();
+        if !matrices.iter().all(transform::is_invertible) {
             self.context.warn(&p.place.location(), "left out: its transform flattens it to nothing");
             return Ok(());
         }
@@ -49,8 +52,29 @@ impl Reader<'_, '_> {
             world_from_object: matrix,
         };
         self.context.keep(shape.bytes(), "the shape", &shape.at)?;
-        self.push_shape(shape);
+        match matrix == end {
+            true => self.push_shape(shape),
+            false => self.push_moving_shape(shape, matrices),
+        }
         Ok(())
+    }
+
+    /// Adds a shape that moves: as an object of its own with an instance.
+    fn push_moving_shape(&mut self, shape: Shape, matrices: [DMat4; 2]) {
+        if self.object.is_some() {
+            let message = "shapes of an object do not move: it is rendered as at the start of its motion";
+            self.context.warn(&shape.at, message);
+            return self.push_shape(shape);
+        }
+        let object = ObjectId(self.scene.objects.len() as u32);
+        let at = shape.at.clone();
+        let shapes = vec![Shape { world_from_object: DMat4::IDENTITY, ..shape }];
+        self.scene.objects.push(Object {
+            name: format!("moving shape {}", object.0 + 1),
+            at: at.clone(),
+            shapes,
+        });
+        self.push_instance(at, object, matrices);
     }
 
     /// Adds a shape to the world, or to the open object.

@@ -18,10 +18,13 @@ pub(super) const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "
 #[derive(Clone)]
 pub(super) struct State {
     /// The current transformation matrix: from object to world space (before `WorldBegin`: from world to camera space).
+    /// At the start of the transform times.
     pub(super) matrix: DMat4,
-    /// Whether transforms apply to the start of the shutter interval, which is the time that is rendered.
+    /// [`Self::matrix`] at their end.
+    pub(super) end_matrix: DMat4,
+    /// Whether transforms apply to the start.
     pub(super) at_start: bool,
-    /// Whether transforms apply to its end.
+    /// Whether transforms apply to the end.
     pub(super) at_end: bool,
     pub(super) reverse_orientation: bool,
     pub(super) material: MaterialId,
@@ -32,10 +35,18 @@ pub(super) struct State {
     pub(super) space: Space,
 }
 
+impl State {
+    /// The transformation matrices at the start and at the end.
+    pub(super) fn matrices(&self) -> [DMat4; 2] {
+        [self.matrix, self.end_matrix]
+    }
+}
+
 impl Default for State {
     fn default() -> Self {
         Self {
             matrix: DMat4::IDENTITY,
+            end_matrix: DMat4::IDENTITY,
             at_start: true,
             at_end: true,
             reverse_orientation: false,
@@ -70,8 +81,8 @@ pub(super) struct Entity {
 pub(super) struct Options {
     /// Look-at point and up vector of the last `LookAt`, in camera space under the transforms so far.
     pub(super) look: Option<Target>,
-    /// The camera, and the matrix from world to camera space.
-    pub(super) camera: Option<(Entity, DMat4)>,
+    /// The camera, and the matrices from world to camera space at the start and the end.
+    pub(super) camera: Option<(Entity, [DMat4; 2])>,
     /// The name of the medium around the camera; an empty name is the vacuum.
     pub(super) camera_medium: String,
     /// The camera's target, for orbiting.

@@ -141,6 +141,7 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         window,
         distance,
         medium: None,
+        motion: None,
     })
 }
 

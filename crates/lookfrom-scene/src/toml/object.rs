@@ -53,7 +53,13 @@ impl Reader<'_, '_> {
         }
         let world_from_object = transform::world_from_object(table);
         if let Some(object) = object {
-            self.scene.instances.push(Instance { at: table.at(), object, world_from_object, material });
+            self.scene.instances.push(Instance {
+                at: table.at(),
+                object,
+                world_from_object,
+                material,
+                motion: None,
+            });
         }
     }
 }

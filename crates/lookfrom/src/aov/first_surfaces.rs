@@ -126,9 +126,9 @@ impl FirstSurfaces {
         }
     }
 
-    /// The AOVs by slot, at the end of a batch of camera rays, where they are wanted. Of few hits no step has left a surface, as of those
+    /// The AOVs by slot, at the end of a batch of camera rays with their times, where they are wanted. Of few hits no step has left a surface, as of those
     /// that light may pass as if they were not there.
-    pub(crate) fn aovs(&mut self, world: &World, rays: &[Ray]) -> Option<&[AovColumns]> {
+    pub(crate) fn aovs(&mut self, world: &World, (rays, times): (&[Ray], &[f32])) -> Option<&[AovColumns]> {
         let space = self.space?;
         // Of the hits of a slot, the last one counts.
         self.behind.sort_by_key(|&(slot, _)| slot);
@@ -136,7 +136,8 @@ impl FirstSurfaces {
             let left = !self.aovs[block].hits & ((1 << hits.len()) - 1);
             for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit() || fills_space(&space)) {
                 let slot = block * LANES + lane;
-                if let Some(aovs) = self.found_again(world, &space, slot, rays[slot]) {
+                if let Some(aovs) = self.found_again(world, &space, slot, (rays[slot], time_of(times, slot)))
+                {
                     self.aovs[block].set(lane, &aovs);
                 }
             }
@@ -150,18 +151,23 @@ impl FirstSurfaces {
         world: &World,
         space: &CameraSpace,
         slot: usize,
-        ray: Ray,
+        (ray, time): (Ray, f32),
     ) -> Option<Aovs> {
         let outermost = RayHit { ray, hit: self.outermost[slot] };
         let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
         let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
         let is_blended = world.has_gaps || space.in_media.is_some();
-        let blended = if is_blended { space.blended_aovs(world, outermost) } else { None };
+        let blended = if is_blended { space.blended_aovs(world, outermost, time) } else { None };
         blended.or_else(|| {
             let RayHit { ray, hit } = behind.map_or(outermost, |(_, seen)| *seen);
-            hit.is_hit().then(|| space.aovs(world, &world.surface(&ray, &hit), None))
+            hit.is_hit().then(|| space.aovs(world, &world.surface_at(&ray, &hit, time), None))
         })
     }
+}
+
+/// The time of a slot; 0 where nothing moves.
+pub(crate) fn time_of(times: &[f32], slot: usize) -> f32 {
+    times.get(slot).copied().unwrap_or(0.0)
 }
 
 /// Whether rays from the camera are in a medium without an end, which is seen where they hit nothing.
@@ -173,7 +179,7 @@ impl CameraSpace {
     /// The mean albedo and shading normal of all surfaces and media along a camera ray by what each covers, and the place of
     /// what covers most; `None` where no surface has an alpha between 0 and 1, and no medium covers anything. What nothing covers is
     /// white, as a miss is. Where there are media, the normal is as long as the part that is covered.
-    fn blended_aovs(&self, world: &World, outermost: RayHit) -> Option<Aovs> {
+    fn blended_aovs(&self, world: &World, outermost: RayHit, time: f32) -> Option<Aovs> {
         let RayHit { mut ray, mut hit } = outermost;
         let (mut left, mut is_blended, mut has_medium) = (1.0, false, false);
         let (mut albedo, mut ns) = (Vec3::ZERO, Vec3::ZERO);
@@ -195,7 +201,7 @@ impl CameraSpace {
             if !hit.is_hit() || left < LEAST_PART {
                 break;
             }
-            let surface = world.surface(&ray, &hit);
+            let surface = world.surface_at(&ray, &hit, time);
             let opacity = world.opacity(&surface);
             is_blended |= opacity > 0.0 && opacity < 1.0;
             if opacity > 0.0 {
@@ -210,7 +216,7 @@ impl CameraSpace {
                 interior = interior.map(|of| of.leaving(&world.materials, &surface, direction, true));
             }
             ray = Ray::new(surface.origin(Vec3::from(ray.direction)), ray.direction);
-            hit = world.bvh.query().origin(surface.origin_primitive).closest_hit(&ray);
+            hit = world.bvh.query().origin(surface.origin_primitive).time(time).closest_hit(&ray);
         }
         let (_, aovs) = most.filter(|_| is_blended)?;
         let length = if has_medium { 1.0 - left } else { 1.0 };

@@ -19,7 +19,7 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
         MatrixStep { name, does, matrix: rows(matrix), product: rows(&product), point: point.to_array() }
     };
     let mapping = mapping(camera, &ray);
-    let steps = if mapping.is_some() {
+    let mut steps = if mapping.is_some() {
         let direction = ray.direction.extend(0.0);
         vec![step(
             "R3",
@@ -42,7 +42,15 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
     };
     let [u, v, w] =
         [camera.r3.x_axis, camera.r3.y_axis, camera.r3.z_axis].map(|axis| axis.truncate().to_array());
-    let a = camera.lookfrom() + ray.a_from_eye;
+    let mut a = camera.lookfrom() + ray.a_from_eye;
+    let (mut direction, mut p_world) = (ray.direction, ray.p_world);
+    if let Some((_, motion)) = renderer.camera_motion(id) {
+        (a, p_world) = (motion.transform_point3(a), motion.transform_point3(p_world));
+        direction = motion.transform_vector3(direction);
+        let point = if mapping.is_some() { direction.extend(0.0) } else { p_world.extend(1.0) };
+        steps.push(step("M", "the camera as far as it has moved since the shutter opened", &motion, point));
+    }
+    let b = a + direction;
     CameraSteps {
         lookfrom: camera.lookfrom().to_array(),
         u,
@@ -59,10 +67,10 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
         p_k: ray.p_k.to_array(),
         steps,
         world_from_view: rows(&camera.world_from_view()),
-        p_world: if mapping.is_some() { a + ray.direction } else { ray.p_world }.to_array(),
+        p_world: if mapping.is_some() { b } else { p_world }.to_array(),
         a: a.to_array(),
-        b: if camera.has_lens() || mapping.is_some() { a + ray.direction } else { ray.p_world }.to_array(),
-        direction: ray.direction.to_array(),
+        b: if camera.has_lens() || mapping.is_some() { b } else { p_world }.to_array(),
+        direction: direction.to_array(),
         lens: camera.has_lens(),
         mapping,
         lens_system: super::lens_system::report(renderer, id, ray.weight),

@@ -129,11 +129,15 @@ fn matching_bits(approximate: f32, exact: f64) -> u32 {
 }
 
 /// The cost of a ray, and every primitive that the kernel tests it against, in order.
-pub(super) fn candidates(world: &World, ray: &Ray, nearest: &Hit) -> (TraversalReport, Vec<Candidate>) {
+pub(super) fn candidates(
+    world: &World,
+    (ray, time): (&Ray, f32),
+    nearest: &Hit,
+) -> (TraversalReport, Vec<Candidate>) {
     let mut tested = Tested::default();
-    world.bvh.query().observer(&mut tested).closest_hit(ray);
+    world.bvh.query().time(time).observer(&mut tested).closest_hit(ray);
     let Tested { traversal, primitives } = tested;
-    (traversal, primitives.into_iter().map(|ids| candidate(world, ray, ids, nearest)).collect())
+    (traversal, primitives.into_iter().map(|ids| candidate(world, (ray, time), ids, nearest)).collect())
 }
 
 /// A ray in the space in which a primitive is tested.
@@ -183,11 +187,11 @@ const IN_OBJECT: [&str; 2] = ["a in the object", "d in the object"];
 
 fn candidate(
     world: &World,
-    ray: &Ray,
+    (ray, time): (&Ray, f32),
     [instance, geometry, primitive]: [u32; 3],
     nearest: &Hit,
 ) -> Candidate {
-    let (primitives, placed) = world.primitives(&Hit { instance, geometry, primitive, ..Hit::MISS });
+    let (primitives, placed) = world.primitives(&Hit { instance, geometry, primitive, ..Hit::MISS }, time);
     let ray = TestRay::new(ray, placed);
     let index = primitive as usize;
     let mut numbers = TestNumbers::default();

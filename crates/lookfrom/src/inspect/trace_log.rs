@@ -30,6 +30,8 @@ pub(super) struct TraceLogBuilder<'a> {
     world: &'a World,
     /// The spectral mode at the end of the sample.
     mode: SpectralMode,
+    /// The time of the sample while the shutter is open, from 0 to 1.
+    time: f32,
     /// Whether the tests of primitives are reported.
     with_tests: bool,
     rays: BTreeMap<u64, RayReport>,
@@ -62,11 +64,12 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> TraceLogBuilder<'a> {
     /// An empty log.
-    pub(super) fn new(renderer: &'a Renderer, mode: SpectralMode, with_tests: bool) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, (mode, time): (SpectralMode, f32), with_tests: bool) -> Self {
         Self {
             renderer,
             world: renderer.world(),
             mode,
+            time,
             with_tests,
             rays: BTreeMap::new(),
             added: BTreeMap::new(),
@@ -82,7 +85,7 @@ impl<'a> TraceLogBuilder<'a> {
     pub(super) fn record(&mut self, event: &Event) {
         match event {
             Event::Hit { path, hit } => {
-                let surface = hit.is_hit().then(|| self.world.surface(&path.ray, hit));
+                let surface = hit.is_hit().then(|| self.world.surface_at(&path.ray, hit, self.time));
                 let ray = self.ray(path, hit, surface.as_ref());
                 self.rays.insert(path.address, ray);
                 self.hits.insert(path.address, (*path, surface));

@@ -54,7 +54,7 @@ impl Integrator for FalseColor {
             output.shows_background(path);
             return;
         }
-        let surface = world.surface(&path.ray, hit);
+        let surface = world.surface_at(&path.ray, hit, output.time(path));
         // Surfaces whose alpha is below one half are not shown.
         if path.goes_through(world, &surface, 0.5) {
             output.paths.push(path.passed(&surface));

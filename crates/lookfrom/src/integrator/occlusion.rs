@@ -36,7 +36,7 @@ impl Integrator for AmbientOcclusion {
             output.shows_background(path);
             return;
         }
-        let surface = world.surface(&path.ray, hit);
+        let surface = world.surface_at(&path.ray, hit, output.time(path));
         let [presence, _] = stream.two(0);
         if path.goes_through(world, &surface, presence) || world.is_interface(&surface) {
             output.paths.push(path.passed(&surface));

@@ -272,7 +272,7 @@ impl PathTracer {
         if waiting.takes_at_interface(world, &path, hit) {
             return;
         }
-        let surface = world.surface(&path.ray, hit);
+        let surface = world.surface_at(&path.ray, hit, output.time(&path));
 
         // Pass surfaces that fail the alpha test.
         let [presence, u] = match world.is_stochastic(&surface) {

@@ -164,13 +164,22 @@ pub(crate) fn resolve<P: Probe, S: PathState>(
     traced
 }
 
+/// The times of rays by their slots; none where nothing moves.
+pub(super) fn times_of(times: &[f32], slots: impl Iterator<Item = u32>) -> Vec<f32> {
+    match times.is_empty() {
+        true => Vec::new(),
+        false => slots.map(|slot| times[slot as usize]).collect(),
+    }
+}
+
 /// Traces shadow rays that any hit blocks completely.
 fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
-    let Queues { shadows, modes, blocked, .. } = queues;
+    let Queues { shadows, modes, times, blocked, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     // All are replaced.
     blocked.resize(rays.len(), false);
-    world.bvh.query().origins(origin_primitives).occluded_many(rays, blocked);
+    let at = times_of(times, lights.iter().map(|light| light.slot));
+    world.bvh.query().origins(origin_primitives).times(&at).occluded_many(rays, blocked);
     let through_media = Transmittances::estimate(world, modes, rays.len(), |index| {
         (!blocked[index]).then(|| (&rays[index], &lights[index], rays[index].t_max))
     });
@@ -184,7 +193,8 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {
             let shadow = light.of(rays[index], origin_primitives[index]);
-            let hit = world.bvh.query().origin(shadow.origin_primitive).closest_hit(&shadow.ray);
+            let query = world.bvh.query().origin(shadow.origin_primitive);
+            let hit = query.time(at.get(index).copied().unwrap_or(0.0)).closest_hit(&shadow.ray);
             Event::Shadow { shadow, hit, passed }
         });
         light.contribution *= passed;

@@ -185,7 +185,7 @@ pub(super) fn step<P: Probe>(
 
     // Absorb on the way.
     let path = &output.absorbed(world, path, hit);
-    let surface = &world.surface(&path.ray, hit);
+    let surface = &world.surface_at(&path.ray, hit, output.time(path));
 
     // Pass surfaces that fail the alpha test: in a tree an only child, straight on.
     if path.goes_through(world, surface, stream.presence(world, surface)) {

@@ -17,7 +17,7 @@ impl Renderer {
     /// Adds the AOVs of a sample of each pixel to a tile or to its sums, where they are wanted.
     pub(super) fn add_aovs(&self, ids: &[SampleId], batch: &mut Batch, tile: &mut FilmTile) {
         let Batch { aov_sums, queues, start, .. } = batch;
-        if let Some(aovs) = queues.first_surfaces.aovs(&self.world, &start.rays) {
+        if let Some(aovs) = queues.first_surfaces.aovs(&self.world, (&start.rays, &start.times)) {
             tile.add_first_hits(ids, aovs, aov_sums);
         }
     }
@@ -58,9 +58,10 @@ mod tests {
             batch.queues.first_surfaces.set_space(Some(space));
             renderer.integrator.trace(&renderer, &ids, &mut batch);
             let Batch { queues, start, .. } = &mut batch;
-            queues.first_surfaces.aovs(&renderer.world, &start.rays);
+            queues.first_surfaces.aovs(&renderer.world, (&start.rays, &start.times));
             for (slot, id) in ids.iter().enumerate() {
-                let aovs = queues.first_surfaces.found_again(&renderer.world, &space, slot, start.rays[slot]);
+                let aovs =
+                    queues.first_surfaces.found_again(&renderer.world, &space, slot, (start.rays[slot], 0.0));
                 each.add_first_hit(id.pixel[0], id.pixel[1], sample, aovs.as_ref());
             }
         }

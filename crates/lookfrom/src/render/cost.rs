@@ -32,12 +32,12 @@ impl Renderer {
     pub fn costs(&self, ids: &[SampleId]) -> Vec<Cost> {
         let mut start = Start::default();
         self.start(ids, &mut start);
-        let query = |ray| {
+        let query = |(slot, ray)| {
             let mut cost = Cost::default();
-            self.world.bvh().query().observer(&mut cost).closest_hit(ray);
+            self.world.bvh().query().time(start.time(slot)).observer(&mut cost).closest_hit(ray);
             cost
         };
-        let mut costs: Vec<Cost> = start.rays.iter().map(query).collect();
+        let mut costs: Vec<Cost> = start.rays.iter().enumerate().map(query).collect();
         let mut events = Vec::new();
         self.trace_events(ids, &mut events);
         for event in &events {

@@ -1,7 +1,7 @@
 //! The start of a batch: random numbers of the camera, points of the image, and camera rays, eight side by side where the
 //! camera has an image plane.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
@@ -17,12 +17,15 @@ use crate::world::World;
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
 const LENS_DIMENSION: u32 = 1;
 const WAVELENGTH_DIMENSION: u32 = 2;
+const TIME_DIMENSION: u32 = 3;
 
 /// The camera rays of a batch and what they are made of, by slot: memory that is reused.
 #[derive(Debug, Default)]
 pub(super) struct Start {
     /// Random numbers, empty where they are not needed.
     wavelengths: Vec<[f32; 2]>,
+    /// Random numbers, which are the times of samples while the shutter is open; empty where nothing moves.
+    pub(super) times: Vec<f32>,
     /// Points of the image, in pixels, y up; empty where the camera has an image plane.
     points: Vec<[f64; 2]>,
     /// The rays of the kernel.
@@ -38,6 +41,11 @@ impl Start {
     pub(super) fn modes(&self) -> impl Iterator<Item = SpectralMode> {
         let rgb = self.wavelengths.is_empty().then_some(SpectralMode::Rgb);
         rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
+    }
+
+    /// The time of a slot; 0 where nothing moves.
+    pub(super) fn time(&self, slot: usize) -> f32 {
+        self.times.get(slot).copied().unwrap_or(0.0)
     }
 
     /// Whether there may be rays that a lens system blocks.
@@ -89,7 +97,27 @@ impl Renderer {
         Some(camera.lens_system.as_ref()?.crossings(camera.film_point(point)?, two(LENS_DIMENSION)))
     }
 
-    /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane.
+    /// Whether light depends on the time: of what moves, or the camera.
+    fn moves(&self) -> bool {
+        self.world.bvh.is_moving() || self.view.camera.motion.is_some()
+    }
+
+    /// The time of a sample while the shutter is open, from 0 to 1; 0 where nothing moves.
+    pub(crate) fn time(&self, id: SampleId) -> f32 {
+        match self.moves() {
+            true => self.sampler.one(id.pixel, id.sample, TIME_DIMENSION),
+            false => 0.0,
+        }
+    }
+
+    /// The time of a sample and the camera's map from where it is when the shutter opens, if it moves.
+    pub(crate) fn camera_motion(&self, id: SampleId) -> Option<(f32, DMat4)> {
+        let time = self.time(id);
+        self.view.camera.motion.as_ref().map(|motion| (time, motion.at(time.into())))
+    }
+
+    /// A camera ray as a ray of the kernel, with `t` of the notes: 1 on the image plane. The camera is where it is when the shutter
+    /// opens.
     pub(super) fn kernel_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.ray_start + ray.a_from_eye;
         Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
@@ -97,7 +125,7 @@ impl Renderer {
 
     /// Replaces `start` by the camera rays of the samples.
     pub(super) fn start(&self, ids: &[SampleId], start: &mut Start) {
-        let Start { wavelengths, points, rays, weights, filter_weights } = start;
+        let Start { wavelengths, times, points, rays, weights, filter_weights } = start;
         let camera = &self.view.camera;
         let count = if self.is_spectral() { ids.len() } else { 0 };
         self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), WAVELENGTH_DIMENSION, wavelengths);
@@ -105,12 +133,28 @@ impl Renderer {
         weights.clear();
         filter_weights.clear();
         rays.clear();
+        times.clear();
+        times.extend(ids.iter().filter(|_| self.moves()).map(|id| self.time(*id)));
         if camera.is_flat() {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
         } else {
             dispatch(level(), ImagePoints { renderer: self, ids, points, weights });
             rays.extend(points.iter().map(|point| self.kernel_ray(&camera.ray(*point, [0.5; 2]))));
         }
+        if let Some(motion) = &camera.motion {
+            for (ray, time) in rays.iter_mut().zip(times) {
+                *ray = self.moved(&motion.at((*time).into()), ray);
+            }
+        }
+    }
+
+    /// A ray of the camera where that has moved to, by a map of the world.
+    fn moved(&self, map: &DMat4, ray: &Ray) -> Ray {
+        let origin = self.world.origin();
+        let [a, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let a = map.transform_point3(a + origin) - origin;
+        let direction = map.transform_vector3(direction);
+        Ray { origin: a.as_vec3().to_array(), direction: direction.as_vec3().to_array(), ..*ray }
     }
 
     /// The point of the image that the filter chooses by `u`, in pixels, y up, and the filter's weight; in the pixel of a

@@ -67,21 +67,23 @@ impl Session {
         self.exchange(Kept::Trees, |scene| swap(&mut scene.lights, &mut lights))
     }
 
-    /// Moves instances: each by its index in [`Scene::instances`], with its map from the object's space to the world. The trees of
-    /// objects stay; the one over the instances is built again.
+    /// Moves instances: each by its index in [`Scene::instances`], with its map from the object's space to the world, where it
+    /// stands still then. The trees of objects stay; the one over the instances is built again.
     ///
     /// # Errors
     /// As [`Session::set_material`]; `Invalid` for a map without an inverse.
-    pub fn set_poses(&mut self, mut poses: Vec<(usize, DMat4)>) -> Result<()> {
+    pub fn set_poses(&mut self, poses: Vec<(usize, DMat4)>) -> Result<()> {
         let count = self.scene().map_or(usize::MAX, |scene| scene.instances.len());
         if let Some((index, _)) = poses.iter().find(|(index, _)| *index >= count) {
             let message = format!("there is no instance {index}; the scene has {count}, from 0");
             return Err(options::unsuitable(message));
         }
+        let mut poses: Vec<_> = poses.into_iter().map(|(index, pose)| (index, pose, None)).collect();
         self.exchange(Kept::ObjectTrees, |scene| {
             // An instance that is given twice is undone in the opposite order.
-            for (index, pose) in &mut poses {
+            for (index, pose, motion) in &mut poses {
                 swap(&mut scene.instances[*index].world_from_object, pose);
+                swap(&mut scene.instances[*index].motion, motion);
             }
             poses.reverse();
         })

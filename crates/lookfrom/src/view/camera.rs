@@ -20,6 +20,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::{Camera as Written, Lens, Projection, View, Window, up_across};
+use lookfrom_scene::motion::Motion;
 use lookfrom_scene::{Error, Location, Result};
 use lookfrom_simd::{Float, Real};
 
@@ -48,6 +49,8 @@ pub struct Camera {
     pub distance: f64,
     /// `nx`, `ny`.
     pub size: [u32; 2],
+    /// Its motion, if it moves: in the world, from where the matrices put it, which is where it is when the shutter opens.
+    pub motion: Option<Arc<Motion>>,
 }
 
 /// A ray through a point of the image, with the steps of its computation.
@@ -168,6 +171,7 @@ impl Camera {
             lens_system,
             distance: d,
             size: [width, height],
+            motion: written.motion.clone(),
         })
     }
 

@@ -108,14 +108,14 @@ impl World {
         }
     }
 
-    /// The class of the BSDFs at a hit on a mesh that has one; `None` for instances with a material of their own.
+    /// The class of the BSDFs at a hit on a mesh that has one; `None` for instances with a material of their own, or that move.
     #[inline]
     pub(crate) fn mesh_class(&self, hit: &Hit) -> Option<BsdfClass> {
         let class = match hit.instance {
             NONE => &self.classes[hit.geometry as usize],
             instance => {
                 let instance = &self.instances[instance as usize];
-                if instance.material.is_some() {
+                if instance.material.is_some() || instance.moves {
                     return None;
                 }
                 &self.object_classes[instance.object as usize][hit.geometry as usize]
@@ -127,12 +127,18 @@ impl World {
         }
     }
 
-    /// The mesh of a hit, its material, and the placement of the instance that it is in; `None` for other geometries.
+    /// The mesh of a hit on what stands still, its material, and the placement of the instance that it is in; `None` for other
+    /// geometries.
     #[inline]
     pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<StoredPlacement<'_>>)> {
-        let (primitives, instance) = self.primitives(hit);
+        let (primitives, placement) = match hit.instance {
+            NONE => (&self.primitives[hit.geometry as usize], None),
+            id => {
+                let object = self.instances[id as usize].object as usize;
+                (&self.objects[object][hit.geometry as usize], Some(self.standing_placement(id)))
+            }
+        };
         let Primitives::Mesh(mesh) = primitives else { return None };
-        let material = &self.materials[mesh.binding.material as usize];
-        Some((mesh, material, instance.map(|placed| placed.placement)))
+        Some((mesh, &self.materials[mesh.binding.material as usize], placement))
     }
 }

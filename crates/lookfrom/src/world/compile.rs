@@ -8,6 +8,7 @@ use lookfrom_bvh::{Builder, Bvh, Quality, Triangles};
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
+use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::Integrator as Kind;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
@@ -141,6 +142,8 @@ impl World {
         // There may be millions of instances: until the tree is built, only the kernel has their maps.
         let mut builder = Builder::new();
         let mut instanced = Vec::with_capacity(scene.instances.len());
+        let motions = scene.instances.iter().filter_map(|instance| instance.motion.as_deref());
+        let parts = motions.map(Motion::parts).max().unwrap_or(1);
         for written in &scene.instances {
             let material = written.material.map(|id| id.0);
             let matrix = render_from_world * written.world_from_object;
@@ -150,7 +153,16 @@ impl World {
                 compiler.place(shape, &matrix, material, &mut in_world)?;
             }
             if let Some(tree) = trees.get(written.object.index()) {
-                builder.instance(tree.clone(), math::affine(&matrix));
+                match &written.motion {
+                    None => builder.instance(tree.clone(), math::affine(&matrix)),
+                    Some(motion) => {
+                        let maps = motion
+                            .in_parts(parts)
+                            .into_iter()
+                            .map(|map| math::affine(&(render_from_world * map)));
+                        builder.moving_instance(tree.clone(), &maps.collect::<Vec<_>>())
+                    }
+                };
             }
             instanced.push((written.object.0, material));
         }
@@ -197,7 +209,10 @@ impl World {
         };
         let placed = instanced.into_iter().zip(0..);
         let instances: Arc<[Instance]> = placed
-            .map(|((object, material), id)| Instance::new(object, material, bvh.instance_map(id)))
+            .map(|((object, material), id)| {
+                let moves = bvh.instance_map_at(id, 0.0).is_some();
+                Instance::new(object, material, bvh.instance_map(id), moves)
+            })
             .collect();
 
         let mut names = Names { shapes, lights: light_names, ..Names::default() };

@@ -54,8 +54,13 @@ mod tests {
     fn a_million_instances_take_less_than_600_megabytes() {
         let at = Location::default();
         let object = Object { name: String::new(), at: at.clone(), shapes: Vec::new() };
-        let instance =
-            Instance { at, object: ObjectId(0), world_from_object: DMat4::IDENTITY, material: None };
+        let instance = Instance {
+            at,
+            object: ObjectId(0),
+            world_from_object: DMat4::IDENTITY,
+            material: None,
+            motion: None,
+        };
         let scene = Scene { objects: vec![object], instances: vec![instance; 1000], ..Scene::default() };
         assert_eq!(scene.bytes() + World::memory(&scene), 584 * 1000);
         // Of them after compilation, with the kernel's 176 and its tree's 100:

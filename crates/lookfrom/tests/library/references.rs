@@ -41,6 +41,7 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
     ("measured/scene", "measured", 256, 16, 0.005),
     ("lights-image/scene", "lights-image", 256, 16, 0.005),
     ("lens-realistic/scene", "lens-realistic", 384, 16, 0.005),
+    ("motion-blur/scene", "motion-blur", 256, 16, 0.005),
 ];
 
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how
@@ -135,7 +136,8 @@ fn alike(scene: &Path, reference: &Path) -> [f64; 2] {
 fn normals_are_pbrts() {
     let shared = lookfrom_test_data::shared("");
     // Pictures of single features have no `Ns`, and those of media have what is seen where nothing was scattered.
-    let without = ["cornell-sensor", "subsurface", "hair", "measured", "lights-image", "lens-realistic"];
+    let without =
+        ["cornell-sensor", "subsurface", "hair", "measured", "lights-image", "lens-realistic", "motion-blur"];
     let has_normals = |name: &str| !without.contains(&name) && !name.starts_with("medium-");
     for (scene, name, ..) in SCENES.iter().filter(|(_, name, ..)| has_normals(name)) {
         let reference = shared.join(format!("reference/{name}.exr"));

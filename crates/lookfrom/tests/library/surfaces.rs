@@ -255,6 +255,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
             object: ObjectId(0),
             material: None,
             world_from_object: place,
+            motion: None,
         });
     } else {
         shape.world_from_object = place;
@@ -354,6 +355,7 @@ fn further_coordinates_and_opacities_come_with_the_surface() {
                 object: ObjectId(0),
                 material: None,
                 world_from_object: place,
+                motion: None,
             });
             scene.shapes.push(first);
         } else {

@@ -45,8 +45,8 @@ impl Observer for Tested {
 }
 
 /// The cost of a shadow ray, which needs no more than one hit.
-pub(in crate::inspect) fn of_shadow(world: &World, ray: &Ray) -> TraversalReport {
+pub(in crate::inspect) fn of_shadow(world: &World, ray: &Ray, time: f32) -> TraversalReport {
     let mut tested = Tested::default();
-    world.bvh.query().observer(&mut tested).occluded(ray);
+    world.bvh.query().time(time).observer(&mut tested).occluded(ray);
     tested.traversal
 }

@@ -30,7 +30,7 @@ pub(super) fn outlines(world: &World, viewer: DVec4) -> Vec<Outline> {
     let of_world = world.primitives.iter().map(|primitives| (primitives, world_from_render));
     let every = world.instances.len().div_ceil(MOST).max(1);
     let of_instances = (0..world.instances.len()).step_by(every).flat_map(|id| {
-        let placed = world.instance(id as u32);
+        let placed = world.instance(id as u32, 0.0);
         let world_from_object = world_from_render * placed.render_from_object();
         let object = &world.objects[placed.instance.object as usize];
         object.iter().map(move |primitives| (primitives, world_from_object))

@@ -177,7 +177,7 @@ impl TraceLogBuilder<'_> {
     pub(super) fn shadow(&mut self, shadow: &Shadow, hit: &Hit, passed: Spectrum) {
         let world = self.world;
         let blocker = hit.is_hit().then(|| {
-            let surface = world.surface(&shadow.ray, hit);
+            let surface = world.surface_at(&shadow.ray, hit, self.time);
             let shape = world.names.shapes[surface.shape as usize].clone();
             let point = (world.origin + DVec3::from_array(surface.point.position)).to_array();
             Blocker { shape, t: hit.t, point, passed: self.factor(passed) }
@@ -186,7 +186,7 @@ impl TraceLogBuilder<'_> {
         let rest = (!hit.is_hit()).then(|| self.factor(passed));
         let departure = self.departure(shadow.address, &shadow.ray);
         let traversal = match self.with_tests {
-            true => candidate::of_shadow(world, &shadow.ray),
+            true => candidate::of_shadow(world, &shadow.ray, self.time),
             false => TraversalReport::default(),
         };
         let collisions = self.null_collisions(shadow, if hit.is_hit() { hit.t } else { shadow.ray.t_max });

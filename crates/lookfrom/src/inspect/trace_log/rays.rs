@@ -32,7 +32,7 @@ impl TraceLogBuilder<'_> {
             _ => RayKind::Refracted,
         };
         let (traversal, candidates) = match self.with_tests {
-            true => candidate::candidates(self.world, &path.ray, hit),
+            true => candidate::candidates(self.world, (&path.ray, self.time), hit),
             false => Default::default(),
         };
         let pdf = path.state.pdf;
@@ -50,7 +50,7 @@ impl TraceLogBuilder<'_> {
             pdf: (pdf != f32::INFINITY).then_some(pdf),
             traversal,
             candidates,
-            met: surface.map(|surface| met_report(self.world, hit, surface)),
+            met: surface.map(|surface| met_report(self.world, (hit, self.time), surface)),
             absorption: None,
             flight: None,
             tracking: None,
@@ -163,7 +163,7 @@ impl TraceLogBuilder<'_> {
     }
 }
 
-fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetReport {
+fn met_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteraction) -> MetReport {
     MetReport {
         shape: world.names.shapes[surface.shape as usize].clone(),
         primitive: hit.primitive,
@@ -171,7 +171,7 @@ fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetRepo
         t: hit.t,
         point: (world.origin + DVec3::from_array(surface.point.position)).to_array(),
         error: surface.point.error,
-        lift: lift_report(world, hit, surface),
+        lift: lift_report(world, (hit, time), surface),
         ng: surface.ng.to_array(),
         n: surface.ns_facing().to_array(),
         uv: surface.uv.to_array(),
@@ -185,9 +185,9 @@ fn met_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> MetRepo
 }
 
 /// The way to the smooth surface that a triangle stands for, and its operands.
-fn lift_report(world: &World, hit: &Hit, surface: &SurfaceInteraction) -> Option<LiftReport> {
+fn lift_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteraction) -> Option<LiftReport> {
     let lift = surface.lift()?.way.into();
-    let (Primitives::Mesh(mesh), placed) = world.primitives(hit) else { return None };
+    let (Primitives::Mesh(mesh), placed) = world.primitives(hit, time) else { return None };
     let triangle = mesh.triangle(hit.primitive as usize);
     let from_object = placed.map(|placed| {
         let [x, y, z, _] = placed.render_from_object().transpose().to_cols_array_2d();

@@ -85,8 +85,8 @@ pub(super) fn exit_below<P: Probe>(
     let stream = &vertex.stream;
     let segment = prober.segment(stream.two(dimension::PROBE_AXIS), stream.two_with_pixel(dimension::PROBE));
     let crossings = segment.as_ref().map_or_else(Crossings::default, |segment| {
-        let material = vertex.surface.material;
-        Crossings::find(world, material, (&prober, segment), entered.beta, stream.two(dimension::EXIT))
+        let at = (vertex.surface.material, output.time(entered));
+        Crossings::find(world, at, (&prober, segment), entered.beta, stream.two(dimension::EXIT))
     });
     let exit = crossings.chosen.as_ref().map(|&Crossing { ref surface, sp, pdf, weight, .. }| {
         let probability = weight / crossings.weight;
@@ -129,10 +129,10 @@ pub(super) fn exit_below<P: Probe>(
 }
 
 impl Crossings {
-    /// Follows a line, for a throughput; by two numbers in [0, 1): for the choice, and for alpha tests.
+    /// Follows a line through a material at a time, for a throughput; by two numbers in [0, 1): for the choice, and for alpha tests.
     fn find(
         world: &World,
-        material: u32,
+        (material, time): (u32, f32),
         (prober, segment): (&Prober<'_>, &ProbeSegment),
         beta: Spectrum,
         [mut which, presence]: [f32; 2],
@@ -142,11 +142,11 @@ impl Crossings {
         let mut origin_primitive = OriginPrimitive::NONE;
         let mut crossings = Self::default();
         loop {
-            let hit = world.bvh.query().origin(origin_primitive).closest_hit(&ray);
+            let hit = world.bvh.query().origin(origin_primitive).time(time).closest_hit(&ray);
             if !hit.is_hit() {
                 return crossings;
             }
-            let surface = world.surface(&ray, &hit);
+            let surface = world.surface_at(&ray, &hit, time);
             if surface.material == material && world.passes_alpha_test(&surface, presence) {
                 let point = surface.point.position.into();
                 let (sp, pdf) = (prober.sp(point), prober.pdf(point, surface.ng.as_vec3()));

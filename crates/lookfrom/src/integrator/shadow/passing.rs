@@ -5,7 +5,7 @@ use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use super::lanes::Crossings;
 use super::media::Transmittances;
-use super::{ShadowLight, ShadowTransparency, Shadows, rest};
+use super::{ShadowLight, ShadowTransparency, Shadows, rest, times_of};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Behind, Interfaces};
@@ -26,7 +26,7 @@ pub(super) fn let_through<P: Probe>(
     queues: &mut Queues,
     probe: &mut P,
 ) -> u64 {
-    let Queues { shadows, modes, hits, .. } = queues;
+    let Queues { shadows, modes, times, hits, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     let mut traced = 0;
     // The lights of the rays that are left.
@@ -38,7 +38,8 @@ pub(super) fn let_through<P: Probe>(
     for round in 0.. {
         hits.clear();
         hits.resize(rays.len(), Hit::MISS);
-        world.bvh.query().origins(origin_primitives).closest_hits(rays, hits);
+        let at = times_of(times, left.iter().map(|&light| lights[light as usize].slot));
+        world.bvh.query().origins(origin_primitives).times(&at).closest_hits(rays, hits);
         traced += rays.len() as u64;
 
         let is_blocked = |hit: &Hit| {
@@ -64,8 +65,8 @@ pub(super) fn let_through<P: Probe>(
             } else {
                 let mode = &modes[light.slot as usize];
                 let interface = Interfaces::kind(world, &hit).filter(|_| !is_blocked);
-                let surface =
-                    (hit.is_hit() && !is_blocked && interface.is_none()).then(|| world.surface(&ray, &hit));
+                let surface = (hit.is_hit() && !is_blocked && interface.is_none())
+                    .then(|| world.surface_at(&ray, &hit, at.get(place).copied().unwrap_or(0.0)));
                 let through_surface = match &surface {
                     Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
                     None if is_blocked => Spectrum::BLACK,

@@ -28,10 +28,11 @@ impl Shaded {
             Boundary::Surface(surface) => Some(surface),
             _ => None,
         };
+        let time = output.time(path);
         output.probe.notice_some(|| {
             self.told.as_ref().map(|told| Event::Surface {
                 address: path.address,
-                surface: Box::new(surface.copied().unwrap_or_else(|| world.surface(&path.ray, hit))),
+                surface: Box::new(surface.copied().unwrap_or_else(|| world.surface_at(&path.ray, hit, time))),
                 coefficients: Some(Box::new(told.coefficients[lane])),
             })
         });

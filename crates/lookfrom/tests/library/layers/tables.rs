@@ -109,7 +109,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "build hit_point settings validate",
             "refit visibility",
             "traverse",
-            "interleaved packet",
+            "interleaved moving packet",
             "batch",
             "closest_point single traverse_f64",
             "trace_ray",
@@ -121,7 +121,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-scene",
         rungs: &[
             "remedy",
-            "error grid json parallel plural stamps suggest variables",
+            "error grid json motion parallel plural stamps suggest variables",
             "budget camera material warning",
             "contents files",
             "digest inputs packed spectrum",

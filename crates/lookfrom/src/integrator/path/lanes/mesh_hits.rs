@@ -265,7 +265,7 @@ fn tell_of_shading<B: MaterialRow, P: Probe>(
 ) {
     for lane in LaneMask(active) {
         let (MeshHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
-        let surface = world.surface(&path.ray, hit);
+        let surface = world.surface_at(&path.ray, hit, output.time(path));
         output.probe.notice(|| Event::Shaded {
             address: path.address,
             shading: Box::new(Shading::in_frame(&surface, points.surfaces.axes(lane), row.bsdf())),
