@@ -17,6 +17,7 @@ mod instance;
 mod moving;
 
 pub(crate) use instance::Instance;
+pub use moving::moment;
 pub(crate) use moving::{Moment, Moving};
 
 /// A bounding volume hierarchy (BVH) for tracing rays. Made by a [`Builder`](crate::Builder); immutable, and shared

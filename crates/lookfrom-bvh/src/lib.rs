@@ -57,7 +57,7 @@ mod visibility;
 pub use aabb::Aabb;
 pub use affine::Affine;
 pub use build::{BuildError, Builder, Quality, Triangles};
-pub use bvh::Bvh;
+pub use bvh::{Bvh, moment};
 pub use closest_point::{ClosestPoint, ClosestPointF64};
 pub use faces::Faces;
 pub use hit_point::HitPoint;

@@ -68,7 +68,7 @@ pub(crate) fn read(
 ) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
     let files = Digested::new(&Disk);
     let mut context = LoadContext { variables: variables.variables(), ..LoadContext::within(budget, &files) };
-    context.import.at = variables.at;
+    (context.import.at, context.import.shutter) = (variables.at, variables.shutter);
     load::scene(scene, &mut context)?;
     Ok(files.digests(Path::new("")))
 }

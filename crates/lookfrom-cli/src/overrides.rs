@@ -58,7 +58,7 @@ impl Overrides {
             rotate_environment: self.model.rotate_environment,
             floor: self.model.floor,
             turn: self.model.turn,
-            import: self.model.choice(self.variables.at),
+            import: self.model.choice(&self.variables),
             variables: self.variables.variables(),
             threads: common.threads.map(usize::from),
             budget: common.memory.budget(),

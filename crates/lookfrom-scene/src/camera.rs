@@ -35,6 +35,9 @@ pub struct Camera {
     pub distance: f64,
     /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,
+    /// The time that the shutter is open, in frames of an animation: 0 is an instant. [`ImportOptions::shutter`](crate::ImportOptions::shutter)
+    /// replaces it.
+    pub shutter: f64,
     /// Its motion, if it moves: in the world, from where it is when the shutter opens.
     pub motion: Option<Arc<Motion>>,
 }
@@ -202,6 +205,7 @@ impl Default for Camera {
             window: None,
             distance: 1.0,
             medium: None,
+            shutter: 0.0,
             motion: None,
         }
     }

@@ -20,7 +20,8 @@ const SAMPLES: usize = 4096;
 
 /// Keeps the first of equal elements in each mesh and cloud, and among the instances, with a note.
 pub(crate) fn remove(scene: &mut Scene, file: &Location, context: &mut LoadContext<'_>) {
-    let triangles = scene.meshes.iter_mut().filter(|mesh| !mesh.is_of_solid).map(of_mesh).sum();
+    let triangles =
+        scene.meshes.iter_mut().filter(|mesh| !mesh.is_of_solid && mesh.later.is_empty()).map(of_mesh).sum();
     let in_objects = scene.objects.iter_mut().flat_map(|object| &mut object.shapes);
     let spheres = scene.shapes.iter_mut().chain(in_objects).map(of_cloud).sum();
     let instances = of_instances(&mut scene.instances);
@@ -102,7 +103,7 @@ fn of_instances(instances: &mut Vec<Instance>) -> usize {
     }
     let before = instances.len();
     let mut seen = HashSet::new();
-    instances.retain(|instance| seen.insert(key(instance)));
+    instances.retain(|instance| instance.motion.is_some() || seen.insert(key(instance)));
     before - instances.len()
 }
 

@@ -233,6 +233,9 @@ pub struct ImportOptions {
     pub animation: Option<String>,
     /// The time in seconds from the beginning of all animations, of models and of a scene in our own format; `None` is 0.
     pub at: Option<f64>,
+    /// The time that the shutter is open, in frames (of [`Variables::fps`]), from `at` on: what moves is blurred. `None` is that of
+    /// the scene's camera.
+    pub shutter: Option<f64>,
     /// The material variant, by name or number from 0.
     pub variant: Option<String>,
     /// The scene, by name or number from 0.

@@ -49,6 +49,7 @@ pub mod remedy;
 pub mod scene;
 pub mod settings;
 pub mod shape;
+mod shutter;
 mod source;
 pub mod spectrum;
 pub mod stamps;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::files::{CameraChoice, LoadContext};
+use crate::files::{CameraChoice, ImportOptions, LoadContext};
 use crate::format::Format;
 #[cfg(feature = "gltf")]
 use crate::gltf;
@@ -17,7 +17,7 @@ use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Part, Shape};
 use crate::source::Source;
 use crate::warning::Warning;
-use crate::{duplicates, model, studio, toml};
+use crate::{duplicates, model, shutter, studio, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -33,6 +33,10 @@ pub const PIPE: &str = "-";
 /// `Unsupported` if the format is not known, and the errors of the format's reader.
 pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = whole(path, context)?;
+    let frames = context.import.shutter.or(scene.camera.as_ref().map(|camera| camera.shutter));
+    if let Some(frames) = frames.filter(|frames| *frames > 0.0 && is_animated(&scene, context)) {
+        shutter::open(&mut scene, frames, path, context, |context| whole(path, context))?;
+    }
     // What a reader only warns of, such as a picture without which it goes on, may have been this.
     if let Some(refusal) = context.budget.take_refusal() {
         return Err(refusal);
@@ -49,6 +53,14 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     }
     duplicates::remove(&mut scene, &Location::file(path), context);
     Ok(scene)
+}
+
+/// Whether a scene depends on the time.
+fn is_animated(scene: &Scene, context: &LoadContext<'_>) -> bool {
+    let ImportOptions { animation, at, .. } = &context.import;
+    at.is_some()
+        || scene.contents.duration.is_some()
+        || !scene.contents.animations.is_empty() && animation.is_some()
 }
 
 fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {

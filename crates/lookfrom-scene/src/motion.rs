@@ -49,6 +49,23 @@ impl Motion {
         Some(Self { maps: (0..=parts).map(at).collect() })
     }
 
+    /// The motion through maps at equally spaced times, 2ᵏ + 1 for a k ≥ 0, between two of which it is as [`Self::between`] has it.
+    /// `None` for other numbers of maps, where nothing moves, or a map has no inverse.
+    pub fn through(maps: &[DMat4]) -> Option<Self> {
+        if maps.iter().all(|map| *map == maps[0]) {
+            return None;
+        }
+        let ways = maps.windows(2).map(|pair| match pair[0] == pair[1] {
+            true => Some(Self { maps: pair.to_vec() }),
+            false => Self::between(&pair[0], &pair[1], [0.0, 1.0]),
+        });
+        let ways: Vec<Self> = ways.collect::<Option<_>>()?;
+        let parts = ways.iter().map(Self::parts).max()?;
+        let mut all = vec![maps[0]];
+        ways.iter().for_each(|way| all.extend(way.in_parts(parts).into_iter().skip(1)));
+        Self::of_maps(all)
+    }
+
     /// The motion with these maps: 2ᵏ + 1 for a k ≥ 0. `None` for other numbers, and where nothing moves.
     pub fn of_maps(maps: Vec<DMat4>) -> Option<Self> {
         let is_count = maps.len() > 1 && (maps.len() - 1).is_power_of_two();

@@ -206,6 +206,25 @@ pub struct Mesh {
     pub tangents: Vec<Vec4>,
     /// Whether it is the surface of a solid, or a part of it: what is left out opens the solid.
     pub is_of_solid: bool,
+    /// Its vertices at further times, equally spaced until the shutter closes, linear in between: 2ᵏ of them, or none if it keeps
+    /// its form. All meshes of a scene that have any have as many.
+    pub later: Vec<MeshPose>,
+}
+
+/// The vertices of a mesh at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshPose {
+    /// As many as those of the mesh.
+    pub positions: Vec<Vec3>,
+    /// As many as those of the mesh.
+    pub normals: Vec<Vec3>,
+}
+
+impl MeshPose {
+    /// Bytes of its arrays.
+    pub fn bytes(&self) -> u64 {
+        (size_of_val(&*self.positions) + size_of_val(&*self.normals)) as u64
+    }
 }
 
 impl Mesh {
@@ -222,6 +241,7 @@ impl Mesh {
             + size_of_val(&*self.opacities)
             + size_of_val(&*self.tangents);
         (vertices + size_of_val(&*self.triangles)) as u64
+            + self.later.iter().map(MeshPose::bytes).sum::<u64>()
     }
 }
 
@@ -333,13 +353,14 @@ impl Geometry {
             }),
             Self::Mesh(id) => {
                 // Each vertex once: on average it is a corner of six triangles, but it may be one of none.
-                let Mesh { positions, triangles, .. } = &meshes[id.index()];
+                let Mesh { positions, triangles, later, .. } = &meshes[id.index()];
                 let mut is_corner = vec![false; positions.len()];
                 for &vertex in triangles.as_flattened() {
                     is_corner[vertex as usize] = true;
                 }
-                let corners = positions.iter().zip(&is_corner).filter(|(_, is_corner)| **is_corner);
-                corners.fold(Bounds::EMPTY, |bounds, (position, _)| {
+                let times = std::iter::once(positions).chain(later.iter().map(|pose| &pose.positions));
+                let vertices = times.flat_map(|positions| positions.iter().zip(&is_corner));
+                vertices.filter(|(_, is_corner)| **is_corner).fold(Bounds::EMPTY, |bounds, (position, _)| {
                     bounds.with(matrix.transform_point3(position.as_dvec3()))
                 })
             }

@@ -70,7 +70,11 @@ impl Integrator for DirectLighting {
         output.leave_first_surface(world, &path, &surface, || None);
 
         // One of the lights, if nothing is in the way.
-        let at = LightSampleContext { point: surface.point.position.into(), n: shading.n() };
+        let at = LightSampleContext {
+            point: surface.point.position.into(),
+            n: shading.n(),
+            time: output.time(&path),
+        };
         let u = stream.two_with_pixel(dimension::LIGHT);
         if let Some((light, sample)) = world.sample_light(&at, u, &output.mode(&path)) {
             let f = shading.f_toward(surface.wo)(sample.wi);

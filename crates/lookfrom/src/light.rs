@@ -30,6 +30,7 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint, Textu
 use cone::Cone;
 use tree::LightBounds;
 
+pub(crate) use area::LightMotion;
 pub use area::{
     AreaLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight,
 };
@@ -127,6 +128,8 @@ pub struct LightSampleContext {
     pub point: DVec3,
     /// Unit normal, with which the light is weighted; zero at a point of a medium, which light reaches from all sides alike.
     pub n: Vec3,
+    /// The time while the shutter is open (0 … 1), for lights that move.
+    pub time: f32,
 }
 
 /// A sample of a light as seen from a point, without visibility.
@@ -221,7 +224,10 @@ impl Light {
             }
             Self::Projection(projection) => projection.sample(textures, from, mode),
             Self::Goniometric(goniometric) => goniometric.sample(textures, from, mode),
-            Self::Area(light) => light.sample(textures, from, u, mode),
+            Self::Area(light) => match light.place_at(at.time) {
+                None => light.sample(textures, from, u, mode),
+                Some(place) => place.sample(from, |from| light.sample(textures, from, u, mode)),
+            },
             Self::Environment(environment) => environment.sample(textures, at, u, mode, incomplete_pdf),
         }
     }
@@ -236,7 +242,12 @@ impl Light {
         incomplete_pdf: IncompletePdf,
     ) -> f32 {
         match (self, surface) {
-            (Self::Area(light), Some(surface)) => light.pdf(at.point, surface, wi),
+            (Self::Area(light), Some(surface)) => match light.place_at(at.time) {
+                None => light.pdf(at.point, surface, wi),
+                Some(place) => {
+                    place.pdf(at.point, surface, wi, |from, surface, wi| light.pdf(from, surface, wi))
+                }
+            },
             (Self::Environment(environment), None) => environment.pdf(at, wi, incomplete_pdf),
             _ => 0.0,
         }

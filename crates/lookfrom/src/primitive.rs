@@ -22,7 +22,7 @@ use lookfrom_bvh::{Affine, Hit, Point};
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
 pub(crate) use mesh::lanes::points_on_meshes;
-pub use mesh::{Mesh, VertexData};
+pub use mesh::{Mesh, Pose, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
@@ -149,12 +149,13 @@ impl Primitives {
         }
     }
 
-    /// The point of `hit` on a ray from `origin` in `direction` (the one that was traced, in this primitive's space).
-    pub fn point(&self, hit: &Hit, origin: DVec3, direction: DVec3) -> SurfacePoint {
+    /// The point of `hit` on a ray from `origin` in `direction` (the one that was traced, in this primitive's space) at a time of
+    /// the shutter (0 … 1).
+    pub fn point(&self, hit: &Hit, [origin, direction]: [DVec3; 2], time: f32) -> SurfacePoint {
         let index = hit.primitive as usize;
         let near = origin + f64::from(hit.t) * direction;
         match self {
-            Self::Mesh(mesh) => mesh.point(index, hit.u, hit.v),
+            Self::Mesh(mesh) => mesh.point_at(index, [hit.u, hit.v], time),
             Self::Spheres(spheres) => spheres.point(index, near),
             Self::Disks(disks) => disks.point(index, near),
             Self::Quadrics(quadrics) => quadrics.point(index, near),

@@ -210,10 +210,10 @@ impl World {
     pub fn surface_at(&self, ray: &Ray, hit: &Hit, time: f32) -> SurfaceInteraction {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
         let at_primitive = match self.primitives(hit, time) {
-            (primitives, None) => primitives.point(hit, origin, direction),
+            (primitives, None) => primitives.point(hit, [origin, direction], time),
             (primitives, Some(instance)) => {
                 let (origin, direction) = instance.in_object(origin, direction);
-                instance.place(primitives.point(hit, origin, direction))
+                instance.place(primitives.point(hit, [origin, direction], time))
             }
         };
         let wo = -direction.normalize();

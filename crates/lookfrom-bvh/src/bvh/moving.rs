@@ -138,6 +138,21 @@ impl Moment {
     }
 }
 
+/// Finds a time among equally spaced ones from 0 to 1, at least two: the number of the last one before it, never that of the
+/// last of all, and the part of the way to the next, as queries interpolate what moves.
+///
+/// ```
+/// assert_eq!(lookfrom_bvh::moment(5, 0.375), (1, 0.5));
+/// assert_eq!(lookfrom_bvh::moment(5, 1.0), (3, 1.0));
+/// ```
+///
+/// # Panics
+/// For fewer than two times.
+pub fn moment(times: usize, time: f32) -> (usize, f32) {
+    let Moment { earlier, fraction } = Moment::among(times, time);
+    (earlier, fraction)
+}
+
 impl Instance {
     /// This instance elsewhere; `None` where the map has no usable inverse.
     pub(crate) fn moved(&self, map: Affine) -> Option<Self> {

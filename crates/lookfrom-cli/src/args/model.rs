@@ -10,6 +10,7 @@ use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::subdivision::MOST_LEVELS;
 use lookfrom_scene::{CameraChoice, ImportOptions};
 
+use super::variables::VariableArguments;
 use crate::values;
 
 /// The surroundings of a model, and the selected parts of its file.
@@ -83,10 +84,11 @@ pub(crate) struct ModelArguments {
 
 impl ModelArguments {
     /// The import options: which scene, camera, animation and variant of a file to use, at a time in seconds.
-    pub(crate) fn choice(&self, at: Option<f64>) -> ImportOptions {
+    pub(crate) fn choice(&self, variables: &VariableArguments) -> ImportOptions {
         ImportOptions {
             animation: self.animation.clone(),
-            at,
+            at: variables.at,
+            shutter: variables.shutter,
             variant: self.variant.clone(),
             scene: self.scene_of_file.clone(),
             camera: match self.camera.as_deref() {

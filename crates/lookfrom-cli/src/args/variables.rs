@@ -20,6 +20,10 @@ pub(crate) struct VariableArguments {
     #[arg(long, value_name = "TIME", value_parser = values::moment)]
     pub(crate) at: Option<f64>,
 
+    /// Frames that the shutter is open, from the time on: what moves is blurred; films have 0.5
+    #[arg(long, value_name = "FRAMES", value_parser = values::between(0.0f64, 1000.0))]
+    pub(crate) shutter: Option<f64>,
+
     /// Frames per second: of --frames, of animated pictures, and of `frame` in a scene
     #[arg(long, value_name = "N", default_value_t = FPS, value_parser = values::between(1e-3f64, 1e6))]
     pub(crate) fps: f64,
@@ -27,7 +31,7 @@ pub(crate) struct VariableArguments {
 
 impl Default for VariableArguments {
     fn default() -> Self {
-        Self { define: Vec::new(), at: None, fps: FPS }
+        Self { define: Vec::new(), at: None, shutter: None, fps: FPS }
     }
 }
 

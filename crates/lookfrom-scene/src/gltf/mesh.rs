@@ -370,6 +370,7 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
         opacities,
         tangents,
         is_of_solid: false,
+        later: Vec::new(),
     });
     MeshId(scene.meshes.len() as u32 - 1)
 }

@@ -30,6 +30,7 @@ pub(super) const KEYS: &[&str] = &[
     "window",
     "distance",
     "medium",
+    "shutter",
 ];
 /// Those that only a lens system has.
 const OF_LENS: [&str; 3] = ["film", "aperture_shape", "millimetre"];
@@ -100,6 +101,7 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
     let distance = table.or("distance", 1.0, Value::positive);
     let aperture = table.maybe("aperture", Value::not_negative);
     let focus = focus(table);
+    let shutter = table.or("shutter", 0.0, Value::not_negative);
     table.sound(&["lookfrom", "lookat", "up", "aperture", "focus", "focus_distance"])?;
 
     // Neither the view axis nor the horizontal axis of the image may be 0.
@@ -141,6 +143,7 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         window,
         distance,
         medium: None,
+        shutter,
         motion: None,
     })
 }

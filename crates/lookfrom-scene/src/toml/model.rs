@@ -85,6 +85,7 @@ impl Reader<'_, '_> {
         let mut choice = ImportOptions {
             animation: name("animation", &asked.animation),
             at: table.or("at", asked.at, |value| value.number().map(Some)),
+            shutter: None,
             variant: name("variant", &asked.variant),
             scene: name("scene", &asked.scene),
             camera: CameraChoice::First,

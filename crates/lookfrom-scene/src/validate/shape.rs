@@ -13,6 +13,14 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
         check_mesh(&Part::new(scene, &nowhere, "mesh").numbered(index, Some(&mesh.name)), mesh)?;
     }
     check_shapes(scene, "", &scene.shapes)?;
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        if let Geometry::Mesh(id) = shape.geometry
+            && scene.meshes.get(id.index()).is_some_and(|mesh| !mesh.later.is_empty())
+        {
+            let part = Part::new(scene, &shape.at, "shape").numbered(index, shape.name.as_deref());
+            return Err(part.fault("its mesh changes its form, but it is in no object"));
+        }
+    }
     for (index, object) in scene.objects.iter().enumerate() {
         check_shapes(scene, &format!("object {index} {:?}: ", object.name), &object.shapes)?;
     }
@@ -114,6 +122,13 @@ fn check_patches(part: &Part<'_>, patches: &Patches) -> Result<()> {
 }
 
 fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
+    if !mesh.later.is_empty() && !mesh.later.len().is_power_of_two() {
+        return Err(part.fault(format!("it has {} later times; expected a power of two", mesh.later.len())));
+    }
+    for pose in &mesh.later {
+        part.as_many("later positions", pose.positions.len(), "positions", mesh.positions.len())?;
+        part.as_many("later normals", pose.normals.len(), "normals", mesh.normals.len())?;
+    }
     let vertices = mesh.positions.len();
     part.all("positions", &mesh.positions, "finite", |position| position.is_finite())?;
     let is_valid = |triangle: &[u32; 3]| triangle.iter().all(|vertex| (*vertex as usize) < vertices);

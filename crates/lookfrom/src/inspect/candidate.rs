@@ -205,7 +205,7 @@ fn candidate(
     ray.add_to(&mut numbers, if placed.is_some() { IN_OBJECT } else { ["a", "d"] });
     let (kind, shape, test, outcome) = match primitives {
         Primitives::Mesh(mesh) => {
-            let outcome = reference::triangle(mesh.corners(index), &ray, &mut numbers);
+            let outcome = reference::triangle(mesh.corners_at(index, time), &ray, &mut numbers);
             ("triangle", mesh.binding.shape, Test::Triangle(numbers), outcome)
         }
         Primitives::Spheres(spheres) => {

@@ -111,9 +111,9 @@ impl Default for PreviousVertex {
 }
 
 impl PreviousVertex {
-    /// The light sample context there.
-    pub fn light_context(&self) -> LightSampleContext {
-        LightSampleContext { point: self.point.as_dvec3(), n: self.n }
+    /// The light sample context there, at a time of the shutter.
+    pub fn light_context(&self, time: f32) -> LightSampleContext {
+        LightSampleContext { point: self.point.as_dvec3(), n: self.n, time }
     }
 }
 
@@ -333,7 +333,8 @@ impl PathTracer {
         if radiance.is_black() {
             return;
         }
-        let pdf = || world.light_pdf(light, &path.state.light_context(), -surface.wo, Some(surface));
+        let time = output.time(path);
+        let pdf = || world.light_pdf(light, &path.state.light_context(time), -surface.wo, Some(surface));
         self.add_found(path, light, radiance, pdf, output);
     }
 

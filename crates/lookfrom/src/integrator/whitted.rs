@@ -144,10 +144,10 @@ fn shade_bare_hits<P: Probe>(
     let (world, count) = (batch.world, eight.paths.len());
     let eight = &BareEight::of(batch, eight, are_on_spheres);
     let wanted = wanted(tree, output);
-    let Queues { modes, first_surfaces, .. } = &mut output.queues;
+    let Queues { modes, times, first_surfaces, .. } = &mut output.queues;
     let mut target = eight.aov_target(world, count, first_surfaces);
     let first = target.as_deref_mut();
-    BareKernel { world, eight, streams: batch.streams, modes, wanted, shaded, first }.shade();
+    BareKernel { world, eight, streams: batch.streams, modes, times, wanted, shaded, first }.shade();
     if let Some(target) = target {
         eight.set_other_albedos(world, modes, target);
         first_surfaces.leave_block();
@@ -210,7 +210,7 @@ pub(super) fn step<P: Probe>(
         is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });
     let wanted = wanted(tree, output);
-    shade_one(world, (path, stream, &mode), surface, &coefficients, wanted, shaded);
+    shade_one(world, (path, stream), (&mode, output.time(path)), surface, &coefficients, wanted, shaded);
     let (origin_primitive, boundary) = (OriginPrimitive::of(hit), Boundary::Surface(surface));
     let departure = Departure { path, origin_primitive, boundary };
     shaded.finish(world, (&PathHit { departure, hit }, 0), tree, output);

@@ -7,6 +7,7 @@ mod derivation;
 mod disk;
 mod lanes;
 mod mesh;
+mod moving;
 mod patch;
 mod quadric;
 
@@ -27,6 +28,7 @@ use disk::{DiskLights, gather_disks};
 pub(crate) use lanes::sample_area_lights;
 pub use mesh::MeshLight;
 use mesh::{Triangle as LightTriangle, sample_triangles};
+pub(crate) use moving::LightMotion;
 pub use patch::PatchLight;
 pub use quadric::QuadricLight;
 use quadric::{SphereLights, gather_spheres};
@@ -44,8 +46,10 @@ pub struct AreaLight {
     pub two_sided: bool,
     /// Weight of a clear coat over the emitter; `None` where there is none.
     pub coat: Option<FloatTexture>,
-    /// The shape that emits light.
+    /// The shape that emits light; of one that moves where it is when the shutter opens.
     pub shape: LightShape,
+    /// Its motion, if it moves.
+    pub(crate) motion: Option<LightMotion>,
 }
 
 /// The geometry of an area light.
@@ -178,7 +182,8 @@ pub struct EmitterBounds {
 impl AreaLight {
     /// Whether any emission was found on it; otherwise it is not sampled, and only rays that hit it find its light.
     pub fn is_sampled(&self) -> bool {
-        !matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled())
+        let is_pattern_dark = matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled());
+        !is_pattern_dark && self.motion.as_ref().is_none_or(LightMotion::is_rigid)
     }
 
     /// The mean of the emission texture over the light, where sampling takes the texture into account.
@@ -326,6 +331,10 @@ impl AreaLight {
             LightShape::Patches(light) => (light.bounds(), light.normals()),
         };
         let [min, max] = bounds;
+        if let Some(motion) = &self.motion {
+            let [min, max] = motion.bounds([min, max]);
+            return EmitterBounds { min, max, axis: Vec3::Z, cos_normals: -1.0, two_sided: self.two_sided };
+        }
         // Rounding must not make the cone too narrow.
         let cos_normals = (cos as f32 - 1e-6).max(-1.0);
         EmitterBounds { min, max, axis: axis.as_vec3(), cos_normals, two_sided: self.two_sided }

@@ -126,8 +126,11 @@ impl LightChoice {
         if listed != 0 {
             let (points, normals, numbers) = (store_f64(points), store(n), <[f32; LANES]>::from(u));
             for lane in LaneMask(listed) {
-                let at =
-                    LightSampleContext { point: row(&points, lane).into(), n: row(&normals, lane).into() };
+                let at = LightSampleContext {
+                    point: row(&points, lane).into(),
+                    n: row(&normals, lane).into(),
+                    time: 0.0,
+                };
                 chosen[lane] = self.sample(&at, numbers[lane]);
             }
         }

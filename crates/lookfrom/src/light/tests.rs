@@ -118,7 +118,7 @@ fn environments() -> Vec<Around> {
 fn places() -> [LightSampleContext; 3] {
     let at = |x, y, z| {
         let n = Vec3::new(0.3, -0.9, 0.2).normalize();
-        LightSampleContext { point: turn().transform_point3(DVec3::new(x, y, z)), n }
+        LightSampleContext { point: turn().transform_point3(DVec3::new(x, y, z)), n, time: 0.0 }
     };
     [at(0.0, 0.0, 0.0), at(0.8, -1.2, -1.95), at(1.5, 0.5, 2.0)]
 }
@@ -294,7 +294,7 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
 /// Luminance that arrives at a distance of 1 from the light's position, in a direction from it.
 fn intensity(world: &World, light: usize, direction: Vec3) -> f64 {
     let point = DVec3::new(1.0, 2.0, 3.0) + direction.as_dvec3().normalize();
-    let at = LightSampleContext { point, n: -direction };
+    let at = LightSampleContext { point, n: -direction, time: 0.0 };
     let sample = world.lights[light].sample(
         &world.textures,
         &at,
@@ -339,7 +339,7 @@ fn illuminances_are_what_is_asked() {
     }
     let distant = LightKind::Distant { direction: DVec3::NEG_Y, intensity: Color::Value([0.2, 0.5, 3.0]) };
     let world = world_of(vec![(distant, total(12.0))], vec![], vec![]);
-    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Y };
+    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Y, time: 0.0 };
     let sample = world.lights[0]
         .sample(&world.textures, &at, [0.5; 2], &SpectralMode::Rgb, IncompletePdf::Forbidden)
         .expect("light from above");

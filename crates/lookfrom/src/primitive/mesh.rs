@@ -38,8 +38,26 @@ pub struct Mesh {
     /// Whether rays that leave it start at the smooth surface that its normals describe, so that the facets of a coarse mesh
     /// cast no shadows on themselves near the terminator.
     pub is_lifted: bool,
+    /// Positions and unit shading normals at further times, equally spaced until the shutter closes; none if it keeps its form.
+    pub later: Vec<Pose>,
     /// Its attributes.
     pub binding: MaterialBinding,
+}
+
+/// The vertices of a mesh at one time.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    /// As many as those of the mesh.
+    pub positions: Vec<[f32; 3]>,
+    /// As many as those of the mesh; zero where unknown.
+    pub normals: Vec<Vec3>,
+}
+
+/// The vertices of a mesh at two times, and the parts of each at a time between.
+struct Between<'a> {
+    positions: [&'a [[f32; 3]]; 2],
+    normals: [&'a [Vec3]; 2],
+    parts: [f32; 2],
 }
 
 /// Vertex data that few meshes have: kept apart from [`SurfacePoint`], which is computed for every hit.
@@ -59,6 +77,33 @@ impl Mesh {
     #[inline]
     pub fn corners(&self, index: usize) -> [[f32; 3]; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The corners of a triangle at a time of the shutter (0 … 1).
+    pub fn corners_at(&self, index: usize, time: f32) -> [[f32; 3]; 3] {
+        if self.later.is_empty() {
+            return self.corners(index);
+        }
+        let Between { positions, parts, .. } = self.between(time);
+        let [a, b] =
+            positions.map(|positions| self.triangles[index].map(|vertex| positions[vertex as usize]));
+        // As the kernel interpolates them, bit for bit.
+        std::array::from_fn(|k| std::array::from_fn(|axis| a[k][axis] * parts[0] + b[k][axis] * parts[1]))
+    }
+
+    /// The vertices before and after a time, of a mesh that has later ones.
+    fn between(&self, time: f32) -> Between<'_> {
+        let (earlier, fraction) = lookfrom_bvh::moment(self.later.len() + 1, time);
+        let later = &self.later[earlier];
+        let (positions, normals) = match earlier.checked_sub(1).map(|before| &self.later[before]) {
+            None => (&*self.positions, &*self.normals),
+            Some(pose) => (&*pose.positions, &*pose.normals),
+        };
+        Between {
+            positions: [positions, &later.positions],
+            normals: [normals, &later.normals],
+            parts: [1.0 - fraction, fraction],
+        }
     }
 
     /// The texture coordinates of a triangle's corners; a mesh without any has (0, 0), (1, 0), (1, 1) on each.
@@ -125,8 +170,13 @@ impl Mesh {
 
     /// The point with weight `u` of a triangle's second corner and `v` of its third.
     pub fn point(&self, index: usize, u: f32, v: f32) -> SurfacePoint {
+        self.point_at(index, [u, v], 0.0)
+    }
+
+    /// [`Self::point`] at a time of the shutter (0 … 1).
+    pub fn point_at(&self, index: usize, [u, v]: [f32; 2], time: f32) -> SurfacePoint {
         let TrianglePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv, lift } =
-            self.triangle(index).points(u, v);
+            self.triangle_at(index, time).points(u, v);
         let point = Point { position: points.position.into(), error: points.error.into() };
         SurfacePoint {
             point,
@@ -143,7 +193,23 @@ impl Mesh {
         }
     }
 
-    /// A triangle with what its vertices have.
+    /// A triangle with what its vertices have, at a time of the shutter (0 … 1).
+    pub(crate) fn triangle_at(&self, index: usize, time: f32) -> Triangles<f32> {
+        let triangle = self.triangle(index);
+        if self.later.is_empty() {
+            return triangle;
+        }
+        let Between { normals: [before, after], parts, .. } = self.between(time);
+        let vertices = self.triangles[index].map(|vertex| vertex as usize);
+        let normal = |vertex: usize| match (before.get(vertex), after.get(vertex)) {
+            (Some(a), Some(b)) => (*a * parts[0] + *b * parts[1]).normalize_or_zero().into(),
+            _ => Vector::from(Vec3::ZERO),
+        };
+        let positions = self.corners_at(index, time).map(|[x, y, z]| Vector { x, y, z });
+        Triangles { positions, normals: vertices.map(normal), ..triangle }
+    }
+
+    /// A triangle with what its vertices have when the shutter opens.
     pub(crate) fn triangle(&self, index: usize) -> Triangles<f32> {
         let vertices = self.triangles[index].map(|vertex| vertex as usize);
         let vector = |[x, y, z]: [f32; 3]| Vector { x, y, z };

@@ -183,7 +183,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
 /// Whether a light is visible from the camera and not at its position.
 fn is_lit_from_within(renderer: &Renderer) -> bool {
     let (world, origin) = (renderer.world(), renderer.eye);
-    let eye = LightSampleContext { point: origin, n: Vec3::Z };
+    let eye = LightSampleContext { point: origin, n: Vec3::Z, time: 0.0 };
     (0..).zip(&world.lights).any(|(index, light)| {
         if matches!(light, Light::Distant { .. } | Light::Environment(_)) {
             return false;

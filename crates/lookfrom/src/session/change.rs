@@ -68,7 +68,7 @@ impl Session {
 impl Options {
     /// The name of an option among these that chooses or changes the scene, and not only its picture and camera.
     pub fn of_scene(&self) -> Option<&'static str> {
-        let ImportOptions { animation, at, variant, scene, camera, subdivision } = &self.import;
+        let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision } = &self.import;
         let asked = [
             ("film", self.film),
             ("light_sampler", self.light_sampler.is_some()),
@@ -80,6 +80,7 @@ impl Options {
             ("floor", self.floor),
             ("animation", animation.is_some()),
             ("at", at.is_some()),
+            ("shutter", shutter.is_some()),
             ("variant", variant.is_some()),
             ("scene", scene.is_some()),
             ("camera", *camera != CameraChoice::First),

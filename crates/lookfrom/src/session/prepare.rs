@@ -59,7 +59,7 @@ pub(super) fn prepare(
     }
     let may_be_toml = load::is_toml(file) || file == Path::new(load::PIPE);
     if origin == SourceFormat::Scene && may_be_toml {
-        of_gltf.at = None;
+        (of_gltf.at, of_gltf.shutter) = (None, None);
     }
     if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
         warn("`animation`, `at`, `variant`, `scene` and `camera` are for glTF files; this file is not one");

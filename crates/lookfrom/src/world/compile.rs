@@ -4,20 +4,21 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DMat4;
-use lookfrom_bvh::{Builder, Bvh, Quality, Triangles};
+use lookfrom_bvh::{Affine, Builder, Bvh, Quality, Triangles};
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
 use lookfrom_scene::motion::Motion;
-use lookfrom_scene::scene::{MaterialId, Scene};
+use lookfrom_scene::scene::{Instance as WrittenInstance, MaterialId, Scene};
 use lookfrom_scene::settings::Integrator as Kind;
+use lookfrom_scene::shape::{Geometry, Shape};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
 use super::place::{self, Compiler, Group, Labels};
 use super::{Instance, Medium, Names, World, origin, reflectance};
 use crate::core::math;
-use crate::light::{Light, LightChoice};
+use crate::light::{Light, LightChoice, LightMotion};
 use crate::primitive::Primitives;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{self, Material, MaterialKind};
@@ -97,6 +98,7 @@ impl World {
             grains: grains(&scene.materials),
             has_instance_grain: false,
             is_in_object: false,
+            light_motion: None,
             alphas: Vec::new(),
             medium_interfaces: Vec::new(),
             vertex_data: Vec::new(),
@@ -124,7 +126,7 @@ impl World {
             in_objects.push(group);
         }
         (compiler.has_instance_grain, compiler.is_in_object) = (false, false);
-        let objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
+        let mut objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
         let quality = quality(&scene);
         let whole = before.filter(|(_, kept)| *kept == Kept::Trees).map(|(world, _)| world.bvh.clone());
         let mut known = match before {
@@ -142,6 +144,7 @@ impl World {
         // There may be millions of instances: until the tree is built, only the kernel has their maps.
         let mut builder = Builder::new();
         let mut instanced = Vec::with_capacity(scene.instances.len());
+        let mut emitters = Vec::new();
         let motions = scene.instances.iter().filter_map(|instance| instance.motion.as_deref());
         let parts = motions.map(Motion::parts).max().unwrap_or(1);
         for written in &scene.instances {
@@ -149,9 +152,20 @@ impl World {
             let matrix = render_from_world * written.world_from_object;
             place::inverse(&written.at, &matrix)?;
             // Each instance of a shape that emits light is a light of its own.
+            let mut moving = Group::default();
+            let mut moves = false;
             for shape in labelled(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
-                compiler.place(shape, &matrix, material, &mut in_world)?;
+                compiler.light_motion = light_motion(&scene, written, shape.0, &render_from_world);
+                match compiler.light_motion {
+                    None => compiler.place(shape, &matrix, material, &mut in_world)?,
+                    Some(_) => compiler.place(shape, &matrix, material, &mut moving)?,
+                }
+                moves |= compiler.light_motion.is_some();
             }
+            if moves {
+                emitters.push((moving.into_primitives(), written.motion.clone(), matrix));
+            }
+            compiler.light_motion = None;
             if let Some(tree) = trees.get(written.object.index()) {
                 match &written.motion {
                     None => builder.instance(tree.clone(), math::affine(&matrix)),
@@ -165,6 +179,23 @@ impl World {
                 };
             }
             instanced.push((written.object.0, material));
+        }
+        // Shapes that emit light and move are in objects of their own, where they are when the shutter opens.
+        for (primitives, motion, at_opening) in emitters {
+            if whole.is_none() {
+                let tree = Arc::new(tree(&primitives, Builder::new(), quality)?);
+                let back = at_opening.inverse();
+                let to_render = |map: DMat4| math::affine(&(render_from_world * map * back));
+                match motion {
+                    None => builder.instance(tree, Affine::IDENTITY),
+                    Some(motion) => {
+                        let maps: Vec<Affine> = motion.in_parts(parts).into_iter().map(to_render).collect();
+                        builder.moving_instance(tree, &maps)
+                    }
+                };
+            }
+            instanced.push((objects.len() as u32, None));
+            objects.push(primitives);
         }
         for light in &scene.lights {
             compiler.lights.add(light, origin);
@@ -269,6 +300,27 @@ impl World {
     }
 }
 
+/// The motion of the light of an instance's shape in render space, if it moves.
+fn light_motion(
+    scene: &Scene,
+    instance: &WrittenInstance,
+    shape: &Shape,
+    render_from_world: &DMat4,
+) -> Option<LightMotion> {
+    let deforms = match shape.geometry {
+        Geometry::Mesh(id) => !scene.meshes[id.index()].later.is_empty(),
+        _ => false,
+    };
+    if deforms {
+        return Some(LightMotion::deforming());
+    }
+    let motion = instance.motion.as_deref()?;
+    let back = (*render_from_world * motion.at_opening()).inverse();
+    let maps: Vec<Affine> =
+        motion.maps().iter().map(|map| math::affine(&(*render_from_world * *map * back))).collect();
+    Some(LightMotion::new(&maps))
+}
+
 /// By material: whether it needs derivatives by texture coordinates; a mixture needs them if any of its parts does.
 fn grains(materials: &[Written]) -> Vec<bool> {
     let mut grains: Vec<bool> = materials.iter().map(Written::has_grain).collect();
@@ -308,6 +360,11 @@ fn tree(primitives: &[Primitives], mut builder: Builder, quality: Quality) -> Re
     builder.quality(quality);
     for primitives in primitives {
         match primitives {
+            Primitives::Mesh(mesh) if !mesh.later.is_empty() => {
+                let later = mesh.later.iter().map(|pose| &*pose.positions);
+                let times: Vec<&[[f32; 3]]> = std::iter::once(&*mesh.positions).chain(later).collect();
+                builder.moving_triangles(&times, &mesh.triangles);
+            }
             Primitives::Mesh(mesh) => {
                 builder.triangles(Triangles { positions: &mesh.positions, indices: &mesh.triangles });
             }

@@ -16,7 +16,7 @@ use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Error, Location, Result, Warning};
 
 use super::lights::Lights;
-use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightShape, QuadricLight};
+use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightMotion, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
 };
@@ -78,6 +78,8 @@ pub(super) struct Compiler<'a> {
     pub(super) has_instance_grain: bool,
     /// Whether shapes are those of an object, in its own space.
     pub(super) is_in_object: bool,
+    /// The motion of the lights that are placed.
+    pub(super) light_motion: Option<LightMotion>,
     /// Alpha textures.
     pub(super) alphas: Vec<FloatTexture>,
     /// Media on the two sides of surfaces.
@@ -293,6 +295,7 @@ impl Compiler<'_> {
             two_sided,
             coat: coat.filter(|amount| !amount.is(0.0)),
             shape: shape_of_light,
+            motion: self.light_motion.clone(),
         };
         let brightness = match light.mean_of_pattern() {
             Some(mean) => light.radiance.scale * mean,

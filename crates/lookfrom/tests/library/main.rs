@@ -26,6 +26,7 @@ mod layers;
 mod lens_systems;
 mod light_paths;
 mod media;
+mod motion;
 mod nested;
 mod own_integrator;
 mod path;

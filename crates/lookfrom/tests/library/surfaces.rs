@@ -153,7 +153,7 @@ fn triangles_of_a_pattern_are_asked_where_it_shines() {
         compiled(under_lamp(4, |scene| Color::Texture(picture_of(scene, dark, Channel::Rgb, Mapping::UV))));
     let Light::Area(lamp) = &world.lights()[0] else { panic!("{:?}", world.lights()[0]) };
     assert!(!lamp.is_sampled() && lamp.sample_point(DVec3::ZERO, [0.5; 2]).is_none());
-    let at = lookfrom::light::LightSampleContext { point: DVec3::ZERO, n: Vec3::Z };
+    let at = lookfrom::light::LightSampleContext { point: DVec3::ZERO, n: Vec3::Z, time: 0.0 };
     assert!(world.light_choice().sample(&at, 0.5).is_none());
 }
 

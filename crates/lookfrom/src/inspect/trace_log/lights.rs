@@ -56,7 +56,7 @@ impl TraceLogBuilder<'_> {
     /// The point and the normal for which lights are sampled at the hit of a ray, or where a medium scatters it.
     fn light_context(&self, address: u64) -> Option<(LightSampleContext, IncompletePdf)> {
         if let Some(point) = self.in_media.get(&address) {
-            let at = LightSampleContext { point: point.as_dvec3(), n: Vec3::ZERO };
+            let at = LightSampleContext { point: point.as_dvec3(), n: Vec3::ZERO, time: self.time };
             return Some((at, IncompletePdf::Allowed));
         }
         let (_, surface) = self.hits.get(&address)?;
@@ -67,7 +67,7 @@ impl TraceLogBuilder<'_> {
             Some((shading, _)) => (shading.n(), IncompletePdf::Allowed),
             None => (surface.ns_facing(), IncompletePdf::Forbidden),
         };
-        Some((LightSampleContext { point, n }, incomplete_pdf))
+        Some((LightSampleContext { point, n, time: self.time }, incomplete_pdf))
     }
 
     /// The same at a point, without the radiance of an area light.
@@ -103,7 +103,7 @@ impl TraceLogBuilder<'_> {
         if !samples_lights || path.state.pdf.is_infinite() || is_left_out {
             return None;
         }
-        let at = path.state.light_context();
+        let at = path.state.light_context(self.time);
         let surface = surface.as_ref();
         let wi =
             surface.map_or_else(|| Vec3::from_array(path.ray.direction).normalize(), |surface| -surface.wo);

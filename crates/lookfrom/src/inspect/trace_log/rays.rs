@@ -188,7 +188,7 @@ fn met_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteract
 fn lift_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteraction) -> Option<LiftReport> {
     let lift = surface.lift()?.way.into();
     let (Primitives::Mesh(mesh), placed) = world.primitives(hit, time) else { return None };
-    let triangle = mesh.triangle(hit.primitive as usize);
+    let triangle = mesh.triangle_at(hit.primitive as usize, time);
     let from_object = placed.map(|placed| {
         let [x, y, z, _] = placed.render_from_object().transpose().to_cols_array_2d();
         [x, y, z].map(|[a, b, c, _]| [a, b, c])

@@ -76,7 +76,7 @@ impl PathTracer {
 /// The light of the environments that a path adds if it hits nothing.
 fn sky_found(world: &World, path: &Path, mode: &SpectralMode) -> Spectrum {
     let direction = Vec3::from_array(path.ray.direction).normalize();
-    let at = path.state.light_context();
+    let at = path.state.light_context(0.0);
     let lit = world.environments.iter().filter(|&&index| world.lights[index as usize].illuminates());
     lit.fold(Spectrum::BLACK, |sum, &index| {
         let light_pdf = world.light_pdf(index, &at, direction, None);

@@ -354,7 +354,7 @@ impl PathTracer {
             wants_shares: output.light_paths.is_some(),
             paths,
             streams,
-            modes: Modes::of(&paths, &output.queues.modes),
+            modes: Modes::of(&paths, &output.queues.modes, &output.queues.times),
         }
     }
 

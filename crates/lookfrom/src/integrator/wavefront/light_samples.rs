@@ -1,6 +1,6 @@
 //! Light samples of the vertices of paths, up to their shadow rays.
 //!
-//! Triangles, whole spheres and disks of one colour, environment maps, and point and distant lights that all lanes sample,
+//! Triangles, whole spheres and disks of one colour that stand still, environment maps, and point and distant lights that all lanes sample,
 //! are sampled in lanes; every other light by [`Light::sample`], lane by lane.
 
 use lookfrom_bvh::Point;
@@ -33,7 +33,7 @@ pub(in crate::integrator) struct Receivers<'a, R: Real> {
 
 impl Receivers<'_, f32> {
     fn context(&self) -> LightSampleContext {
-        LightSampleContext { point: self.points.into(), n: self.n.into() }
+        LightSampleContext { point: self.points.into(), n: self.n.into(), time: self.modes.time(0) }
     }
 }
 
@@ -175,7 +175,7 @@ impl LightSamples {
         let numbers: [[f32; LANES]; 2] = [u[0].into(), u[1].into()];
         let area_lights = by_lane!(lane => {
             match world.lights.get(self.light[lane] as usize) {
-                Some(Light::Area(light)) => Some(light),
+                Some(Light::Area(light)) if light.motion.is_none() => Some(light),
                 _ => None,
             }
         });
@@ -216,8 +216,11 @@ impl LightSamples {
         }
         let (positions, normals) = (store_f64(at.points), store(at.n));
         for lane in LaneMask(others) {
-            let context =
-                LightSampleContext { point: row(&positions, lane).into(), n: row(&normals, lane).into() };
+            let context = LightSampleContext {
+                point: row(&positions, lane).into(),
+                n: row(&normals, lane).into(),
+                time: at.modes.time(lane),
+            };
             self.sample_lane(lane, world, &context, row(&numbers, lane), at);
         }
     }

@@ -1,4 +1,4 @@
-//! The spectral modes of paths side by side.
+//! The spectral modes of paths side by side, and their times.
 
 use lookfrom_simd::{Simd, f32x8, prelude::*};
 
@@ -14,22 +14,32 @@ pub(in crate::integrator) struct Modes<'a> {
     by_lane: [&'a SpectralMode; LANES],
     /// Whether all are RGB: the modes of a picture are of one kind.
     are_rgb: bool,
+    /// The times while the shutter is open; 0 where nothing moves.
+    times: [f32; LANES],
 }
 
 impl<'a> Modes<'a> {
     #[inline(always)]
-    pub(in crate::integrator) fn of<S>(paths: &[&Path<S>; LANES], modes: &'a SpectralModes) -> Self {
+    pub(in crate::integrator) fn of<S>(
+        paths: &[&Path<S>; LANES],
+        modes: &'a SpectralModes,
+        times: &[f32],
+    ) -> Self {
+        let times = match times.is_empty() {
+            true => [0.0; LANES],
+            false => by_lane!(lane => times[paths[lane].slot as usize]),
+        };
         let first = &modes[paths[0].slot as usize];
         if matches!(first, SpectralMode::Rgb) {
-            return Self { by_lane: [first; LANES], are_rgb: true };
+            return Self { by_lane: [first; LANES], are_rgb: true, times };
         }
         let by_lane = by_lane!(lane => &modes[paths[lane].slot as usize]);
-        Self { by_lane, are_rgb: false }
+        Self { by_lane, are_rgb: false, times }
     }
 
-    /// The mode of one path.
-    pub(in crate::integrator) fn of_one(mode: &'a SpectralMode) -> Self {
-        Self { by_lane: [mode; LANES], are_rgb: matches!(mode, SpectralMode::Rgb) }
+    /// The mode of one path, and its time.
+    pub(in crate::integrator) fn of_one(mode: &'a SpectralMode, time: f32) -> Self {
+        Self { by_lane: [mode; LANES], are_rgb: matches!(mode, SpectralMode::Rgb), times: [time; LANES] }
     }
 
     /// The modes by lane.
@@ -42,6 +52,12 @@ impl<'a> Modes<'a> {
     #[inline(always)]
     pub(in crate::integrator) fn are_rgb(&self) -> bool {
         self.are_rgb
+    }
+
+    /// The time of a lane.
+    #[inline(always)]
+    pub(in crate::integrator) fn time(&self, lane: usize) -> f32 {
+        self.times[lane]
     }
 
     /// The mode of a lane.

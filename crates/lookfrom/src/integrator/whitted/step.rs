@@ -173,7 +173,8 @@ fn same_side<R: Real>(direction: Vector<R>, ng: Vector<R>, side: R) -> Vector<R>
 /// Shades the surface that one path has met.
 pub(super) fn shade_one(
     world: &World,
-    (path, stream, mode): (&Path, &SampleStream, &SpectralMode),
+    (path, stream): (&Path, &SampleStream),
+    (mode, time): (&SpectralMode, f32),
     surface: &SurfaceInteraction,
     coefficients: &Coefficients,
     wanted: Wanted<'_>,
@@ -184,7 +185,7 @@ pub(super) fn shade_one(
     let step = Step { width: One, world, surfaces, coefficients, paths, beta, wanted };
     step.shade(
         world.ambient(mode),
-        &Modes::of_one(mode),
+        &Modes::of_one(mode, time),
         |light| stream.two_with_pixel(light),
         |samples, at, u| samples.sample_one(world, at, u),
         shaded,
@@ -227,6 +228,8 @@ pub(super) struct BareKernel<'a> {
     pub(super) streams: &'a BatchStreams<'a>,
     /// By slot.
     pub(super) modes: &'a SpectralModes,
+    /// By slot; empty where nothing moves.
+    pub(super) times: &'a [f32],
     pub(super) wanted: Wanted<'a>,
     pub(super) shaded: &'a mut Shaded,
     /// Receives the surfaces for AOVs, with the albedo of Whitted's coefficients.
@@ -246,8 +249,8 @@ impl Kernel for BareKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, eight, streams, modes, wanted, shaded, first } = self;
-        let modes = &Modes::of(&eight.paths, modes);
+        let Self { world, eight, streams, modes, times, wanted, shaded, first } = self;
+        let modes = &Modes::of(&eight.paths, modes, times);
         // Of spheres they are costly.
         let wants_uvs = first.is_some() || !eight.bare.are_on_spheres;
         let surfaces = &Surfaces::of_eight(simd, world, &eight.bare, wants_uvs);

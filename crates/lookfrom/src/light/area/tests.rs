@@ -119,6 +119,7 @@ fn eight_triangles_are_eight_one_by_one() {
             wants_derivatives: false,
             flip: seed.is_multiple_of(2),
             is_lifted: false,
+            later: Vec::new(),
             binding: MaterialBinding::NONE,
         };
         MeshLight::new(Arc::new(mesh)).expect("an area")

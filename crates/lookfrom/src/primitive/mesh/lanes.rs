@@ -158,6 +158,7 @@ mod tests {
             wants_derivatives: has(3),
             flip: has(4),
             is_lifted: has(5),
+            later: Vec::new(),
             binding: MaterialBinding::NONE,
         }
     }

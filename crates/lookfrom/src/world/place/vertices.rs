@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use lookfrom_scene::material::Color;
 use lookfrom_scene::scene::VertexNormals;
-use lookfrom_scene::shape::{Mesh as WrittenMesh, Patches as WrittenPatches, Strand};
+use lookfrom_scene::shape::{Mesh as WrittenMesh, MeshPose, Patches as WrittenPatches, Strand};
 use lookfrom_scene::{Error, ErrorKind, Result};
 
 use super::{Compiler, Group, Placing, inverse, not_invertible};
 use crate::core::math;
 use crate::light::{LightShape, MeshLight, PatchLight};
-use crate::primitive::{Curves, Mesh, Patches, Primitives, SEGMENTS};
+use crate::primitive::{Curves, Mesh, Patches, Pose, Primitives, SEGMENTS};
 use crate::shading::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
 /// A patch is a parallelogram if its fourth corner deviates from it by less than this part of its distance from the
@@ -30,8 +30,12 @@ impl Compiler<'_> {
             along.extend(side * s.w)
         };
         let more_uvs = mesh.more_uvs.iter().take(MORE_UV_SETS).cloned().collect();
+        let positions = |of: &[Vec3]| of.iter().map(|p| moved(matrix, *p).to_array()).collect();
+        let pose = |pose: &MeshPose| {
+            Ok(Pose { positions: positions(&pose.positions), normals: normals(placing, &pose.normals)? })
+        };
         let mut placed = Mesh {
-            positions: mesh.positions.iter().map(|p| moved(matrix, *p).to_array()).collect(),
+            positions: positions(&mesh.positions),
             triangles: mesh.triangles.clone(),
             normals: normals(placing, &mesh.normals)?,
             uvs: mesh.uvs.clone(),
@@ -42,6 +46,7 @@ impl Compiler<'_> {
             wants_derivatives: self.has_grain(placing),
             flip,
             is_lifted: self.scene.vertex_normals == VertexNormals::Smooth && !mesh.normals.is_empty(),
+            later: mesh.later.iter().map(pose).collect::<Result<_>>()?,
             binding,
         };
         placed.binding.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);

@@ -47,7 +47,8 @@ impl PathTracer {
             let Some(sky) = environment.map_in_lanes().filter(|_| are_shaded_together()) else {
                 for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
                     let radiance = world.sky_of(index, &path.ray, &output.mode(path));
-                    let pdf = || world.light_pdf(index, &path.state.light_context(), directions[lane], None);
+                    let pdf =
+                        || world.light_pdf(index, &path.state.light_context(0.0), directions[lane], None);
                     self.add_found(path, index, radiance, pdf, output);
                 }
                 continue;
@@ -61,7 +62,7 @@ impl PathTracer {
             let seen = sky.seen(&world.textures, &directions, &modes, with_density);
             for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
                 let pdf =
-                    || world.light_choice.probability(&path.state.light_context(), index) * seen.pdf[lane];
+                    || world.light_choice.probability(&path.state.light_context(0.0), index) * seen.pdf[lane];
                 self.add_found(path, index, seen.li[lane], pdf, output);
             }
         }

@@ -48,7 +48,7 @@ fn eight_at_once_are_eight_one_by_one() {
     };
     let environment = Environment { sky: Sky::Image(Box::new(sky.clone())), portal: None, illuminates: true };
     let light = Light::Environment(environment.clone());
-    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Z };
+    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Z, time: 0.0 };
     for round in 0..2000 {
         let u = [0, 1].map(|axis| by_lane!(lane => number(1000 + 16 * round + 2 * lane as u64 + axis)));
         let samples = dispatch(level(), Sample { sky: &sky, textures: &textures, u });

@@ -1,0 +1,210 @@
+//! A scene while the shutter is open: read at several times, and joined to one whose parts move.
+//!
+//! Shapes, instances and the camera move by their maps, meshes by their vertices. All else is as when the shutter opens.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DQuat, DVec3};
+
+use crate::camera::{Camera, View};
+use crate::error::{Location, Result};
+use crate::files::{ImportOptions, LoadContext};
+use crate::motion::Motion;
+use crate::scene::{Instance, Object, ObjectId, Scene};
+use crate::shape::{Geometry, Mesh, MeshPose, Shape};
+
+/// Parts of a frame between two times at which a scene is read.
+const PARTS_OF_A_FRAME: f64 = 2.0;
+
+/// The most parts of the time that the shutter is open.
+const MOST_PARTS: usize = 16;
+
+/// Lets a scene move for a number of frames from its time on, by reading it again at later times with `read`.
+///
+/// # Errors
+/// Those of `read`, and `Limit` where the meshes that move need more memory than there is.
+pub(crate) fn open(
+    scene: &mut Scene,
+    frames: f64,
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    read: impl Fn(&mut LoadContext<'_>) -> Result<Scene>,
+) -> Result<()> {
+    let parts = ((frames * PARTS_OF_A_FRAME).ceil() as usize).clamp(2, MOST_PARTS).next_power_of_two();
+    let start = context.import.at.unwrap_or(0.0);
+    let mut poses = vec![Pose::of(scene)];
+    for part in 1..=parts {
+        let at = Some(start + frames / context.variables.fps * part as f64 / parts as f64);
+        let mut later = LoadContext {
+            files: context.files,
+            limits: context.limits.clone(),
+            budget: context.budget.clone(),
+            kept: Vec::new(),
+            warnings: Vec::new(),
+            import: ImportOptions { at, ..context.import.clone() },
+            variables: context.variables.clone(),
+        };
+        poses.push(Pose::taken(read(&mut later)?));
+    }
+    if poses.iter().any(|pose| !pose.is_like(&poses[0])) {
+        let message = "not blurred: while the shutter is open the number of its shapes or vertices changes";
+        context.warn(&Location::file(path), message);
+        return Ok(());
+    }
+    let room = move_meshes(scene, &poses);
+    context.keep(room, "what moves", &Location::file(path))?;
+    move_instances(scene, &poses);
+    move_shapes(scene, &poses);
+    if let Some(camera) = &mut scene.camera {
+        let maps: Option<Vec<DMat4>> = poses.iter().map(|pose| pose.camera).collect();
+        let motion = maps.and_then(|maps| Motion::through(&maps));
+        camera.motion = motion.map(|motion| {
+            let back = motion.at_opening().inverse();
+            Arc::new(motion.with(|map| *map * back))
+        });
+    }
+    Ok(())
+}
+
+/// What moves of a scene, at one time.
+struct Pose {
+    /// The camera's frame in the world.
+    camera: Option<DMat4>,
+    /// Maps of shapes outside of objects, and their geometry where that is no mesh.
+    shapes: Vec<(DMat4, Option<Geometry>)>,
+    instances: Vec<DMat4>,
+    meshes: Vec<MeshPose>,
+}
+
+impl Pose {
+    fn of(scene: &Scene) -> Self {
+        let pose =
+            |mesh: &Mesh| MeshPose { positions: mesh.positions.clone(), normals: mesh.normals.clone() };
+        Self { meshes: scene.meshes.iter().map(pose).collect(), ..Self::without_meshes(scene) }
+    }
+
+    fn taken(mut scene: Scene) -> Self {
+        let pose = Self::without_meshes(&scene);
+        let meshes = std::mem::take(&mut scene.meshes).into_iter();
+        let meshes = meshes.map(|mesh| MeshPose { positions: mesh.positions, normals: mesh.normals });
+        Self { meshes: meshes.collect(), ..pose }
+    }
+
+    fn without_meshes(scene: &Scene) -> Self {
+        let shape = |shape: &Shape| {
+            let is_single =
+                matches!(shape.geometry, Geometry::Sphere(_) | Geometry::Disk { .. } | Geometry::Quad { .. });
+            (shape.world_from_object, is_single.then(|| shape.geometry.clone()))
+        };
+        Self {
+            camera: scene.camera.as_ref().and_then(frame_of_camera),
+            shapes: scene.shapes.iter().map(shape).collect(),
+            instances: scene.instances.iter().map(|instance| instance.world_from_object).collect(),
+            meshes: Vec::new(),
+        }
+    }
+
+    /// Whether there are as many parts as in another pose.
+    fn is_like(&self, other: &Self) -> bool {
+        let counts = |pose: &Self| (pose.shapes.len(), pose.instances.len(), pose.meshes.len());
+        let vertices = |mesh: &MeshPose| (mesh.positions.len(), mesh.normals.len());
+        counts(self) == counts(other)
+            && self.meshes.iter().map(vertices).eq(other.meshes.iter().map(vertices))
+    }
+
+    /// The map of a shape from its space in `first` to the world at this time.
+    fn map_of_shape(&self, index: usize, first: &Self) -> DMat4 {
+        let (map, geometry) = &self.shapes[index];
+        let frames = [geometry, &first.shapes[index].1].map(|of| of.as_ref().and_then(frame_of_geometry));
+        match frames {
+            [Some(now), Some(before)] if now != before => *map * now * before.inverse(),
+            _ => *map,
+        }
+    }
+}
+
+/// A frame that moves with a sphere, a disk or a quad.
+fn frame_of_geometry(geometry: &Geometry) -> Option<DMat4> {
+    let frame = match geometry {
+        Geometry::Sphere(sphere) => {
+            DMat4::from_translation(sphere.center) * DMat4::from_scale(DVec3::splat(sphere.radius))
+        }
+        Geometry::Disk { center, normal, radius } => {
+            let turn = DQuat::from_rotation_arc(DVec3::Z, normal.normalize());
+            let linear = DMat3::from_quat(turn) * *radius;
+            DMat4::from_mat3(linear).with_translation(*center)
+        }
+        Geometry::Quad { corner, edge_u, edge_v } => {
+            let linear = DMat3::from_cols(*edge_u, *edge_v, edge_u.cross(*edge_v).normalize());
+            DMat4::from_mat3(linear).with_translation(*corner)
+        }
+        _ => return None,
+    };
+    (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
+}
+
+trait WithTranslation {
+    fn with_translation(self, translation: DVec3) -> Self;
+}
+
+impl WithTranslation for DMat4 {
+    fn with_translation(mut self, translation: DVec3) -> Self {
+        self.w_axis = translation.extend(1.0);
+        self
+    }
+}
+
+/// The frame of a camera in the world: [`View::Matrix`], or orthonormal.
+fn frame_of_camera(camera: &Camera) -> Option<DMat4> {
+    let frame = match camera.view {
+        View::Matrix(matrix) => matrix,
+        View::Look { lookfrom, lookat, up } => {
+            let w = (lookat - lookfrom).try_normalize()?;
+            let u = up.cross(w).try_normalize()?;
+            DMat4::from_mat3(DMat3::from_cols(u, w.cross(u), w)).with_translation(lookfrom)
+        }
+    };
+    (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
+}
+
+/// Gives meshes whose vertices move their poses. Returns the bytes of these.
+fn move_meshes(scene: &mut Scene, poses: &[Pose]) -> u64 {
+    let mut bytes = 0;
+    for (index, mesh) in scene.meshes.iter_mut().enumerate() {
+        if poses.iter().any(|pose| pose.meshes[index].positions != mesh.positions) {
+            mesh.later = poses[1..].iter().map(|pose| pose.meshes[index].clone()).collect();
+            bytes += mesh.later.iter().map(MeshPose::bytes).sum::<u64>();
+        }
+    }
+    bytes
+}
+
+fn move_instances(scene: &mut Scene, poses: &[Pose]) {
+    for (index, instance) in scene.instances.iter_mut().enumerate() {
+        let maps: Vec<DMat4> = poses.iter().map(|pose| pose.instances[index]).collect();
+        instance.motion = Motion::through(&maps).map(Arc::new);
+    }
+}
+
+/// Makes objects with an instance of shapes that move.
+fn move_shapes(scene: &mut Scene, poses: &[Pose]) {
+    let mut standing = Vec::new();
+    for (index, shape) in std::mem::take(&mut scene.shapes).into_iter().enumerate() {
+        let maps: Vec<DMat4> = poses.iter().map(|pose| pose.map_of_shape(index, &poses[0])).collect();
+        let motion = Motion::through(&maps).map(Arc::new);
+        let deforms =
+            matches!(shape.geometry, Geometry::Mesh(id) if !scene.meshes[id.index()].later.is_empty());
+        if motion.is_none() && !deforms {
+            standing.push(shape);
+            continue;
+        }
+        let object = ObjectId(scene.objects.len() as u32);
+        let (at, world_from_object) = (shape.at.clone(), shape.world_from_object);
+        let shape = Shape { world_from_object: DMat4::IDENTITY, ..shape };
+        let name = shape.name.clone().unwrap_or_else(|| format!("moving shape {}", object.0 + 1));
+        scene.objects.push(Object { name, at: at.clone(), shapes: vec![shape] });
+        scene.instances.push(Instance { at, object, world_from_object, material: None, motion });
+    }
+    scene.shapes = standing;
+}
