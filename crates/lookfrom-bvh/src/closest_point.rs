@@ -107,7 +107,7 @@ impl Bvh {
     /// Distances are right to rounding in f32, and to about 10⁻¹⁵ of the triangle's or sphere's size. Any maps of
     /// instances are supported. Procedural shapes are ignored, because they do not define their surfaces. `None`
     /// where nothing is near enough, for a point that is NaN or beyond 2¹⁰⁰, and where `max_distance` is NaN or
-    /// negative.
+    /// negative. What moves in time ([`Builder::moving_triangles`](crate::Builder::moving_triangles)) is not looked at.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Triangles};

@@ -66,6 +66,19 @@ impl Motion {
         Self::of_maps(all)
     }
 
+    /// No motion, but a place.
+    pub(crate) fn standing(map: DMat4) -> Self {
+        Self { maps: vec![map; 2] }
+    }
+
+    /// The motion of what moves by another in a space that moves by this one.
+    pub(crate) fn of(&self, inner: &Self) -> Self {
+        // A product of two motions is not linear.
+        let parts = self.parts().max(inner.parts()).max(16);
+        let [outer, inner] = [self, inner].map(|motion| motion.in_parts(parts));
+        Self { maps: outer.iter().zip(inner).map(|(outer, inner)| *outer * inner).collect() }
+    }
+
     /// The motion with these maps: 2ᵏ + 1 for a k ≥ 0. `None` for other numbers, and where nothing moves.
     pub fn of_maps(maps: Vec<DMat4>) -> Option<Self> {
         let is_count = maps.len() > 1 && (maps.len() - 1).is_power_of_two();

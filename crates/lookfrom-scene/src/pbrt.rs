@@ -47,6 +47,7 @@ use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Material, MaterialKind};
 use crate::measured::Measured;
+use crate::motion::Motion;
 use crate::packed;
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
@@ -91,6 +92,7 @@ pub(crate) fn from_bytes(
         objects: BTreeMap::new(),
         object: None,
         instances: Vec::new(),
+        moving: BTreeMap::new(),
         curves: BTreeMap::new(),
         images: BTreeMap::new(),
         models: BTreeMap::new(),
@@ -144,6 +146,8 @@ struct Reader<'s, 'f> {
     object: Option<ObjectId>,
     /// Instances, whose objects are looked up at the end.
     instances: Vec<(String, Place, [DMat4; 2])>,
+    /// Shapes that move in an object: each an object of its own, with its motion there.
+    moving: BTreeMap<ObjectId, Vec<(ObjectId, Motion)>>,
     curves: BTreeMap<String, CurveId>,
     /// Images by path and conversion of their values.
     images: BTreeMap<(PathBuf, String), ImageId>,

@@ -755,6 +755,8 @@ export interface Sample {
     segments: Segment[];
     /** What the sensor does to it. */
     sensor: Sensor;
+    /** The time while the shutter is open, from 0 to 1, of what moves; null where nothing does. */
+    time: number | null;
     /** The wavelengths of the four lanes; null where light is red, green and blue. */
     wavelengths: Wavelengths | null;
     /** The filter's weight, times that of a ray through a lens system. */

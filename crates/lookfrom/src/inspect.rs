@@ -86,6 +86,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         integrator: renderer.integrator(),
         color8: [0; 3],
         contributions: Vec::new(),
+        time: renderer.moves().then(|| renderer.time(id)),
         wavelengths,
         camera: camera::camera_steps(renderer, id),
         render_origin: renderer.world().origin().to_array(),

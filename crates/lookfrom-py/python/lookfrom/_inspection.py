@@ -17,6 +17,7 @@ class Sample:
     integrator: The integrator, as `--integrator` names it.
     color8: The colour of this sample alone as in an 8-bit picture: exposure, tone map, sRGB.
     contributions: The largest contributions, largest first.
+    time: The time while the shutter is open, from 0 to 1, of what moves; null where nothing does.
     wavelengths: The wavelengths of the four lanes; null where light is red, green and blue.
     camera: The steps from the pixel to the world.
     render_origin: The origin of render space in the world, where the camera's eye was when the scene was
@@ -38,6 +39,7 @@ class Sample:
     integrator: str
     color8: tuple[int, int, int]
     contributions: list[Contribution]
+    time: float | None
     wavelengths: Wavelengths | None
     camera: CameraSteps
     render_origin: tuple[float, float, float]

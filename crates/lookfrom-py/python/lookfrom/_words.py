@@ -58,6 +58,7 @@ class Options(TypedDict, total=False):
     # Contents of the scene.
     define: Mapping[str, Any]
     at: float
+    shutter: float
     fps: float
     animation: str | int
     variant: str | int

@@ -413,7 +413,16 @@ impl Reader<'_, '_> {
 
     /// Places an object by its matrices at the start and the end of the transform times.
     pub(super) fn push_instance(&mut self, at: Location, object: ObjectId, [start, end]: [DMat4; 2]) {
-        let motion = Motion::between(&start, &end, self.shutter_fractions()).map(Arc::new);
+        let motion = Motion::between(&start, &end, self.shutter_fractions());
+        for (part, inner) in self.moving.get(&object).into_iter().flatten() {
+            let outer = motion.clone().unwrap_or_else(|| Motion::standing(start));
+            let motion = Some(Arc::new(outer.of(inner)));
+            let world_from_object = motion.as_ref().map_or(start, |motion| motion.at_opening());
+            let instance =
+                Instance { at: at.clone(), object: *part, world_from_object, material: None, motion };
+            self.scene.instances.push(instance);
+        }
+        let motion = motion.map(Arc::new);
         let world_from_object = motion.as_ref().map_or(start, |motion| motion.at_opening());
         self.scene.instances.push(Instance { at, object, world_from_object, material: None, motion });
     }

@@ -6,6 +6,7 @@ use super::params::Parameters;
 use super::{Reader, transform};
 use crate::error::Result;
 use crate::material::Scalar;
+use crate::motion::Motion;
 use crate::scene::{Object, ObjectId};
 use crate::shape::{Geometry, Shape};
 
@@ -61,11 +62,6 @@ impl Reader<'_, '_> {
 
     /// Adds a shape that moves: as an object of its own with an instance.
     fn push_moving_shape(&mut self, shape: Shape, matrices: [DMat4; 2]) {
-        if self.object.is_some() {
-            let message = "shapes of an object do not move: it is rendered as at the start of its motion";
-            self.context.warn(&shape.at, message);
-            return self.push_shape(shape);
-        }
         let object = ObjectId(self.scene.objects.len() as u32);
         let at = shape.at.clone();
         let shapes = vec![Shape { world_from_object: DMat4::IDENTITY, ..shape }];
@@ -74,7 +70,12 @@ impl Reader<'_, '_> {
             at: at.clone(),
             shapes,
         });
-        self.push_instance(at, object, matrices);
+        let Some(outer) = self.object else { return self.push_instance(at, object, matrices) };
+        // Placed with the instances of the object that it is in.
+        let [start, end] = matrices;
+        let motion = Motion::between(&start, &end, self.shutter_fractions());
+        let motion = motion.unwrap_or_else(|| Motion::standing(start));
+        self.moving.entry(outer).or_default().push((object, motion));
     }
 
     /// Adds a shape to the world, or to the open object.

@@ -44,6 +44,8 @@ pub struct Inspection {
     pub color8: [u8; 3],
     /// The largest contributions, largest first.
     pub contributions: Vec<Contribution>,
+    /// The time while the shutter is open, from 0 to 1, of what moves; `None` where nothing does.
+    pub time: Option<f32>,
     /// The wavelengths of the four lanes; `None` where light is red, green and blue.
     pub wavelengths: Option<WavelengthsReport>,
     /// The steps from the pixel to the world.

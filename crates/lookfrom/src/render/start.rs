@@ -98,7 +98,7 @@ impl Renderer {
     }
 
     /// Whether light depends on the time: of what moves, or the camera.
-    fn moves(&self) -> bool {
+    pub(crate) fn moves(&self) -> bool {
         self.world.bvh.is_moving() || self.view.camera.motion.is_some()
     }
 

@@ -9,6 +9,9 @@ use crate::inspect::{Inspection, SphereMapping};
 impl Inspection {
     pub(super) fn write_camera(&self, f: &mut String) -> fmt::Result {
         let camera = &self.camera;
+        if let Some(time) = self.time {
+            writeln!(f, "At {time} of the time that the shutter is open: what moves is where it is then\n")?;
+        }
         match &camera.mapping {
             None if camera.lens_system.is_some() => writeln!(
                 f,
