@@ -167,12 +167,7 @@ impl Parts {
         let translation = self.translation * rest + other.translation * fraction;
         let stretch = self.stretch * rest + other.stretch * fraction;
         let linear = DMat3::from_quat(slerp(self.rotation, other.rotation, fraction)) * stretch;
-        DMat4::from_cols(
-            linear.x_axis.extend(0.0),
-            linear.y_axis.extend(0.0),
-            linear.z_axis.extend(0.0),
-            translation.extend(1.0),
-        )
+        DMat4::from_mat3_translation(linear, translation)
     }
 }
 

@@ -133,26 +133,15 @@ fn frame_of_geometry(geometry: &Geometry) -> Option<DMat4> {
         Geometry::Disk { center, normal, radius } => {
             let turn = DQuat::from_rotation_arc(DVec3::Z, normal.normalize());
             let linear = DMat3::from_quat(turn) * *radius;
-            DMat4::from_mat3(linear).with_translation(*center)
+            DMat4::from_mat3_translation(linear, *center)
         }
         Geometry::Quad { corner, edge_u, edge_v } => {
             let linear = DMat3::from_cols(*edge_u, *edge_v, edge_u.cross(*edge_v).normalize());
-            DMat4::from_mat3(linear).with_translation(*corner)
+            DMat4::from_mat3_translation(linear, *corner)
         }
         _ => return None,
     };
     (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
-}
-
-trait WithTranslation {
-    fn with_translation(self, translation: DVec3) -> Self;
-}
-
-impl WithTranslation for DMat4 {
-    fn with_translation(mut self, translation: DVec3) -> Self {
-        self.w_axis = translation.extend(1.0);
-        self
-    }
 }
 
 /// The frame of a camera in the world: [`View::Matrix`], or orthonormal.
@@ -162,7 +151,7 @@ fn frame_of_camera(camera: &Camera) -> Option<DMat4> {
         View::Look { lookfrom, lookat, up } => {
             let w = (lookat - lookfrom).try_normalize()?;
             let u = up.cross(w).try_normalize()?;
-            DMat4::from_mat3(DMat3::from_cols(u, w.cross(u), w)).with_translation(lookfrom)
+            DMat4::from_mat3_translation(DMat3::from_cols(u, w.cross(u), w), lookfrom)
         }
     };
     (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
