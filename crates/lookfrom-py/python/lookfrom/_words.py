@@ -73,7 +73,7 @@ class Options(TypedDict, total=False):
     min_contribution: float
     sampler: str
     seed: int
-    filter: str | tuple[str, float]
+    filter: str | tuple[str, float] | tuple[str, float, float]
     # Layers.
     layers: str
     light_path: Mapping[str, str]

@@ -11,7 +11,7 @@ use lookfrom_scene::material::{
 };
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
-use lookfrom_scene::settings::{ColorMode, Filter, Integrator, Layers, PixelBounds, Sampler};
+use lookfrom_scene::settings::{ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
@@ -36,11 +36,21 @@ fn read(text: &str) -> Scene {
 fn what_is_not_written_is_pbrts_default() {
     let scene = read("WorldBegin");
     assert_eq!((scene.image.width, scene.image.height), (1280, 720));
-    assert_eq!(scene.image.filter, Filter::Gaussian { radius: 1.5, sigma: 0.5 });
+    assert_eq!(scene.image.filter, FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5));
     let render = &scene.render;
     assert_eq!((render.integrator, render.depth, render.samples), (Integrator::Path, 5, 16));
     assert_eq!((render.sampler, render.color), (Sampler::Sobol, ColorMode::Spectral));
     assert_eq!(scene.camera.expect("one").projection, Projection::Perspective { fov: 90.0 });
+}
+
+#[test]
+fn filters_have_a_radius_along_each_axis() {
+    let scene = read(
+        "PixelFilter \"gaussian\" \"float xradius\" 2 \"float yradius\" .75 \"float sigma\" .4\nWorldBegin",
+    );
+    let shape = FilterShape::Gaussian { sigma: 0.4 };
+    assert_eq!(scene.image.filter, Filter { shape, radius: [2.0, 0.75] });
+    assert_eq!(scene.image.filter.to_string(), "gaussian:2:0.75 sigma 0.4");
 }
 
 #[test]
