@@ -114,6 +114,9 @@ fn check_patches(part: &Part<'_>, patches: &Patches) -> Result<()> {
 }
 
 fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
+    if let Some(displacement) = mesh.displacement {
+        part.scalar("displacement", displacement)?;
+    }
     let vertices = mesh.positions.len();
     part.all("positions", &mesh.positions, "finite", |position| position.is_finite())?;
     let is_valid = |triangle: &[u32; 3]| triangle.iter().all(|vertex| (*vertex as usize) < vertices);

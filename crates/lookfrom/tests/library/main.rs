@@ -11,6 +11,7 @@ mod changed;
 mod coated_lamps;
 mod denoise;
 mod dispersion;
+mod displacement;
 mod enough;
 mod films;
 mod gltf_and_pbrt;
