@@ -16,7 +16,10 @@ const GROUPS: &[(&str, &[&str])] = &[
         "Light, background, colours",
         &["environment", "rotate_environment", "background", "floor", "exposure", "tonemap"],
     ),
-    ("Contents of the scene", &["define", "at", "fps", "animation", "variant", "scene_of_file", "subdivide"]),
+    (
+        "Contents of the scene",
+        &["define", "at", "fps", "animation", "variant", "scene_of_file", "subdivide", "instanced_lights"],
+    ),
     ("Several pictures of a scene", &["turntable", "views", "frames", "sheet", "skip_existing"]),
     ("Films and parts of pictures", &["film", "checkpoint", "go_on", "part"]),
     (

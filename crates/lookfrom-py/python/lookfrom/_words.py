@@ -63,6 +63,7 @@ class Options(TypedDict, total=False):
     variant: str | int
     scene_of_file: str | int
     subdivide: int
+    instanced_lights: bool
     # Films.
     film: bool
     # Light transport.

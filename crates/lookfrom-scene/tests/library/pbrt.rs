@@ -344,6 +344,25 @@ fn what_is_not_rendered_is_warned_of_once() {
 }
 
 #[test]
+fn lights_in_objects_emit_where_they_are_asked_to() {
+    let text = "WorldBegin ObjectBegin \"lamp\" AreaLightSource \"diffuse\" Shape \"sphere\" Shape \"disk\" ObjectEnd\n\
+                ObjectInstance \"lamp\"";
+    let emitting = |instanced_lights: bool| {
+        let memory = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec())].into());
+        let mut context = LoadContext::new(&memory);
+        context.import.instanced_lights = instanced_lights;
+        let scene = load::scene(Path::new("a.pbrt"), &mut context).unwrap_or_else(|error| panic!("{error}"));
+        let count = scene.objects[0].shapes.iter().filter(|shape| shape.emission.is_some()).count();
+        (count, context.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+    };
+    assert_eq!(emitting(true), (2, Vec::new()));
+    let (count, warnings) = emitting(false);
+    let warning = "a.pbrt:1:57: area lights in objects do not emit light, as in pbrt";
+    assert_eq!((count, warnings.len()), (0, 1));
+    assert!(warnings[0].starts_with(warning) && warnings[0].contains("`instanced_lights`"), "{warnings:?}");
+}
+
+#[test]
 fn hair_has_its_colour_in_one_of_three_ways() {
     let hair = |parameters: &str| {
         let text = format!("WorldBegin Material \"hair\" {parameters} Shape \"sphere\"");
