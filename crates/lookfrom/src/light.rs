@@ -31,7 +31,8 @@ use cone::Cone;
 use tree::LightBounds;
 
 pub use area::{
-    AreaLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight,
+    AreaLight, CurveLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight,
+    QuadricLight,
 };
 pub(crate) use area::{AreaSamples, sample_area_lights};
 pub use choice::{ChosenLight, LightChoice};

@@ -336,7 +336,7 @@ fn what_is_not_rendered_is_warned_of_once() {
     )]);
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
-        "a.pbrt:3:1: Ptex is not supported: such textures are gray",
+        "a.pbrt:3:1: textures of the type \"ptex\" are not supported: they are gray; give the mesh texture coordinates, bake the Ptex file to a picture, and write \"imagemap\"",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);

@@ -3,6 +3,7 @@
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
 //! sampling requires. The sampling of each kind of shape is in a file of its own.
 
+mod curve;
 mod derivation;
 mod disk;
 mod lanes;
@@ -22,6 +23,7 @@ use crate::core::vector::Vector;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
+pub use curve::CurveLight;
 pub use disk::DiskLight;
 use disk::{DiskLights, gather_disks};
 pub(crate) use lanes::sample_area_lights;
@@ -60,6 +62,8 @@ pub enum LightShape {
     Mesh(MeshLight),
     /// Bilinear patches.
     Patches(PatchLight),
+    /// Curves, which are not sampled.
+    Curves(CurveLight),
 }
 
 /// A point of a light, as seen from another point.
@@ -176,9 +180,13 @@ pub struct EmitterBounds {
 }
 
 impl AreaLight {
-    /// Whether any emission was found on it; otherwise it is not sampled, and only rays that hit it find its light.
+    /// Whether it is sampled; otherwise only rays that hit it find its light: curves, and meshes on which no emission was found.
     pub fn is_sampled(&self) -> bool {
-        !matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled())
+        match &self.shape {
+            LightShape::Mesh(light) => light.is_sampled(),
+            LightShape::Curves(_) => false,
+            _ => true,
+        }
     }
 
     /// The mean of the emission texture over the light, where sampling takes the texture into account.
@@ -266,6 +274,7 @@ impl AreaLight {
             LightShape::Disk(light) => light.sample(from, u),
             LightShape::Mesh(light) => light.sample(from, u),
             LightShape::Patches(light) => light.sample(from, u),
+            LightShape::Curves(_) => None,
         }?;
         (point.pdf.is_finite() && point.pdf > 0.0).then_some(point)
     }
@@ -289,6 +298,7 @@ impl AreaLight {
                 None => by_area(light.pdf_by_area(place.0)),
             },
             LightShape::Patches(light) => by_area(light.pdf_by_area(place)),
+            LightShape::Curves(_) => 0.0,
         };
         if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
     }
@@ -309,6 +319,9 @@ impl AreaLight {
             }
             LightShape::Mesh(light) => light.density(from, point),
             LightShape::Patches(light) => light.density(from, point),
+            LightShape::Curves(light) => {
+                AreaDensity::Area { area: light.area(), probability: 0.0, corners: None }
+            }
         }
     }
 
@@ -324,6 +337,7 @@ impl AreaLight {
             LightShape::Disk(light) => (light.bounds(), light.normals()),
             LightShape::Mesh(light) => (light.bounds(), light.normals()),
             LightShape::Patches(light) => (light.bounds(), light.normals()),
+            LightShape::Curves(light) => (light.bounds(), NormalCone::ALL),
         };
         let [min, max] = bounds;
         // Rounding must not make the cone too narrow.
@@ -340,6 +354,7 @@ impl LightShape {
             Self::Disk(light) => light.area(),
             Self::Mesh(light) => light.area(),
             Self::Patches(light) => light.area(),
+            Self::Curves(light) => light.area(),
         }
     }
 }

@@ -319,10 +319,6 @@ impl Compiler<'_> {
         let of_shape = self.grains.get(placing.binding.material as usize).copied();
         self.has_instance_grain || of_shape.unwrap_or(false)
     }
-
-    fn warn(&mut self, at: &Location, message: &str) {
-        self.warnings.push(Warning::new(at, message));
-    }
 }
 
 /// Whether the surface of a sphere in render space is so near to the eye, by its radius, that the rounding of its centre and radius to
