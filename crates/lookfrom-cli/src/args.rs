@@ -438,7 +438,7 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "N", value_parser = values::whole(0, u64::MAX))]
     pub(crate) seed: Option<u64>,
 
-    /// Pixel reconstruction filter: box, triangle, gaussian, mitchell, blackman_harris or sinc, and its radius in pixels
+    /// Pixel reconstruction filter: box, triangle, gaussian, mitchell, blackman_harris or sinc, and its radius in pixels, or along x and y: box:1:0.5
     #[arg(long, value_name = "NAME[:RADIUS]", value_parser = values::filter)]
     pub(crate) filter: Option<Filter>,
 

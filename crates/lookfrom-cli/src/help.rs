@@ -18,7 +18,17 @@ const GROUPS: &[(&str, &[&str])] = &[
     ),
     (
         "Contents of the scene",
-        &["define", "at", "shutter", "fps", "animation", "variant", "scene_of_file", "subdivide"],
+        &[
+            "define",
+            "at",
+            "shutter",
+            "fps",
+            "animation",
+            "variant",
+            "scene_of_file",
+            "subdivide",
+            "instanced_lights",
+        ],
     ),
     ("Several pictures of a scene", &["turntable", "views", "frames", "sheet", "skip_existing"]),
     ("Films and parts of pictures", &["film", "checkpoint", "go_on", "part"]),

@@ -11,6 +11,7 @@ pub(crate) fn in_flags(remedy: &Remedy) -> String {
         Remedy::OpaqueBackground => {
             "a .png, .webp or .exr holds transparency; --background white, or any other colour, is for all formats"
         }
+        Remedy::InstancedLights => "with --instanced-lights each instance is a light",
         Remedy::MoreMemory => {
             "`--memory SIZE` sets another limit, such as 16GiB; if the size is not true, the file is damaged"
         }

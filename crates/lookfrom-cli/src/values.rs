@@ -265,28 +265,23 @@ pub(crate) fn definition(typed: &str) -> Result<(String, String), String> {
     }
 }
 
-/// `NAME` or `NAME:RADIUS`.
+/// `NAME`, `NAME:RADIUS` or `NAME:X:Y`.
 pub(crate) fn filter(typed: &str) -> Result<Filter, String> {
-    let (name, radius_typed) =
-        typed.split_once(':').map_or((typed, None), |(name, radius)| (name, Some(radius)));
+    let (name, radii) = typed.split_once(':').map_or((typed, None), |(name, radii)| (name, Some(radii)));
     let Some(&(_, mut filter)) = Filter::WORDS.iter().find(|(word, _)| *word == name) else {
         let known: Vec<&str> = Filter::WORDS.iter().map(|&(word, _)| word).collect();
         return Err(format!("expected NAME or NAME:RADIUS; the names are {}", known.join(", ")));
     };
-    if let Some(typed) = radius_typed {
-        let wrong = || format!("expected a radius in pixels, more than 0 and at most {GREATEST_RADIUS}");
-        let typed: f32 = typed.parse().map_err(|_| wrong())?;
-        if !(typed > 0.0 && typed <= GREATEST_RADIUS) {
-            return Err(wrong());
-        }
-        match &mut filter {
-            Filter::Box { radius }
-            | Filter::Triangle { radius }
-            | Filter::Gaussian { radius, .. }
-            | Filter::Mitchell { radius, .. }
-            | Filter::BlackmanHarris { radius }
-            | Filter::Sinc { radius, .. } => *radius = typed,
-        }
+    if let Some(radii) = radii {
+        let radius = |typed: &str| match typed.parse() {
+            Ok(radius) if radius > 0.0 && radius <= GREATEST_RADIUS => Ok(radius),
+            _ => Err(format!(
+                "expected a radius in pixels, more than 0 and at most {GREATEST_RADIUS}, or one along x and one along \
+                 y, {name}:0.5:1"
+            )),
+        };
+        let (x, y) = radii.split_once(':').unwrap_or((radii, radii));
+        filter.radius = [radius(x)?, radius(y)?];
     }
     Ok(filter)
 }
@@ -336,9 +331,25 @@ mod tests {
     fn every_filter_keeps_its_name_and_takes_a_radius() {
         for (name, shape) in Filter::WORDS {
             assert_eq!(filter(name).as_ref(), Ok(shape));
-            assert!(filter(&format!("{name}:3.5")).unwrap().to_string().starts_with(&format!("{name}:3.5")));
+            for radii in ["3.5", "3.5:2"] {
+                let typed = format!("{name}:{radii}");
+                let told = filter(&typed).unwrap().to_string();
+                assert_eq!(told.split(' ').next(), Some(&*typed));
+            }
         }
-        for wrong in ["", "cone", "box:", "box:0", "box:-1", "box:17", "box:NaN", "box:inf", "box:1:2"] {
+        for wrong in [
+            "",
+            "cone",
+            "box:",
+            "box:0",
+            "box:-1",
+            "box:17",
+            "box:NaN",
+            "box:inf",
+            "box:1:",
+            "box:1:17",
+            "box:1:2:3",
+        ] {
             assert!(filter(wrong).is_err(), "{wrong}");
         }
     }

@@ -245,6 +245,8 @@ pub struct ImportOptions {
     /// Levels of subdivision of meshes into Catmull–Clark surfaces, up to [`MOST_LEVELS`](crate::subdivision::MOST_LEVELS); 0
     /// leaves them as they are.
     pub subdivision: u32,
+    /// Whether area lights in the objects of pbrt's scenes emit light, each instance on its own. In pbrt they do not.
+    pub instanced_lights: bool,
 }
 
 impl ImportOptions {

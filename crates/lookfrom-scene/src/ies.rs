@@ -1,7 +1,8 @@
 //! Reader for photometric files of luminaires, `.ies` (ANSI/IES LM-63, all editions): the intensity by direction.
 //!
-//! Photometry of type C, as nearly all files have it: vertical angles from straight down, horizontal ones around the upright axis,
-//! counter-clockwise as seen from above. Only relative intensities are used: luminaires are dimmed and have other lamps.
+//! Nearly all files are of type C: vertical angles from straight down, horizontal ones around the upright axis, counter-clockwise
+//! as seen from above. Types B (floodlights) and A (headlights) have their angles around the axis that the lamp shines along; both
+//! hang so that it is straight down (IES LM-75). Only relative intensities are used: luminaires are dimmed and have other lamps.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::path::Path;
@@ -21,12 +22,24 @@ const SIDE: u32 = 256;
 /// Intensities of a luminaire by direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Photometry {
-    /// Vertical angles in degrees, increasing: 0 is straight down, 180 straight up.
+    kind: Kind,
+    /// Vertical angles in degrees, increasing. Of type C 0 is straight down, 180 straight up.
     vertical: Vec<f64>,
     /// Horizontal angles in degrees, increasing; the rest is symmetric.
     horizontal: Vec<f64>,
     /// By horizontal, then by vertical angle; the greatest is 1.
     intensities: Vec<f64>,
+}
+
+/// The type of a photometry: the meaning of its angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Longitudes around the axis to the lamp's top, and latitudes.
+    A,
+    /// Longitudes around the axis to the lamp's right, which are its vertical angles, and latitudes.
+    B,
+    /// Longitudes around the upright axis, and angles from straight down.
+    C,
 }
 
 /// Whether a file has the name of a photometric file.
@@ -37,7 +50,7 @@ pub fn is_ies(name: &str) -> bool {
 /// Reads a photometric file.
 ///
 /// # Errors
-/// `Syntax` or `Invalid` for what is no such file, `Unsupported` for photometry of type A or B, `Limit` for too many angles.
+/// `Syntax` or `Invalid` for what is no such file, `Limit` for too many angles.
 pub fn read(path: &Path, context: &LoadContext<'_>) -> Result<Photometry> {
     let bytes = context.read(path)?;
     if bytes.len() as u64 > LONGEST {
@@ -118,11 +131,15 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
     let vertical_count = numbers.count("the number of vertical angles")?;
     let horizontal_count = numbers.count("the number of horizontal angles")?;
     let kind = numbers.next("the type of photometry")?;
-    if kind != 1.0 {
-        let at = file.at(numbers.last_line, 1);
-        let message = "photometry of type A or B is not supported: only type C, of luminaires that hang";
-        return Err(Error::new(ErrorKind::Unsupported, &at, message));
-    }
+    let kind = match kind {
+        1.0 => Kind::C,
+        2.0 => Kind::B,
+        3.0 => Kind::A,
+        _ => {
+            let message = format!("the type of photometry is {kind}; expected 1 (C), 2 (B) or 3 (A)");
+            return Err(numbers.wrong(message));
+        }
+    };
     for what in ["the unit of lengths", "the width", "the length", "the height"] {
         numbers.next(what)?;
     }
@@ -139,16 +156,37 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
     let greatest = intensities.iter().fold(0.0, |most: f64, intensity| most.max(*intensity));
     if greatest > 0.0 {
         intensities.iter_mut().for_each(|intensity| *intensity /= greatest);
-        return Ok(Photometry { vertical, horizontal, intensities });
+        return Ok(Photometry { kind, vertical, horizontal, intensities });
     }
     Err(Error::invalid(file, "the luminaire emits no light: all intensities are 0"))
 }
 
 impl Photometry {
-    /// The relative intensity into a direction: degrees from straight down, and around. 0 beyond the vertical angles.
+    /// The relative intensity into a direction: degrees from straight down, and around. 0 beyond the file's angles.
     pub fn intensity(&self, vertical: f64, horizontal: f64) -> f64 {
-        let Some((row, t)) = place(&self.vertical, vertical) else { return 0.0 };
-        let (column, s) = place(&self.horizontal, self.folded(horizontal)).unwrap_or((0, 0.0));
+        if self.kind == Kind::C {
+            let column = place(&self.horizontal, self.folded(horizontal)).unwrap_or((0, 0.0));
+            return self.at(place(&self.vertical, vertical), Some(column));
+        }
+        // A lamp that is tilted from straight down until it shines forward has its top up and its right to the right.
+        let (sin, ahead) = libm::sincos(vertical.to_radians());
+        let (minus_right, top) = libm::sincos(horizontal.to_radians());
+        let (right, top) = (-sin * minus_right, sin * top);
+        let longitude = |side: f64| libm::atan2(side, ahead).to_degrees();
+        let latitude = |side: f64| libm::asin(side.clamp(-1.0, 1.0)).to_degrees();
+        let (vertical, horizontal) = match self.kind {
+            Kind::A => (latitude(top), longitude(right)),
+            Kind::B | Kind::C => (longitude(top), latitude(right)),
+        };
+        // Angles from 0 on stand for both sides.
+        let on =
+            |angles: &[f64], angle: f64| place(angles, if angles[0] == 0.0 { angle.abs() } else { angle });
+        self.at(on(&self.vertical, vertical), on(&self.horizontal, horizontal))
+    }
+
+    /// The intensity in an interval of vertical and in one of horizontal angles; 0 outside of them.
+    fn at(&self, row: Option<(usize, f64)>, column: Option<(usize, f64)>) -> f64 {
+        let (Some((row, t)), Some((column, s))) = (row, column) else { return 0.0 };
         let at = |column: usize, row: usize| {
             let column = column.min(self.horizontal.len() - 1);
             self.intensities[column * self.vertical.len() + row.min(self.vertical.len() - 1)]
@@ -247,6 +285,37 @@ mod tests {
     }
 
     #[test]
+    fn floodlights_and_headlights_have_their_axis_straight_down() {
+        // By hand: 30° toward the top of the lamp (C 0), then from there to its right (C 270), by the formulas of LM-75:
+        // type B turns around the axis to the right, type A around the one to the top.
+        let body = "0 0 0 1 1 40\n-60 0 60\n-60 0 60\n1 2 3\n4 8 6\n2 5 7\n";
+        let [b, a] = [2, 3].map(|kind| of(&format!("TILT=NONE\n1 1 1 3 3 {kind} 1 {body}")).unwrap());
+        assert!(near(b.intensity(0.0, 123.0), 1.0) && near(a.intensity(0.0, 0.0), 1.0));
+        for photometry in [&a, &b] {
+            // On both axes the types agree: up by 60° it is 6, right by 60° it is 5, down 4, left 2, of 8.
+            let seen = [0.0, 270.0, 180.0, 90.0].map(|around| photometry.intensity(60.0, around) * 8.0);
+            assert!(seen.into_iter().zip([6.0, 5.0, 4.0, 2.0]).all(|(a, b)| near(a, b)), "{seen:?}");
+            assert_eq!(photometry.intensity(61.0, 0.0), 0.0);
+            assert_eq!(photometry.intensity(180.0, 0.0), 0.0);
+        }
+        // 45° toward top and right: the direction (top, right, ahead) = (½, ½, √½).
+        let [longitude, latitude] = [libm::atan(libm::sqrt(0.5)), libm::asin(0.5)].map(f64::to_degrees);
+        let value = |up: f64, right: f64| {
+            let (t, s) = (up / 60.0, right / 60.0);
+            (8.0 + t * (6.0 - 8.0)) * (1.0 - s) + (5.0 + t * (7.0 - 5.0)) * s
+        };
+        assert!(near(b.intensity(45.0, 315.0) * 8.0, value(longitude, latitude)));
+        assert!(near(a.intensity(45.0, 315.0) * 8.0, value(latitude, longitude)));
+        assert!(!near(a.intensity(45.0, 315.0), b.intensity(45.0, 315.0)));
+        // Half of the angles stand for both sides.
+        let half = of("TILT=NONE\n1 1 1 2 2 2 1 0 0 0 1 1 40\n0 90\n0 90\n4 2 1 0\n").unwrap();
+        for around in [0.0, 180.0] {
+            assert!(near(half.intensity(45.0, around), 0.75), "{around}");
+        }
+        assert!(near(half.intensity(45.0, 90.0), 0.625) && near(half.intensity(45.0, 270.0), 0.625));
+    }
+
+    #[test]
     fn the_map_has_straight_up_in_the_middle() {
         let tilt = "TILT=INCLUDE\n1 2 0 90 1 1\n1 -1 1 3 1 1 1 0 0 0 1 1 40 0 90 180 0 1 2 4";
         let up = of(tilt).unwrap().octahedral("up");
@@ -262,7 +331,10 @@ mod tests {
             ("a picture", "no line `TILT=`"),
             ("TILT=NONE\n1 1 1 2 1 1", "a.ies:2:1: the file ends before the unit"),
             ("TILT=NONE\n1 1 x", "`x` is no number"),
-            ("TILT=NONE\n1 1 1 2 1 3 1 0 0 0 1 1 1", "type A or B"),
+            (
+                "TILT=NONE\n1 1 1 2 1 4 1 0 0 0 1 1 1",
+                "the type of photometry is 4; expected 1 (C), 2 (B) or 3 (A)",
+            ),
             ("TILT=NONE\n1 1 1 1e9 1 1", "more than the limit"),
             (
                 "TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1\n90 0\n0\n1 1",

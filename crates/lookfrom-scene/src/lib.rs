@@ -57,6 +57,7 @@ pub mod stl;
 pub mod studio;
 pub mod subdivision;
 pub mod suggest;
+mod tessellation;
 mod text;
 pub mod texture;
 pub mod toml;

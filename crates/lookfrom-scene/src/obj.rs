@@ -84,7 +84,7 @@ pub fn from_bytes(
         match group.elements {
             Elements::Mesh(mesh) => {
                 let id = MeshId(scene.meshes.len() as u32);
-                scene.meshes.push(mesh);
+                scene.meshes.push(*mesh);
                 parts.push(part(Geometry::Mesh(id), binding.material));
             }
             Elements::Lines(ends, colors) => {

@@ -7,6 +7,7 @@
 mod camera;
 mod curve;
 mod directive;
+mod displacement;
 mod file;
 mod film;
 mod hair;
@@ -37,6 +38,7 @@ use std::sync::Arc;
 
 use glam::DMat4;
 
+use self::displacement::Displaced;
 use self::file::Model;
 use self::missing::Missing;
 use self::state::{Opened, Options, State};
@@ -96,6 +98,8 @@ pub(crate) fn from_bytes(
         curves: BTreeMap::new(),
         images: BTreeMap::new(),
         models: BTreeMap::new(),
+        displaced: Vec::new(),
+        displacement_edge_scale: 1.0,
         warned: BTreeSet::new(),
         media: BTreeMap::new(),
         measured: BTreeMap::new(),
@@ -152,6 +156,10 @@ struct Reader<'s, 'f> {
     /// Images by path and conversion of their values.
     images: BTreeMap<(PathBuf, String), ImageId>,
     models: BTreeMap<PathBuf, Model>,
+    /// Meshes to be displaced, whose models are read later.
+    displaced: Vec<Displaced>,
+    /// What the lengths of edges of displaced meshes are multiplied by.
+    displacement_edge_scale: f32,
     /// Warnings that have been given already.
     warned: BTreeSet<String>,
     /// Measured materials by path.
@@ -184,13 +192,6 @@ struct NamedTexture {
 }
 
 impl Reader<'_, '_> {
-    /// Warns of something only the first time.
-    fn warn_once(&mut self, what: &str, place: &Place, message: impl std::fmt::Display) {
-        if self.warned.insert(what.to_owned()) {
-            self.context.warn(&place.location(), message.to_string());
-        }
-    }
-
     /// The error for an unknown word, with the most similar known one.
     fn unknown<'a>(
         place: &Place,
@@ -215,7 +216,8 @@ impl Reader<'_, '_> {
     /// Steps that need the whole scene. Models are read even after errors, so that all missing files are found.
     fn finish(&mut self, path: &Path) -> Result<()> {
         let result = self.finish_without_models(path);
-        self.read_models().and(result)
+        self.read_models().and(result)?;
+        self.tessellate_displaced()
     }
 
     fn finish_without_models(&mut self, path: &Path) -> Result<()> {

@@ -14,6 +14,8 @@ pub enum Remedy {
     Exposure(f32),
     /// A colour as the option `background`, or a format that holds transparency.
     OpaqueBackground,
+    /// The option `instanced_lights`.
+    InstancedLights,
     /// A higher limit as the option `memory`.
     MoreMemory,
     /// A smaller picture, or films of its parts, or a higher limit as the option `memory`.
@@ -45,6 +47,7 @@ impl fmt::Display for Remedy {
             Self::OpaqueBackground => {
                 "PNG, WebP and OpenEXR hold transparency; a colour as the `background` is for all formats"
             }
+            Self::InstancedLights => "with the option `instanced_lights` each instance is a light",
             Self::MoreMemory => {
                 "the option `memory` sets another limit; if the size is not true, the file is damaged"
             }

@@ -38,7 +38,7 @@ pub(crate) fn open(
         let at = Some(start + frames / context.variables.fps * part as f64 / parts as f64);
         let mut later = LoadContext {
             files: context.files,
-            limits: context.limits.clone(),
+            limits: context.limits,
             budget: context.budget.clone(),
             kept: Vec::new(),
             warnings: Vec::new(),

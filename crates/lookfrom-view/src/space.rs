@@ -10,7 +10,7 @@ use lookfrom::view::camera::Camera;
 use lookfrom_scene::Result;
 use lookfrom_scene::camera::{Camera as Written, Projection};
 use lookfrom_scene::image::{encode_png_with_alpha, srgb_from_linear};
-use lookfrom_scene::settings::{Filter, ImageSettings, Integrator, Layers, RenderSettings};
+use lookfrom_scene::settings::{FilterShape, ImageSettings, Integrator, Layers, RenderSettings};
 
 use crate::heat::byte;
 use crate::message::{CameraRequest, Header};
@@ -35,7 +35,7 @@ pub(crate) fn frame(session: &Session, id: u64, request: &CameraRequest, size: [
     let image = ImageSettings {
         width,
         height,
-        filter: Filter::Box { radius: 0.5 },
+        filter: FilterShape::Box.of_radius(0.5),
         layers: Layers::Geometry,
         ..ImageSettings::default()
     };

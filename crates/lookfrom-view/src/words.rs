@@ -108,17 +108,10 @@ fn lens_system(system: &LensSystem) -> Vec<(&'static str, String)> {
     keys
 }
 
-fn filter(filter: Filter) -> String {
-    let (word, numbers) = match filter {
-        Filter::Box { radius } => ("box", vec![("radius", radius)]),
-        Filter::Triangle { radius } => ("triangle", vec![("radius", radius)]),
-        Filter::Gaussian { radius, sigma } => ("gaussian", vec![("radius", radius), ("sigma", sigma)]),
-        Filter::Mitchell { radius, b, c } => ("mitchell", vec![("radius", radius), ("b", b), ("c", c)]),
-        Filter::BlackmanHarris { radius } => ("blackman_harris", vec![("radius", radius)]),
-        Filter::Sinc { radius, tau } => ("sinc", vec![("radius", radius), ("tau", tau)]),
-    };
-    let numbers: String = numbers.into_iter().map(|(key, value)| format!(", {key} = {value}")).collect();
-    format!("{{ type = \"{word}\"{numbers} }}")
+fn filter(Filter { shape, radius: [x, y] }: Filter) -> String {
+    let radius = if x == y { x.to_string() } else { format!("[{x}, {y}]") };
+    let parameters = shape.parameters().into_iter().map(|(key, value)| format!(", {key} = {value}"));
+    format!("{{ type = {:?}, radius = {radius}{} }}", shape.word(), parameters.collect::<String>())
 }
 
 /// Keys of `[render]`; those that only few scenes have, where they are not the default.

@@ -32,7 +32,8 @@ use tree::LightBounds;
 
 pub(crate) use area::LightMotion;
 pub use area::{
-    AreaLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight, QuadricLight,
+    AreaLight, CurveLight, DiskLight, EmitterBounds, LightPoint, LightShape, MeshLight, PatchLight,
+    QuadricLight,
 };
 pub(crate) use area::{AreaSamples, sample_area_lights};
 pub use choice::{ChosenLight, LightChoice};

@@ -77,6 +77,10 @@ pub(crate) struct ModelArguments {
     #[arg(long, value_name = "LEVELS", value_parser = clap::value_parser!(u32).range(0..=i64::from(MOST_LEVELS)), default_value_t = 0, hide_default_value = true)]
     pub(crate) subdivide: u32,
 
+    /// Let area lights in objects of pbrt's scenes emit light, each instance on its own; in pbrt they do not
+    #[arg(long)]
+    pub(crate) instanced_lights: bool,
+
     /// Camera of a glTF file, by name or number from 0; none frames any scene as if it had no camera
     #[arg(long, value_name = "NAME|N")]
     pub(crate) camera: Option<String>,
@@ -97,6 +101,7 @@ impl ModelArguments {
                 Some(name) => CameraChoice::Named(name.to_owned()),
             },
             subdivision: self.subdivide,
+            instanced_lights: self.instanced_lights,
         }
     }
 }

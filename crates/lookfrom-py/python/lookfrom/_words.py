@@ -64,6 +64,7 @@ class Options(TypedDict, total=False):
     variant: str | int
     scene_of_file: str | int
     subdivide: int
+    instanced_lights: bool
     # Films.
     film: bool
     # Light transport.
@@ -74,7 +75,7 @@ class Options(TypedDict, total=False):
     min_contribution: float
     sampler: str
     seed: int
-    filter: str | tuple[str, float]
+    filter: str | tuple[str, float] | tuple[str, float, float]
     # Layers.
     layers: str
     light_path: Mapping[str, str]

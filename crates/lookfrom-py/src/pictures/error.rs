@@ -85,6 +85,7 @@ pub(super) fn worded(remedy: &Remedy) -> String {
         Remedy::OpaqueBackground => {
             ".png, .webp and .exr hold transparency; background=\"white\", or any other colour, is for all formats"
         }
+        Remedy::InstancedLights => "with instanced_lights=True each instance is a light",
         Remedy::MoreMemory => {
             "memory=\"16GiB\" sets another limit; if the size is not true, the file is damaged"
         }

@@ -369,8 +369,7 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
         colors,
         opacities,
         tangents,
-        is_of_solid: false,
-        later: Vec::new(),
+        ..Mesh::default()
     });
     MeshId(scene.meshes.len() as u32 - 1)
 }

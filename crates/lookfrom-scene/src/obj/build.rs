@@ -30,7 +30,7 @@ pub(super) struct MeshGroup {
 
 /// The elements of a group.
 pub(super) enum Elements {
-    Mesh(Mesh),
+    Mesh(Box<Mesh>),
     /// The ends of lines, and the colour of each, where vertices have colours.
     Lines(Vec<[Vec3; 2]>, Vec<[f32; 3]>),
 }
@@ -61,7 +61,7 @@ pub(super) fn meshes(
         let mut mesh = mesh(&group, &statements, &mut triangulator, &mut tallies);
         if !mesh.triangles.is_empty() {
             mesh.name = file.file.to_string();
-            groups.push(mesh_group(Elements::Mesh(mesh)));
+            groups.push(mesh_group(Elements::Mesh(Box::new(mesh))));
         }
         let (ends, colors) = lines(&group, &statements, &mut tallies.lines);
         if !ends.is_empty() {

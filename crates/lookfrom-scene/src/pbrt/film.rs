@@ -5,7 +5,7 @@ use super::params::{ParameterType, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
 use crate::error::Result;
-use crate::settings::{Filter, Layers, PixelBounds, Sensor};
+use crate::settings::{Filter, FilterShape, Layers, PixelBounds, Sensor};
 use crate::spectrum::CameraSensor;
 
 /// Maximum width and height.
@@ -85,36 +85,24 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn filter(&mut self, filter: Option<&Entity>) -> Result<()> {
-        self.scene.image.filter = Filter::Gaussian { radius: 1.5, sigma: 0.5 };
+        self.scene.image.filter = FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5);
         let Some(Entity { kind, parameters }) = filter else { return Ok(()) };
-        let default = match &**kind {
-            "box" => 0.5,
-            "gaussian" => 1.5,
-            "triangle" | "mitchell" => 2.0,
-            "sinc" => 4.0,
+        let (shape, radius) = match &**kind {
+            "box" => (FilterShape::Box, 0.5),
+            "gaussian" => (FilterShape::Gaussian { sigma: parameters.positive("sigma", 0.5)? }, 1.5),
+            "triangle" => (FilterShape::Triangle, 2.0),
+            "mitchell" => {
+                let [b, c] = [parameters.float("B", 1.0 / 3.0)?, parameters.float("C", 1.0 / 3.0)?];
+                (FilterShape::Mitchell { b, c }, 2.0)
+            }
+            "sinc" => (FilterShape::Sinc { tau: parameters.positive("tau", 3.0)? }, 4.0),
             _ => {
                 let known = ["box", "gaussian", "triangle", "mitchell", "sinc"];
                 return Err(Self::unknown(&parameters.place, "filter", kind, known));
             }
         };
-        let radius = parameters.positive("xradius", default)?;
-        let other = parameters.positive("yradius", default)?;
-        if radius != other {
-            let message =
-                format!("a filter of {radius} × {other} pixels is replaced by one of {radius} × {radius}");
-            self.context.warn(&parameters.place.location(), message);
-        }
-        self.scene.image.filter = match &**kind {
-            "box" => Filter::Box { radius },
-            "gaussian" => Filter::Gaussian { radius, sigma: parameters.positive("sigma", 0.5)? },
-            "triangle" => Filter::Triangle { radius },
-            "mitchell" => Filter::Mitchell {
-                radius,
-                b: parameters.float("B", 1.0 / 3.0)?,
-                c: parameters.float("C", 1.0 / 3.0)?,
-            },
-            _ => Filter::Sinc { radius, tau: parameters.positive("tau", 3.0)? },
-        };
+        let radius = [parameters.positive("xradius", radius)?, parameters.positive("yradius", radius)?];
+        self.scene.image.filter = Filter { shape, radius };
         Ok(())
     }
 }

@@ -173,6 +173,11 @@ impl Reader<'_, '_> {
                     super::lexer::parse_integer(word).ok_or_else(|| lexer.wrong(start, "a whole number"))?;
                 self.scene.render.seed = u64::from(seed as u32);
             }
+            ("displacementedgescale", Some(Token::Word(word))) => {
+                let scale = super::lexer::parse_single(word).filter(|&scale| scale > 0.0);
+                self.displacement_edge_scale =
+                    scale.ok_or_else(|| lexer.wrong(start, "a positive number"))?;
+            }
             (_, Some(Token::Word(b"true"))) if matters => {
                 let message = format!("the option {name:?} makes no difference here");
                 self.context.warn(&place.location(), message);

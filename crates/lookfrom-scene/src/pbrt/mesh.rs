@@ -45,21 +45,14 @@ impl Reader<'_, '_> {
             return Err(error.hint("name a .ply or .ply.gz file"));
         };
         let place = parameter.map_or(&p.place, |parameter| &parameter.place);
-        if p.find("displacement", &[ParameterType::Texture, ParameterType::String])?.is_some() {
-            let message = "displacement is not rendered yet: the mesh is not displaced";
-            self.warn_once("displacement", &p.place, message);
-        }
-        p.ignore(&["edgelength", "displacement.uvscale"]);
         let path = self.resolve(name);
-        Ok(Geometry::Mesh(self.model(path, place)))
+        let mesh = self.model(path, place);
+        self.displaced(p, mesh).map(Geometry::Mesh)
     }
 
     pub(super) fn bilinear_mesh(&mut self, p: &Parameters) -> Result<Option<Geometry>> {
-        p.ignore(&["faceIndices"]);
-        if p.find("emissionfilename", &[ParameterType::String])?.is_some() {
-            let message = "\"emissionfilename\" is not supported yet: the whole patch emits uniformly";
-            self.warn_once("emissionfilename", &p.place, message);
-        }
+        // The picture directs pbrt's sampling of a light; what it emits is the picture of the light.
+        p.ignore(&["faceIndices", "emissionfilename"]);
         let positions = points(p)?;
         let patches = faces::<4>(p, positions.len())?;
         if patches.is_empty() {

@@ -7,8 +7,10 @@ use super::{Reader, transform};
 use crate::error::Result;
 use crate::material::Scalar;
 use crate::motion::Motion;
+use crate::remedy::Remedy;
 use crate::scene::{Object, ObjectId};
 use crate::shape::{Geometry, Shape};
+use crate::warning::Warning;
 
 const KINDS: &[&str] =
     &["bilinearmesh", "curve", "cylinder", "disk", "loopsubdiv", "plymesh", "sphere", "trianglemesh"];
@@ -34,9 +36,12 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let mut emission = self.state.emission;
-        if emission.is_some() && self.object.is_some() {
-            let message = "shapes in an object do not emit light: an object can have many instances";
-            self.warn_once("light in object", &p.place, message);
+        if emission.is_some() && self.object.is_some() && !self.context.import.instanced_lights {
+            if self.warned.insert("light in object".to_owned()) {
+                let message = "area lights in objects do not emit light, as in pbrt";
+                let warning = Warning::new(&p.place.location(), message).remedy(Remedy::InstancedLights);
+                self.context.warnings.push(warning);
+            }
             emission = None;
         }
         let sides = self.sides(&p.place)?;

@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::material::{Color, Scalar};
 use crate::scene::TextureId;
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
+use crate::warning::Warning;
 
 const KINDS: &[&str] = &[
     "bilerp",
@@ -215,8 +216,12 @@ impl Reader<'_, '_> {
                 return Err(error.hint(format!("write {there:?} between the name and {kind:?}")));
             }
             "ptex" => {
-                let message = "Ptex is not supported: such textures are gray";
-                self.warn_once("ptex", &p.place, message);
+                if self.warned.insert("ptex".to_owned()) {
+                    let message = "textures of the type \"ptex\" are not supported: they are gray";
+                    let remedy = "give the mesh texture coordinates, bake the Ptex file to a picture, and write \"imagemap\"";
+                    let warning = Warning::new(&p.place.location(), message);
+                    self.context.warnings.push(warning.remedy(remedy.into()));
+                }
                 p.ignore(&["filename", "encoding", "scale"]);
                 uniform(Color::gray(0.5))
             }

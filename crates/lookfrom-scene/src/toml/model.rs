@@ -90,6 +90,7 @@ impl Reader<'_, '_> {
             scene: name("scene", &asked.scene),
             camera: CameraChoice::First,
             subdivision: self.subdivision(table),
+            instanced_lights: asked.instanced_lights,
         };
         let has_camera = table.or("camera", false, |value| match value.as_text() {
             Some(name) => {

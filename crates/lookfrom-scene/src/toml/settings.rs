@@ -4,8 +4,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
-    Allocation, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer, LightSampler,
-    MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
+    Allocation, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
+    LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -132,35 +132,33 @@ fn filter(value: Value<'_>) -> Result<Filter> {
     }
     let table = value.table("`filter`")?;
     table.allow(&[FILTER]);
-    let width =
-        |value: Value<'_>| value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= 16.0);
     let chosen = table.need("type", "\"gaussian\"", None, |value| value.choice(Filter::WORDS).map(Some));
-    let Some(mut chosen) = chosen else { return Err(Error::untold()) };
-    match &mut chosen {
-        Filter::Box { radius } | Filter::Triangle { radius } | Filter::BlackmanHarris { radius } => {
-            table.allow(&[&["type", "radius"]]);
-            *radius = table.or("radius", *radius, width);
+    let Some(Filter { mut shape, radius }) = chosen else { return Err(Error::untold()) };
+    let parameters: Vec<&str> = shape.parameters().into_iter().map(|(name, _)| name).collect();
+    table.allow(&[&["type", "radius"], &parameters]);
+    let radius = table.or("radius", radius, |value| {
+        if value.is_number() {
+            return pixels(value).map(|both| [both; 2]);
         }
-        Filter::Gaussian { radius, sigma } => {
-            table.allow(&[&["type", "radius", "sigma"]]);
-            *radius = table.or("radius", *radius, width);
-            *sigma = table.or("sigma", *sigma, width);
-        }
-        Filter::Mitchell { radius, b, c } => {
-            table.allow(&[&["type", "radius", "b", "c"]]);
-            *radius = table.or("radius", *radius, width);
-            let share =
-                |value: Value<'_>| value.single_where("a number from 0 to 1", |s| (0.0..=1.0).contains(&s));
+        let [x, y] = value.list_of("a radius in pixels, or [x, y]")?;
+        Ok([pixels(x)?, pixels(y)?])
+    });
+    let share = |value: Value<'_>| value.single_where("a number from 0 to 1", |s| (0.0..=1.0).contains(&s));
+    match &mut shape {
+        FilterShape::Box | FilterShape::Triangle | FilterShape::BlackmanHarris => {}
+        FilterShape::Gaussian { sigma } => *sigma = table.or("sigma", *sigma, pixels),
+        FilterShape::Mitchell { b, c } => {
             *b = table.or("b", *b, share);
             *c = table.or("c", *c, share);
         }
-        Filter::Sinc { radius, tau } => {
-            table.allow(&[&["type", "radius", "tau"]]);
-            *radius = table.or("radius", *radius, width);
-            *tau = table.or("tau", *tau, width);
-        }
+        FilterShape::Sinc { tau } => *tau = table.or("tau", *tau, pixels),
     }
-    Ok(chosen)
+    Ok(Filter { shape, radius })
+}
+
+/// A length of a filter.
+fn pixels(value: Value<'_>) -> Result<f32> {
+    value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= 16.0)
 }
 
 /// The integrator and its settings.

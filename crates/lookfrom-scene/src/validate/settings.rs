@@ -4,7 +4,7 @@
 use super::Part;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::scene::Scene;
-use crate::settings::{Background, Filter, ImageSettings, MOST_PIXELS, RenderSettings};
+use crate::settings::{Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings};
 
 /// Maximum of a filter's radius in pixels.
 const WIDEST: f32 = 16.0;
@@ -39,23 +39,16 @@ fn check_image(part: &Part<'_>, image: &ImageSettings) -> Result<()> {
 }
 
 fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {
-    let (radius, parameters) = match filter {
-        Filter::Box { radius } | Filter::Triangle { radius } | Filter::BlackmanHarris { radius } => {
-            (radius, [0.0; 2])
+    for (name, value) in filter.shape.parameters() {
+        match filter.shape {
+            FilterShape::Mitchell { .. } => part.finite("filter", &[value.into()])?,
+            _ => part.positive(&format!("{name} of the filter"), value.into())?,
         }
-        Filter::Gaussian { radius, sigma } => {
-            part.positive("sigma of the filter", sigma.into())?;
-            (radius, [sigma, 0.0])
-        }
-        Filter::Mitchell { radius, b, c } => (radius, [b, c]),
-        Filter::Sinc { radius, tau } => {
-            part.positive("tau of the filter", tau.into())?;
-            (radius, [tau, 0.0])
-        }
-    };
-    part.finite("filter", &parameters.map(f64::from))?;
-    let is_valid = radius > 0.0 && radius <= WIDEST;
-    part.number("radius of the filter", radius.into(), "pixels, more than 0 and at most 16", is_valid)
+    }
+    filter.radius.into_iter().try_for_each(|radius| {
+        let is_valid = radius > 0.0 && radius <= WIDEST;
+        part.number("radius of the filter", radius.into(), "pixels, more than 0 and at most 16", is_valid)
+    })
 }
 
 fn check_render(part: &Part<'_>, render: &RenderSettings) -> Result<()> {

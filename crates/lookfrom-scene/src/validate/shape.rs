@@ -129,6 +129,9 @@ fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
         part.as_many("later positions", pose.positions.len(), "positions", mesh.positions.len())?;
         part.as_many("later normals", pose.normals.len(), "normals", mesh.normals.len())?;
     }
+    if let Some(displacement) = mesh.displacement {
+        part.scalar("displacement", displacement)?;
+    }
     let vertices = mesh.positions.len();
     part.all("positions", &mesh.positions, "finite", |position| position.is_finite())?;
     let is_valid = |triangle: &[u32; 3]| triangle.iter().all(|vertex| (*vertex as usize) < vertices);

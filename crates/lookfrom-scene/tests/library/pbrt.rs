@@ -11,7 +11,7 @@ use lookfrom_scene::material::{
 };
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
-use lookfrom_scene::settings::{ColorMode, Filter, Integrator, Layers, PixelBounds, Sampler};
+use lookfrom_scene::settings::{ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, TextureKind};
@@ -36,11 +36,21 @@ fn read(text: &str) -> Scene {
 fn what_is_not_written_is_pbrts_default() {
     let scene = read("WorldBegin");
     assert_eq!((scene.image.width, scene.image.height), (1280, 720));
-    assert_eq!(scene.image.filter, Filter::Gaussian { radius: 1.5, sigma: 0.5 });
+    assert_eq!(scene.image.filter, FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5));
     let render = &scene.render;
     assert_eq!((render.integrator, render.depth, render.samples), (Integrator::Path, 5, 16));
     assert_eq!((render.sampler, render.color), (Sampler::Sobol, ColorMode::Spectral));
     assert_eq!(scene.camera.expect("one").projection, Projection::Perspective { fov: 90.0 });
+}
+
+#[test]
+fn filters_have_a_radius_along_each_axis() {
+    let scene = read(
+        "PixelFilter \"gaussian\" \"float xradius\" 2 \"float yradius\" .75 \"float sigma\" .4\nWorldBegin",
+    );
+    let shape = FilterShape::Gaussian { sigma: 0.4 };
+    assert_eq!(scene.image.filter, Filter { shape, radius: [2.0, 0.75] });
+    assert_eq!(scene.image.filter.to_string(), "gaussian:2:0.75 sigma 0.4");
 }
 
 #[test]
@@ -326,11 +336,30 @@ fn what_is_not_rendered_is_warned_of_once() {
     )]);
     let expected = [
         "a.pbrt:1:1: the integrator \"bdpt\" is not supported: \"volpath\", which computes the same light, is used instead",
-        "a.pbrt:3:1: Ptex is not supported: such textures are gray",
+        "a.pbrt:3:1: textures of the type \"ptex\" are not supported: they are gray; give the mesh texture coordinates, bake the Ptex file to a picture, and write \"imagemap\"",
         "a.pbrt:4:16: Shape \"sphere\" has no parameter \"float raduis\"; did you mean \"radius\"?",
     ];
     assert_eq!(warnings, expected);
     assert_eq!(scene.render.samples, 12);
+}
+
+#[test]
+fn lights_in_objects_emit_where_they_are_asked_to() {
+    let text = "WorldBegin ObjectBegin \"lamp\" AreaLightSource \"diffuse\" Shape \"sphere\" Shape \"disk\" ObjectEnd\n\
+                ObjectInstance \"lamp\"";
+    let emitting = |instanced_lights: bool| {
+        let memory = Memory([(PathBuf::from("a.pbrt"), text.as_bytes().to_vec())].into());
+        let mut context = LoadContext::new(&memory);
+        context.import.instanced_lights = instanced_lights;
+        let scene = load::scene(Path::new("a.pbrt"), &mut context).unwrap_or_else(|error| panic!("{error}"));
+        let count = scene.objects[0].shapes.iter().filter(|shape| shape.emission.is_some()).count();
+        (count, context.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+    };
+    assert_eq!(emitting(true), (2, Vec::new()));
+    let (count, warnings) = emitting(false);
+    let warning = "a.pbrt:1:57: area lights in objects do not emit light, as in pbrt";
+    assert_eq!((count, warnings.len()), (0, 1));
+    assert!(warnings[0].starts_with(warning) && warnings[0].contains("`instanced_lights`"), "{warnings:?}");
 }
 
 #[test]

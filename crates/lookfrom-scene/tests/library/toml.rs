@@ -80,7 +80,7 @@ focus = [5, 1, -1]
 width = 320
 height = 200
 crop = [10, 20, 30, 40]
-filter = { type = "mitchell", radius = 3 }
+filter = { type = "mitchell", radius = [3, 2] }
 [render]
 integrator = "raycast"
 samples = 4
@@ -108,6 +108,7 @@ position = [1, 2, 3]
 intensity = 5
 "##,
     );
+    assert_eq!(scene.image.filter.radius, [3.0, 2.0]);
     let camera = scene.camera.as_ref().expect("a camera");
     assert_eq!(camera.projection, Projection::Perspective { fov: 60.0 });
     assert_eq!(camera.lens.expect("a lens").focus_distance, 3.0);

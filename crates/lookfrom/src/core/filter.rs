@@ -3,11 +3,11 @@
 //! Step 3 in the computation of a pixel. Instead of weighting samples, positions are *sampled* with a density
 //! proportional to the filter, so that a sample contributes to its own pixel only (filter importance sampling,
 //! Ernst, Stamminger & Greiner 2006). Where a filter is negative, so is the weight. All filters here are separable:
-//! products of one curve along x and y.
+//! products of a curve along x and one along y, which differ in their radius alone.
 //!
 //! Mitchell & Netravali 1988 (the cubic); Harris 1978 (the four-term window); Duchon 1979 (the sinc of Lanczos).
 
-use lookfrom_scene::settings::Filter as Shape;
+use lookfrom_scene::settings::{Filter as Settings, FilterShape as Shape};
 use lookfrom_simd::{Float, Real};
 
 use crate::core::sampler::ONE_MINUS_EPSILON;
@@ -25,9 +25,19 @@ const PARTS: usize = 1024;
 /// farther than radius/1024 pixels from the exact inverse.
 #[derive(Clone, Debug)]
 pub struct Filter {
+    x: Axis,
+    /// Along y, where it is not as along x.
+    y: Option<Axis>,
+    /// ∫|f| / ∫f over the plane: the magnitude of all weights.
+    weight: f32,
+}
+
+/// A filter along one axis.
+#[derive(Clone, Debug)]
+struct Axis {
     curve: Curve,
     radius: f32,
-    /// ∫∫f in pixels².
+    /// ∫f in pixels.
     integral: f64,
     table: Option<Table>,
 }
@@ -42,8 +52,8 @@ struct Table {
     first: Vec<u16>,
     /// True if f is negative in the cell.
     negative: Vec<bool>,
-    /// (∫|f| / ∫f)², for both axes together.
-    weight: f32,
+    /// ∫|f| / ∫f.
+    weight: f64,
 }
 
 /// A filter along one axis, over −1 … 1 for the radius on either side.
@@ -70,37 +80,15 @@ enum Curve {
 impl Filter {
     /// A radius that is not positive and finite is replaced by ½, a shape without a finite, positive integral (a
     /// Gaussian of zero width, extreme coefficients) by the box of the same radius.
-    pub fn new(shape: Shape) -> Self {
-        let (curve, radius) = match shape {
-            Shape::Box { radius } => (Curve::Box, radius),
-            Shape::Triangle { radius } => (Curve::Triangle, radius),
-            Shape::Gaussian { radius, sigma } => {
-                let (r, s) = (f64::from(radius), f64::from(sigma));
-                (Curve::Gaussian { steepness: r * r / (2.0 * s * s) }, radius)
-            }
-            Shape::Mitchell { radius, b, c } => {
-                (Curve::Mitchell { b: f64::from(b), c: f64::from(c) }, radius)
-            }
-            Shape::BlackmanHarris { radius } => (Curve::BlackmanHarris, radius),
-            Shape::Sinc { radius, tau } => {
-                (Curve::Sinc { radius: f64::from(radius), tau: f64::from(tau) }, radius)
-            }
-        };
-        let radius = if radius.is_finite() && radius > 0.0 { radius } else { 0.5 };
-        match curve {
-            Curve::Box => Self::without_table(curve, radius, 2.0),
-            Curve::Triangle => Self::without_table(curve, radius, 1.0),
-            _ => match Table::new(curve) {
-                Some((table, integral)) => {
-                    Self { integral: square(f64::from(radius) * integral), curve, radius, table: Some(table) }
-                }
-                None => Self::without_table(Curve::Box, radius, 2.0),
-            },
-        }
+    pub fn new(Settings { shape, radius: [x, y] }: Settings) -> Self {
+        let along_x = Axis::new(shape, x);
+        let along_y = (y != x).then(|| Axis::new(shape, y));
+        let weight = along_x.weight() * along_y.as_ref().unwrap_or(&along_x).weight();
+        Self { x: along_x, y: along_y, weight: weight as f32 }
     }
 
-    fn without_table(curve: Curve, radius: f32, integral: f64) -> Self {
-        Self { curve, radius, integral: square(f64::from(radius) * integral), table: None }
+    fn y(&self) -> &Axis {
+        self.y.as_ref().unwrap_or(&self.x)
     }
 
     /// The position of a sample, as an offset in pixels from the centre of the pixel, and the sample's weight.
@@ -109,14 +97,56 @@ impl Filter {
     /// same magnitude; they are negative where the filter is, and 1 on average.
     #[inline(always)]
     pub fn sample<R: Real>(&self, [u, v]: [R; 2]) -> ([R; 2], R) {
-        let ([x, x_sign], [y, y_sign]) = (self.along_one_axis(u), self.along_one_axis(v));
-        let magnitude = self.table.as_ref().map_or(1.0, |table| table.weight);
-        ([x, y], x_sign * y_sign * magnitude)
+        let ([x, x_sign], [y, y_sign]) = (self.x.sample(u), self.y().sample(v));
+        ([x, y], x_sign * y_sign * self.weight)
     }
 
-    /// The offset that a number in [0, 1) chooses along one axis, and the sign of the filter there.
+    /// The value of the filter at an offset in pixels from the centre, per pixel²: its integral over the plane
+    /// is 1.
+    pub fn evaluate(&self, x: f32, y: f32) -> f32 {
+        let integral = self.x.integral * self.y().integral;
+        (self.x.value(x) * self.y().value(y) / integral) as f32
+    }
+
+    /// The largest distance of samples from the centre of the pixel along x and y, in pixels.
+    pub fn radius(&self) -> [f32; 2] {
+        [self.x.radius, self.y().radius]
+    }
+}
+
+impl Axis {
+    fn new(shape: Shape, radius: f32) -> Self {
+        let given = f64::from(radius);
+        let curve = match shape {
+            Shape::Box => Curve::Box,
+            Shape::Triangle => Curve::Triangle,
+            Shape::Gaussian { sigma } => {
+                Curve::Gaussian { steepness: square(given) / (2.0 * square(f64::from(sigma))) }
+            }
+            Shape::Mitchell { b, c } => Curve::Mitchell { b: f64::from(b), c: f64::from(c) },
+            Shape::BlackmanHarris => Curve::BlackmanHarris,
+            Shape::Sinc { tau } => Curve::Sinc { radius: given, tau: f64::from(tau) },
+        };
+        let radius = if radius.is_finite() && radius > 0.0 { radius } else { 0.5 };
+        let (curve, integral, table) = match curve {
+            Curve::Box => (curve, 2.0, None),
+            Curve::Triangle => (curve, 1.0, None),
+            _ => match Table::new(curve) {
+                Some((table, integral)) => (curve, integral, Some(table)),
+                None => (Curve::Box, 2.0, None),
+            },
+        };
+        Self { curve, radius, integral: f64::from(radius) * integral, table }
+    }
+
+    /// ∫|f| / ∫f.
+    fn weight(&self) -> f64 {
+        self.table.as_ref().map_or(1.0, |table| table.weight)
+    }
+
+    /// The offset that a number in [0, 1) chooses, and the sign of the filter there.
     #[inline(always)]
-    fn along_one_axis<R: Real>(&self, u: R) -> [R; 2] {
+    fn sample<R: Real>(&self, u: R) -> [R; 2] {
         // Choose a side, and the distance on it.
         let one = u.like(1.0);
         let outward = Float::min(Float::abs(u * 2.0 - one), u.like(ONE_MINUS_EPSILON));
@@ -132,19 +162,10 @@ impl Filter {
         [side * distance, sign]
     }
 
-    /// The value of the filter at an offset in pixels from the centre, per pixel²: its integral over the plane
-    /// is 1.
-    pub fn evaluate(&self, x: f32, y: f32) -> f32 {
-        let along = |x: f32| {
-            let x = (f64::from(x) / f64::from(self.radius)).abs();
-            if x <= 1.0 { self.curve.value(x) } else { 0.0 }
-        };
-        (along(x) * along(y) / self.integral) as f32
-    }
-
-    /// The largest distance of samples from the centre of the pixel along each axis, in pixels.
-    pub fn radius(&self) -> f32 {
-        self.radius
+    /// The value of the curve at an offset in pixels.
+    fn value(&self, x: f32) -> f64 {
+        let x = (f64::from(x) / f64::from(self.radius)).abs();
+        if x <= 1.0 { self.curve.value(x) } else { 0.0 }
     }
 }
 
@@ -155,8 +176,9 @@ impl Table {
         let cells: Vec<f64> = (0..CELLS).map(|cell| integrate(curve, cell)).collect();
         let total: f64 = cells.iter().sum();
         let absolute: f64 = cells.iter().map(|cell| cell.abs()).sum();
-        let weight = square(absolute / total) as f32;
-        if !(total.is_finite() && absolute.is_finite() && total > 0.0 && weight.is_finite()) {
+        let weight = absolute / total;
+        if !(total.is_finite() && absolute.is_finite() && total > 0.0 && (square(weight) as f32).is_finite())
+        {
             return None;
         }
         // Accumulate the fractions; the end is 1, whatever the rounding.

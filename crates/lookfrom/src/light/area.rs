@@ -3,6 +3,7 @@
 //! [`AreaLight::sample_point`] and [`AreaLight::pdf`] have the same solid angle density, as multiple importance
 //! sampling requires. The sampling of each kind of shape is in a file of its own.
 
+mod curve;
 mod derivation;
 mod disk;
 mod lanes;
@@ -23,6 +24,7 @@ use crate::core::vector::Vector;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::texture::{FloatTexture, SpectralMode, TexturePoint, Textures};
 
+pub use curve::CurveLight;
 pub use disk::DiskLight;
 use disk::{DiskLights, gather_disks};
 pub(crate) use lanes::sample_area_lights;
@@ -64,6 +66,8 @@ pub enum LightShape {
     Mesh(MeshLight),
     /// Bilinear patches.
     Patches(PatchLight),
+    /// Curves, which are not sampled.
+    Curves(CurveLight),
 }
 
 /// A point of a light, as seen from another point.
@@ -180,10 +184,14 @@ pub struct EmitterBounds {
 }
 
 impl AreaLight {
-    /// Whether any emission was found on it; otherwise it is not sampled, and only rays that hit it find its light.
+    /// Whether it is sampled; otherwise only rays that hit it find its light: curves, and meshes on which no emission was found.
     pub fn is_sampled(&self) -> bool {
-        let is_pattern_dark = matches!(&self.shape, LightShape::Mesh(light) if !light.is_sampled());
-        !is_pattern_dark && self.motion.as_ref().is_none_or(LightMotion::is_rigid)
+        let may_be = match &self.shape {
+            LightShape::Mesh(light) => light.is_sampled(),
+            LightShape::Curves(_) => false,
+            _ => true,
+        };
+        may_be && self.motion.as_ref().is_none_or(LightMotion::is_rigid)
     }
 
     /// The mean of the emission texture over the light, where sampling takes the texture into account.
@@ -271,6 +279,7 @@ impl AreaLight {
             LightShape::Disk(light) => light.sample(from, u),
             LightShape::Mesh(light) => light.sample(from, u),
             LightShape::Patches(light) => light.sample(from, u),
+            LightShape::Curves(_) => None,
         }?;
         (point.pdf.is_finite() && point.pdf > 0.0).then_some(point)
     }
@@ -294,6 +303,7 @@ impl AreaLight {
                 None => by_area(light.pdf_by_area(place.0)),
             },
             LightShape::Patches(light) => by_area(light.pdf_by_area(place)),
+            LightShape::Curves(_) => 0.0,
         };
         if pdf.is_finite() && pdf > 0.0 { pdf } else { 0.0 }
     }
@@ -314,6 +324,9 @@ impl AreaLight {
             }
             LightShape::Mesh(light) => light.density(from, point),
             LightShape::Patches(light) => light.density(from, point),
+            LightShape::Curves(light) => {
+                AreaDensity::Area { area: light.area(), probability: 0.0, corners: None }
+            }
         }
     }
 
@@ -329,6 +342,7 @@ impl AreaLight {
             LightShape::Disk(light) => (light.bounds(), light.normals()),
             LightShape::Mesh(light) => (light.bounds(), light.normals()),
             LightShape::Patches(light) => (light.bounds(), light.normals()),
+            LightShape::Curves(light) => (light.bounds(), NormalCone::ALL),
         };
         let [min, max] = bounds;
         if let Some(motion) = &self.motion {
@@ -349,6 +363,7 @@ impl LightShape {
             Self::Disk(light) => light.area(),
             Self::Mesh(light) => light.area(),
             Self::Patches(light) => light.area(),
+            Self::Curves(light) => light.area(),
         }
     }
 }

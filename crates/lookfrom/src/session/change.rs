@@ -68,7 +68,8 @@ impl Session {
 impl Options {
     /// The name of an option among these that chooses or changes the scene, and not only its picture and camera.
     pub fn of_scene(&self) -> Option<&'static str> {
-        let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision } = &self.import;
+        let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision, instanced_lights } =
+            &self.import;
         let asked = [
             ("film", self.film),
             ("light_sampler", self.light_sampler.is_some()),
@@ -85,6 +86,7 @@ impl Options {
             ("scene", scene.is_some()),
             ("camera", *camera != CameraChoice::First),
             ("subdivide", *subdivision > 0),
+            ("instanced_lights", *instanced_lights),
             ("variables", !self.variables.values.is_empty()),
         ];
         asked.into_iter().find(|(_, is_asked)| *is_asked).map(|(name, _)| name)

@@ -24,13 +24,15 @@ pub(super) struct Identity {
 
 /// Import options in the words that films have always known them by: without a time it was 0, at which nothing moved.
 fn as_ever(import: &ImportOptions) -> String {
-    let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision } = import;
+    let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision, instanced_lights } =
+        import;
     let begun = if *at == Some(0.0) { " begun" } else { "" };
     let subdivided = if *subdivision > 0 { format!(" subdivided {subdivision}") } else { String::new() };
+    let lit = if *instanced_lights { " instanced lights" } else { "" };
     let open = shutter.map_or_else(String::new, |frames| format!(" open {frames:?}"));
     let at = at.unwrap_or(0.0);
     format!(
-        "ImportOptions {{ animation: {animation:?}, at: {at:?}, variant: {variant:?}, scene: {scene:?}, camera: {camera:?} }}{begun}{subdivided}{open}"
+        "ImportOptions {{ animation: {animation:?}, at: {at:?}, variant: {variant:?}, scene: {scene:?}, camera: {camera:?} }}{begun}{subdivided}{lit}{open}"
     )
 }
 

@@ -52,7 +52,7 @@ pub(super) fn prepare(
     if is_empty {
         warn("this scene has no geometry: the picture shows only the background");
     }
-    let mut of_gltf = options.import.clone();
+    let mut of_gltf = ImportOptions { instanced_lights: false, ..options.import.clone() };
     // The camera of any file can be ignored, and any scene may have a clock.
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;

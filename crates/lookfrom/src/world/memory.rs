@@ -21,9 +21,19 @@ impl World {
     /// The bytes that [`World::compile`] takes for a scene at its peak, besides [`Scene::bytes`]. An estimate: at most a
     /// quarter less than it is.
     pub fn memory(scene: &Scene) -> u64 {
-        let of = |shapes: &[Shape]| shapes.iter().map(|shape| of_shape(shape, scene)).sum::<u64>();
-        let objects: u64 = scene.objects.iter().map(|object| of(&object.shapes)).sum();
-        of(&scene.shapes) + objects + scene.instances.len() as u64 * INSTANCE
+        let of = |shapes: &mut dyn Iterator<Item = &Shape>| -> u64 {
+            shapes.map(|shape| of_shape(shape, scene)).fold(0, u64::saturating_add)
+        };
+        // Shapes in objects that emit light are placed once for each instance, the others once.
+        let is_lit = |shape: &&Shape| shape.emission.is_some();
+        let dark = |shape: &&Shape| !is_lit(shape);
+        let objects: u64 =
+            scene.objects.iter().map(|object| of(&mut object.shapes.iter().filter(dark))).sum();
+        let lit: Vec<u64> =
+            (scene.objects.iter()).map(|object| of(&mut object.shapes.iter().filter(is_lit))).collect();
+        let instances = scene.instances.iter().filter_map(|instance| lit.get(instance.object.index()));
+        let instances = instances.fold(0, |sum: u64, lit| sum.saturating_add(INSTANCE + lit));
+        (of(&mut scene.shapes.iter()) + objects).saturating_add(instances)
     }
 }
 
@@ -44,11 +54,30 @@ fn of_shape(shape: &Shape, scene: &Scene) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use glam::DMat4;
+    use glam::{DMat4, DVec3};
     use lookfrom_scene::Location;
-    use lookfrom_scene::scene::{Instance, Object, ObjectId};
+    use lookfrom_scene::material::Color;
+    use lookfrom_scene::scene::{Instance, MaterialId, Object, ObjectId};
+    use lookfrom_scene::shape::{Emission, Sphere};
 
     use super::*;
+
+    #[test]
+    fn each_instance_of_a_light_is_counted() {
+        let lamp = Geometry::Sphere(Sphere { center: DVec3::ZERO, radius: 1.0 });
+        let dark = Shape::new(Location::default(), lamp, MaterialId(0));
+        let lit = Shape { emission: Some(Emission::new(Color::gray(1.0), false)), ..dark.clone() };
+        let memory = |shape: &Shape, count: usize| {
+            let object = Object { name: String::new(), at: Location::default(), shapes: vec![shape.clone()] };
+            let (at, world_from_object) = (Location::default(), DMat4::IDENTITY);
+            let instance =
+                Instance { at, object: ObjectId(0), world_from_object, material: None, motion: None };
+            let instances = vec![instance; count];
+            World::memory(&Scene { objects: vec![object], instances, ..Scene::default() })
+        };
+        assert_eq!(memory(&dark, 1000) - memory(&dark, 0), 1000 * INSTANCE);
+        assert_eq!(memory(&lit, 1000) - memory(&lit, 0), 1000 * (INSTANCE + SHAPE + PRIMITIVE + LIGHT));
+    }
 
     #[test]
     fn a_million_instances_take_less_than_600_megabytes() {

@@ -3,6 +3,7 @@
 //! Shapes of vertices (meshes, patches, curves) become primitives of their own, see `place/vertices`; spheres, disks
 //! and quadrics of all shapes are collected, one geometry per kind.
 
+mod displacement;
 mod labels;
 mod vertices;
 
@@ -176,7 +177,13 @@ impl Compiler<'_> {
             }
             Geometry::Bilinear(patches) => self.patches(placing, patches, group),
             Geometry::Curves(strands) => self.curves(placing, strands, group),
-            Geometry::Mesh(id) => self.mesh(placing, &self.scene.meshes[id.index()], group),
+            Geometry::Mesh(id) => {
+                let mesh = &self.scene.meshes[id.index()];
+                let Some(amount) = mesh.displacement else { return self.mesh(placing, mesh, group) };
+                let (textures, to_world) = (self.lights.textures, &shape.world_from_object);
+                let mesh = displacement::displaced(mesh, amount, textures, to_world);
+                self.mesh(placing, &mesh, group)
+            }
         }
     }
 
@@ -314,10 +321,6 @@ impl Compiler<'_> {
     fn has_grain(&self, placing: Placing) -> bool {
         let of_shape = self.grains.get(placing.binding.material as usize).copied();
         self.has_instance_grain || of_shape.unwrap_or(false)
-    }
-
-    fn warn(&mut self, at: &Location, message: &str) {
-        self.warnings.push(Warning::new(at, message));
     }
 }
 

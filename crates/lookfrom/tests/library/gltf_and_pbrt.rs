@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use lookfrom::render::Renderer;
-use lookfrom_scene::settings::{ColorMode, Filter, Sampler};
+use lookfrom_scene::settings::{ColorMode, FilterShape, Sampler};
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
 
 /// Columns and rows of a picture.
@@ -151,7 +151,7 @@ fn read<const N: usize>(name: &str, files: [(&str, Vec<u8>); N]) -> Scene {
 fn render(scene: &Scene, samples: u32, seed: u64) -> Vec<[f32; 3]> {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (SIZE, SIZE);
-    scene.image.filter = Filter::Box { radius: 0.5 };
+    scene.image.filter = FilterShape::Box.of_radius(0.5);
     let render = &mut scene.render;
     (render.samples, render.depth, render.seed) = (samples, 24, seed);
     (render.color, render.sampler) = (ColorMode::Rgb, Sampler::Independent);

@@ -6,7 +6,7 @@ use lookfrom_scene::Scene;
 use lookfrom_scene::camera::Projection;
 use lookfrom_scene::light::{Light, LightKind, Power, Sky};
 use lookfrom_scene::material::Color;
-use lookfrom_scene::settings::{ColorMode, Filter};
+use lookfrom_scene::settings::{ColorMode, FilterShape};
 
 const EXTENSIONS: &str = r#","KHR_materials_transmission","KHR_materials_diffuse_transmission","KHR_materials_ior","KHR_materials_volume",
     "KHR_materials_volume_scatter""#;
@@ -58,7 +58,7 @@ fn furnace(extensions: &str, color: ColorMode) -> Scene {
     let camera = scene.camera.as_mut().expect("the file has one");
     camera.projection = Projection::Perspective { fov: 15.0 };
     (scene.image.width, scene.image.height) = (4, 4);
-    scene.image.filter = Filter::Box { radius: 0.5 };
+    scene.image.filter = FilterShape::Box.of_radius(0.5);
     (scene.render.samples, scene.render.depth, scene.render.color) = (4096, 256, color);
     scene
 }

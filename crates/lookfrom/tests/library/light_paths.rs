@@ -2,7 +2,7 @@
 
 use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::Film;
-use lookfrom_scene::settings::{ColorMode, Filter, LightPathLayer};
+use lookfrom_scene::settings::{ColorMode, FilterShape, LightPathLayer};
 use lookfrom_scene::{Location, Scene};
 
 /// Ways that have no light in common, and together all: seen at once, and by what the first surface did.
@@ -33,7 +33,7 @@ fn total(film: &Film, layer: usize) -> f64 {
 fn layers_add_up_to_a_picture_whose_bits_they_do_not_change() {
     let spectral = |mut scene: Scene| {
         scene.render.color = ColorMode::Spectral;
-        scene.image.filter = Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
+        scene.image.filter = FilterShape::Mitchell { b: 1.0 / 3.0, c: 1.0 / 3.0 }.of_radius(2.0);
         scene
     };
     let limited = |mut scene: Scene| {

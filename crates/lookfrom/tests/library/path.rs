@@ -8,7 +8,7 @@ use lookfrom_scene::material::{
     Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
 };
 use lookfrom_scene::scene::{MaterialId, Scene};
-use lookfrom_scene::settings::{ColorMode, Filter, Integrator, LightSampler, Sampler};
+use lookfrom_scene::settings::{ColorMode, FilterShape, Integrator, LightSampler, Sampler};
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Location, Warning};
 
@@ -26,7 +26,7 @@ fn scene(kind: MaterialKind, geometry: Geometry) -> Scene {
     scene.materials.push(Material::new("the one", nowhere(), kind));
     scene.shapes.push(Shape::new(nowhere(), geometry, MaterialId(0)));
     (scene.image.width, scene.image.height) = (8, 8);
-    scene.image.filter = Filter::Box { radius: 0.5 };
+    scene.image.filter = FilterShape::Box.of_radius(0.5);
     scene.render.integrator = Integrator::Path;
     scene.render.depth = 100;
     scene

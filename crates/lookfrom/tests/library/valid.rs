@@ -9,7 +9,6 @@ use lookfrom_scene::material::{
     BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium,
 };
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
-use lookfrom_scene::settings::Filter;
 use lookfrom_scene::shape::{Geometry, Profile, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::{Mapping, TextureKind};
@@ -97,14 +96,7 @@ impl<'a> Places<'a> {
             p.double.extend(camera.lens.as_mut().map(|lens| &mut lens.radius));
         }
         p.single.extend([&mut scene.image.exposure, &mut scene.image.sensor.max_component]);
-        match &mut scene.image.filter {
-            Filter::Box { radius }
-            | Filter::Triangle { radius }
-            | Filter::Gaussian { radius, .. }
-            | Filter::Mitchell { radius, .. }
-            | Filter::BlackmanHarris { radius }
-            | Filter::Sinc { radius, .. } => p.single.push(radius),
-        }
+        p.single.extend(&mut scene.image.filter.radius);
         for material in &mut scene.materials {
             p.bump_mapping(&mut material.bump_mapping);
             p.material(&mut material.kind);

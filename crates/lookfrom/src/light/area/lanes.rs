@@ -42,7 +42,7 @@ impl<'a> Chosen<'a> {
                     (chosen.spheres[lane], chosen.disks[lane]) = (quadric.sphere(), quadric.disk());
                 }
                 LightShape::Disk(disk) => chosen.disks[lane] = Some(disk.in_lanes()),
-                LightShape::Patches(_) => {}
+                LightShape::Patches(_) | LightShape::Curves(_) => {}
             }
         }
         chosen

@@ -5,12 +5,14 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use lookfrom_scene::material::Color;
 use lookfrom_scene::scene::VertexNormals;
-use lookfrom_scene::shape::{Mesh as WrittenMesh, MeshPose, Patches as WrittenPatches, Strand};
-use lookfrom_scene::{Error, ErrorKind, Result};
+use lookfrom_scene::shape::{
+    Emission, Geometry, Mesh as WrittenMesh, MeshPose, Patches as WrittenPatches, Profile, Shape, Strand,
+};
+use lookfrom_scene::{Error, ErrorKind, Result, Warning};
 
 use super::{Compiler, Group, Placing, inverse, not_invertible};
 use crate::core::math;
-use crate::light::{LightShape, MeshLight, PatchLight};
+use crate::light::{CurveLight, LightShape, MeshLight, PatchLight};
 use crate::primitive::{Curves, Mesh, Patches, Pose, Primitives, SEGMENTS};
 use crate::shading::texture::{FloatTexture, MORE_UV_SETS, SpectrumType};
 
@@ -109,11 +111,24 @@ impl Compiler<'_> {
     pub(super) fn curves(&mut self, placing: Placing, strands: &[Strand], group: &mut Group) -> Result<()> {
         let Placing { shape, matrix, binding } = placing;
         countable(placing, strands.len().saturating_mul(SEGMENTS as usize))?;
-        if shape.emission.is_some() {
-            self.warn(&shape.at, "curves cannot emit light; their emission is ignored");
-        }
-        let curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, binding)
+        let mut curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, binding)
             .ok_or_else(|| not_invertible(&shape.at))?;
+        // Curves that face all rays have no back; their light would not be seen from behind.
+        let has_back = strands.iter().any(|strand| matches!(strand.profile, Profile::Ribbon(_)));
+        let emission = shape
+            .emission
+            .map(|emission| Emission { two_sided: emission.two_sided || !has_back, ..emission });
+        let shining = Shape { emission, geometry: Geometry::Curves(Arc::default()), ..shape.clone() };
+        let scale = libm::cbrt(matrix.determinant().abs());
+        let light = self.area_light(Placing { shape: &shining, ..placing }, |_| {
+            CurveLight::new(&curves, scale).map(LightShape::Curves)
+        });
+        if light.is_some() {
+            let message =
+                "curves that emit light are not sampled: only the paths that meet them find their light";
+            self.warnings.push(Warning::notice(&shape.at, message));
+        }
+        curves.binding.light = light;
         group.own.push(Primitives::Curves(Arc::new(curves)));
         Ok(())
     }

@@ -130,7 +130,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "shape texture",
             "composite scene text",
             "builder chain count duplicates model nanovdb",
-            "boolean ies npy stl subdivision validate",
+            "boolean ies npy stl subdivision tessellation validate",
             "obj ply",
             "pbrt studio",
             "gltf",
