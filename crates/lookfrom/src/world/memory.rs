@@ -3,6 +3,7 @@
 
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Geometry, Shape};
+use lookfrom_scene::texture::TextureKind;
 
 use super::World;
 
@@ -23,8 +24,22 @@ impl World {
     pub fn memory(scene: &Scene) -> u64 {
         let of = |shapes: &[Shape]| shapes.iter().map(|shape| of_shape(shape, scene)).sum::<u64>();
         let objects: u64 = scene.objects.iter().map(|object| of(&object.shapes)).sum();
-        of(&scene.shapes) + objects + scene.instances.len() as u64 * INSTANCE
+        of(&scene.shapes) + objects + scene.instances.len() as u64 * INSTANCE + of_mip_maps(scene)
     }
+}
+
+/// Bytes of the levels of MIP maps besides the images themselves.
+fn of_mip_maps(scene: &Scene) -> u64 {
+    let mut filtered = vec![false; scene.images.len()];
+    for texture in &scene.textures {
+        if let TextureKind::Image { image, filter, .. } = &texture.kind
+            && let Some(is_filtered) = filtered.get_mut(image.index())
+        {
+            *is_filtered |= filter.takes_levels();
+        }
+    }
+    let levels = scene.images.iter().zip(filtered).filter(|(_, is_filtered)| *is_filtered);
+    levels.map(|(image, _)| image.bytes_of_levels()).sum()
 }
 
 fn of_shape(shape: &Shape, scene: &Scene) -> u64 {

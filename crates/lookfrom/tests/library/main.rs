@@ -13,6 +13,7 @@ mod denoise;
 mod dispersion;
 mod enough;
 mod films;
+mod filtered_textures;
 mod gltf_and_pbrt;
 mod gltf_media;
 mod inspect;
