@@ -1,6 +1,7 @@
 //! Materials: reflectance, transmission and emission of surfaces, and the values that textures may vary.
 
 mod hair;
+mod inputs;
 mod subsurface;
 
 use std::sync::Arc;

@@ -1,10 +1,14 @@
 //! Textures: images and procedural patterns, their mappings and sampling.
 
+mod filter;
+
 use glam::{DMat4, Vec3};
 
 use crate::error::Location;
 use crate::material::{Color, Scalar};
-use crate::scene::ImageId;
+use crate::scene::{ImageId, TextureId};
+
+pub use self::filter::{MipFilter, TexelFilter};
 
 /// A named texture.
 #[derive(Clone, Debug)]
@@ -43,6 +47,8 @@ pub enum TextureKind {
         even: Color,
         /// The value where it is odd.
         odd: Color,
+        /// The width that is averaged, in pixels; 0 for none.
+        footprint: f32,
         /// The mapping.
         mapping: Mapping,
     },
@@ -117,6 +123,8 @@ pub enum TextureKind {
         octaves: u32,
         /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
+        /// The width of the detail that is left out, in pixels: octaves that are finer; 0 for none.
+        footprint: f32,
         /// The mapping.
         mapping: Mapping,
     },
@@ -126,11 +134,15 @@ pub enum TextureKind {
         octaves: u32,
         /// The persistence: the ratio of amplitudes of successive octaves.
         roughness: f32,
+        /// As of `Fbm`.
+        footprint: f32,
         /// The mapping.
         mapping: Mapping,
     },
     /// pbrt's `windy`: water waves from two noises.
     Windy {
+        /// As of `Fbm`.
+        footprint: f32,
         /// The mapping.
         mapping: Mapping,
     },
@@ -144,6 +156,8 @@ pub enum TextureKind {
         scale: f32,
         /// The displacement of the veins by noise.
         variation: f32,
+        /// As of `Fbm`.
+        footprint: f32,
         /// The mapping.
         mapping: Mapping,
     },
@@ -206,6 +220,36 @@ impl TextureKind {
             Self::Bilinear { corners, .. } => corners.to_vec(),
             _ => Vec::new(),
         }
+    }
+
+    /// Whether the texture itself, not the ones that it uses, depends on the footprint of pixels.
+    pub fn has_footprint(&self) -> bool {
+        match self {
+            Self::Image { filter, .. } => filter.takes_levels(),
+            Self::Checker { footprint, .. }
+            | Self::Fbm { footprint, .. }
+            | Self::Wrinkled { footprint, .. }
+            | Self::Windy { footprint, .. }
+            | Self::PbrtMarble { footprint, .. } => *footprint > 0.0,
+            _ => false,
+        }
+    }
+
+    /// By texture: whether it depends on the footprint of pixels, itself or by what it uses. The graph has no circles.
+    pub fn need_footprints(kinds: &[Self]) -> Vec<bool> {
+        let mut known: Vec<bool> = kinds.iter().map(Self::has_footprint).collect();
+        let mut has_changed = known.contains(&true);
+        while has_changed {
+            has_changed = false;
+            for (index, kind) in kinds.iter().enumerate().filter(|(_, kind)| !kind.has_footprint()) {
+                let uses_one =
+                    |part: &Color| matches!(part, Color::Texture(TextureId(id)) if known[*id as usize]);
+                if !known[index] && kind.parts().iter().any(uses_one) {
+                    (known[index], has_changed) = (true, true);
+                }
+            }
+        }
+        known
     }
 
     /// The textures and colours that this texture uses; float textures are given as colours.
@@ -296,14 +340,4 @@ pub enum Wrap {
     Clamp,
     /// Black.
     Black,
-}
-
-/// The interpolation between texels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TexelFilter {
-    /// Bilinear interpolation of the four nearest texels.
-    #[default]
-    Bilinear,
-    /// The nearest texel.
-    Nearest,
 }

@@ -96,7 +96,7 @@ pub struct World {
     pub(crate) catcher_irradiance: Option<[f32; 3]>,
     /// Names of the scene's materials, shapes and lights, for reports.
     pub(crate) names: Arc<Names>,
-    /// The pixels of the camera that sees it, by which bump maps are read; `None` before there is one.
+    /// The pixels of the camera that sees it, by which bump maps and filtered textures are read; `None` before there is one.
     pub(crate) footprint: Option<PixelFootprint>,
 }
 
@@ -262,6 +262,18 @@ impl World {
         TexturePoint { more_uvs, opacity, ..point }
     }
 
+    /// [`World::texture_point`] with the footprint of pixels, where the surface's material depends on it.
+    pub(crate) fn shading_point(&self, surface: &SurfaceInteraction) -> TexturePoint<'_> {
+        let point = self.texture_point(surface);
+        match &self.footprint {
+            Some(pixels) if self.materials[surface.material as usize].needs_footprint => {
+                let footprint = pixels.at(point.world, surface.ng, [surface.dpdu, surface.dpdv]);
+                TexturePoint { footprint: Some(footprint), ..point }
+            }
+            _ => point,
+        }
+    }
+
     /// [`World::texture_point`] of a hit on a mesh, by position and geometric normal, and texture coordinates.
     #[inline]
     pub(crate) fn texture_point_on_mesh<'a>(
@@ -303,9 +315,9 @@ impl World {
         self.materials[surface.material as usize].takes_seed()
     }
 
-    /// Whether any material has a bump map.
-    pub(crate) fn has_bump_maps(&self) -> bool {
-        self.materials.iter().any(Material::has_bump_map)
+    /// Whether materials depend on the footprint of pixels.
+    pub(crate) fn needs_footprint(&self) -> bool {
+        self.materials.iter().any(|material| material.has_bump_map() || material.needs_footprint)
     }
 
     /// This world seen by a camera with these pixels.
@@ -331,7 +343,7 @@ impl World {
         if self.is_catcher(surface) {
             return Some(Shading::matte(surface, self.catcher_reflectance(surface, arrival.mode)));
         }
-        let point = self.texture_point(surface);
+        let point = self.shading_point(surface);
         material::shading(&self.materials, self.relief(), surface, &point, arrival)
     }
 
@@ -351,7 +363,7 @@ impl World {
         let MaterialKind::Unlit { color, .. } = &self.materials[surface.material as usize].kind else {
             return None;
         };
-        Some(self.textures.spectrum(color, &self.texture_point(surface), mode))
+        Some(self.textures.spectrum(color, &self.shading_point(surface), mode))
     }
 
     /// Radiance that arrives along a ray that hits nothing.

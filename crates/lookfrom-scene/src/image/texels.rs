@@ -3,6 +3,8 @@
 //! A table of 256 numbers decodes the bytes, so that a byte gives exactly the value that decoding the whole image in
 //! advance would give.
 
+mod levels;
+
 use super::encoding::{Encoding, Table};
 
 /// An image of linear colours and optional alpha, row 0 on top.
@@ -199,6 +201,16 @@ impl Image {
             Texels::Bytes { texels, .. } => f32::from(texels[index][3]) / 255.0,
             Texels::Floats { alpha, .. } => alpha[index],
         }
+    }
+
+    /// The colour and opacity of a texel; indices go row by row.
+    ///
+    /// # Panics
+    /// If there is no such texel.
+    #[inline]
+    pub fn rgba(&self, index: usize) -> [f32; 4] {
+        let [r, g, b] = self.texel(index);
+        [r, g, b, self.alpha(index)]
     }
 
     /// All colours, row by row.

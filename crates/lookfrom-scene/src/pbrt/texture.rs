@@ -11,7 +11,7 @@ use super::{NamedTexture, Reader, transform};
 use crate::error::Result;
 use crate::material::{Color, Scalar};
 use crate::scene::TextureId;
-use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Channel, Mapping, MipFilter, TexelFilter, Texture, TextureKind, Wrap};
 use crate::warning::Warning;
 
 const KINDS: &[&str] = &[
@@ -147,6 +147,7 @@ impl Reader<'_, '_> {
         let octaves = |p: &Parameters| {
             p.integer("octaves", TextureKind::OCTAVES as i32, 1, 16).map(|octaves| octaves as u32)
         };
+        let footprint = TexelFilter::PBRT_FOOTPRINT;
         Ok(match kind {
             "constant" => uniform(self.part(p, "value", 1.0, is_float)?),
             "scale" => TextureKind::Scale {
@@ -182,6 +183,7 @@ impl Reader<'_, '_> {
                 TextureKind::Checker {
                     even: self.part(p, "tex1", 1.0, is_float)?,
                     odd: self.part(p, "tex2", 0.0, is_float)?,
+                    footprint,
                     mapping: if dimension == 2 { self.mapping(p)? } else { self.in_space(p)? },
                 }
             }
@@ -194,19 +196,22 @@ impl Reader<'_, '_> {
             "fbm" if is_float => TextureKind::Fbm {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
+                footprint,
                 mapping: self.in_space(p)?,
             },
             "wrinkled" if is_float => TextureKind::Wrinkled {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
+                footprint,
                 mapping: self.in_space(p)?,
             },
-            "windy" if is_float => TextureKind::Windy { mapping: self.in_space(p)? },
+            "windy" if is_float => TextureKind::Windy { footprint, mapping: self.in_space(p)? },
             "marble" if !is_float => TextureKind::PbrtMarble {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 scale: p.float("scale", 1.0)?,
                 variation: p.float("variation", 0.2)?,
+                footprint,
                 mapping: self.in_space(p)?,
             },
             "fbm" | "wrinkled" | "windy" | "marble" => {
@@ -238,13 +243,14 @@ impl Reader<'_, '_> {
                 .hint("name a picture"));
         };
         let encoding = encoding_of(name, p.string("encoding")?);
-        p.ignore(&["maxanisotropy"]);
+        let anisotropy = p.float("maxanisotropy", MipFilter::ANISOTROPY)?;
+        let ewa = MipFilter::Ewa { anisotropy: anisotropy.clamp(1.0, MipFilter::MOST_ANISOTROPY) };
         let filters = [
-            ("bilinear", TexelFilter::Bilinear),
-            ("trilinear", TexelFilter::Bilinear),
-            ("ewa", TexelFilter::Bilinear),
-            ("EWA", TexelFilter::Bilinear),
-            ("point", TexelFilter::Nearest),
+            ("bilinear", MipFilter::Bilinear),
+            ("trilinear", MipFilter::Trilinear),
+            ("ewa", ewa),
+            ("EWA", ewa),
+            ("point", MipFilter::Nearest),
         ];
         let wraps = [
             ("repeat", Wrap::Repeat),
@@ -259,7 +265,10 @@ impl Reader<'_, '_> {
             },
             mapping: self.mapping(p)?,
             wrap: [p.choice("wrap", Wrap::Repeat, &wraps)?; 2],
-            filter: p.choice("filter", TexelFilter::Bilinear, &filters)?,
+            filter: TexelFilter::Mip {
+                filter: p.choice("filter", MipFilter::Bilinear, &filters)?,
+                footprint: TexelFilter::PBRT_FOOTPRINT,
+            },
             channel: Channel::Rgb,
             scale: p.float("scale", 1.0)?,
             invert: p.boolean("invert", false)?,

@@ -11,19 +11,22 @@ use crate::chain;
 use crate::error::{Error, Result};
 use crate::material::{Color, Scalar};
 use crate::scene::{ImageId, TextureId};
-use crate::texture::{Channel, TexelFilter, Texture, TextureKind, Wrap};
+use crate::texture::{Channel, MipFilter, TexelFilter, Texture, TextureKind, Wrap};
 
 /// The keys of textures, by type, in addition to `type` and those of `mapping`.
 pub(super) const KEYS: Kinds = &[
-    ("image", &["file", "layer", "encoding", "wrap", "filter", "multiply", "invert"]),
-    ("checker", &["even", "odd"]),
+    (
+        "image",
+        &["file", "layer", "encoding", "wrap", "filter", "footprint", "anisotropy", "multiply", "invert"],
+    ),
+    ("checker", &["even", "odd", "footprint"]),
     ("noise", &["low", "high", "octaves"]),
     ("marble", &["vein", "base", "octaves", "turbulence"]),
     ("dots", &["inside", "outside"]),
     ("bilinear", &["corners"]),
-    ("fbm", &["octaves", "roughness"]),
-    ("wrinkled", &["octaves", "roughness"]),
-    ("windy", &[]),
+    ("fbm", &["octaves", "roughness", "footprint"]),
+    ("wrinkled", &["octaves", "roughness", "footprint"]),
+    ("windy", &["footprint"]),
     ("scale", &["color", "by"]),
     ("mix", &["low", "high", "amount"]),
     ("direction_mix", &["low", "high", "direction"]),
@@ -38,9 +41,17 @@ pub(super) const ENCODINGS: &[(&str, bool)] = &[("srgb", false), ("linear", true
 /// The words for wrap modes.
 pub(super) const WRAPS: &[(&str, Wrap)] =
     &[("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp), ("black", Wrap::Black)];
-/// The words for interpolation between texels.
-pub(super) const FILTERS: &[(&str, TexelFilter)] =
-    &[("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)];
+/// The words for filters of images.
+pub(super) const FILTERS: &[(&str, TexelFilter)] = &[
+    ("bilinear", TexelFilter::Bilinear),
+    ("nearest", TexelFilter::Nearest),
+    ("trilinear", mip(MipFilter::Trilinear)),
+    ("ewa", mip(MipFilter::Ewa { anisotropy: MipFilter::ANISOTROPY })),
+];
+
+const fn mip(filter: MipFilter) -> TexelFilter {
+    TexelFilter::Mip { filter, footprint: TexelFilter::FOOTPRINT }
+}
 
 /// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
@@ -99,6 +110,7 @@ impl Reader<'_, '_> {
             "checker" => TextureKind::Checker {
                 even: self.color_or(table, "even", 0.9),
                 odd: self.color_or(table, "odd", 0.1),
+                footprint: footprint(table),
                 mapping: mapping(table, "uv")?,
             },
             "noise" => TextureKind::Noise {
@@ -135,14 +147,16 @@ impl Reader<'_, '_> {
             "fbm" => TextureKind::Fbm {
                 octaves: octaves(TextureKind::OCTAVES),
                 roughness: roughness(),
+                footprint: footprint(table),
                 mapping: mapping(table, "world")?,
             },
             "wrinkled" => TextureKind::Wrinkled {
                 octaves: octaves(TextureKind::OCTAVES),
                 roughness: roughness(),
+                footprint: footprint(table),
                 mapping: mapping(table, "world")?,
             },
-            "windy" => TextureKind::Windy { mapping: mapping(table, "world")? },
+            "windy" => TextureKind::Windy { footprint: footprint(table), mapping: mapping(table, "world")? },
             "scale" => TextureKind::Scale {
                 color: table
                     .need("color", "\"the name of a texture\"", Color::BLACK, |value| self.color(value)),
@@ -175,7 +189,7 @@ impl Reader<'_, '_> {
                 .need("file", "\"picture.png\"", ImageId(0), |value| self.image_as(value, layer, is_data)),
             mapping: mapping(table, "uv")?,
             wrap: [table.or("wrap", Wrap::default(), |value| value.choice(WRAPS)); 2],
-            filter: table.or("filter", TexelFilter::default(), |value| value.choice(FILTERS)),
+            filter: filter(table),
             channel: Channel::Rgb,
             scale: table.or("multiply", 1.0, |value| {
                 value.single_where("a number of at least 0", |number| number >= 0.0)
@@ -189,4 +203,39 @@ impl Reader<'_, '_> {
         let (color, by) = (Color::Texture(id), Scalar::Texture(id));
         Scalar::Texture(self.add_texture(value, TextureKind::Scale { color, by }))
     }
+}
+
+/// The width that a pattern is averaged over, in pixels.
+fn footprint(table: &Table<'_>) -> f32 {
+    table.or("footprint", 0.0, |value| value.single_where("a number of at least 0", |pixels| pixels >= 0.0))
+}
+
+/// The filter of an image, with its parameters; parameters that it does not have are told.
+fn filter(table: &Table<'_>) -> TexelFilter {
+    let mut filter = table.or("filter", TexelFilter::default(), |value| value.choice(FILTERS));
+    let word = FILTERS.iter().find(|known| known.1 == filter).map_or("bilinear", |known| known.0);
+    let misplaced = |key: &str, words: &str| {
+        if let Some(value) = table.find(key) {
+            let error = value.error(format!("`{key}` has no meaning with filter = {word:?}"));
+            value.note(error.hint(format!("leave it out, or give filter = {words}")));
+        }
+    };
+    let TexelFilter::Mip { filter: kind, footprint } = &mut filter else {
+        misplaced("footprint", "\"trilinear\" or \"ewa\"");
+        misplaced("anisotropy", "\"ewa\"");
+        return filter;
+    };
+    *footprint = table.or("footprint", *footprint, |value| {
+        value.single_where("a number greater than 0", |pixels| pixels > 0.0)
+    });
+    match kind {
+        MipFilter::Ewa { anisotropy } => {
+            *anisotropy = table.or("anisotropy", *anisotropy, |value| {
+                let range = 1.0..=MipFilter::MOST_ANISOTROPY;
+                value.single_where("a number from 1 to 64", |ratio| range.contains(&ratio))
+            });
+        }
+        _ => misplaced("anisotropy", "\"ewa\""),
+    }
+    filter
 }

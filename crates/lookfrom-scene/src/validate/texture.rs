@@ -3,7 +3,7 @@
 use super::Part;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::texture::{Mapping, TextureKind};
+use crate::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
 
 /// The octaves that noise may have.
 const OCTAVES: std::ops::RangeInclusive<u32> = 1..=16;
@@ -23,8 +23,9 @@ fn check_texture(part: &Part<'_>, kind: &TextureKind) -> Result<()> {
         part.color("a colour", color)?;
     }
     match kind {
-        TextureKind::Image { image, scale, mapping, .. } => {
+        TextureKind::Image { image, scale, mapping, filter, .. } => {
             part.image(*image)?;
+            check_filter(part, *filter)?;
             part.finite("scale", &[f64::from(*scale)])?;
             check_mapping(part, mapping)
         }
@@ -37,21 +38,26 @@ fn check_texture(part: &Part<'_>, kind: &TextureKind) -> Result<()> {
             part.finite("turbulence", &[f64::from(*turbulence)])?;
             check_mapping(part, mapping)
         }
-        TextureKind::Fbm { octaves, roughness, mapping }
-        | TextureKind::Wrinkled { octaves, roughness, mapping } => {
+        TextureKind::Fbm { octaves, roughness, footprint, mapping }
+        | TextureKind::Wrinkled { octaves, roughness, footprint, mapping } => {
             check_octaves(part, *octaves)?;
+            check_footprint(part, *footprint)?;
             part.finite("roughness", &[f64::from(*roughness)])?;
             check_mapping(part, mapping)
         }
-        TextureKind::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
+        TextureKind::PbrtMarble { octaves, roughness, scale, variation, footprint, mapping } => {
             check_octaves(part, *octaves)?;
+            check_footprint(part, *footprint)?;
             part.finite("roughness, scale and variation", &[*roughness, *scale, *variation].map(f64::from))?;
             check_mapping(part, mapping)
         }
-        TextureKind::Checker { mapping, .. }
-        | TextureKind::Bilinear { mapping, .. }
-        | TextureKind::Dots { mapping, .. }
-        | TextureKind::Windy { mapping } => check_mapping(part, mapping),
+        TextureKind::Checker { footprint, mapping, .. } | TextureKind::Windy { footprint, mapping } => {
+            check_footprint(part, *footprint)?;
+            check_mapping(part, mapping)
+        }
+        TextureKind::Bilinear { mapping, .. } | TextureKind::Dots { mapping, .. } => {
+            check_mapping(part, mapping)
+        }
         TextureKind::DirectionMix { direction, .. } => {
             part.finite("direction", &direction.to_array().map(f64::from))
         }
@@ -62,6 +68,22 @@ fn check_texture(part: &Part<'_>, kind: &TextureKind) -> Result<()> {
         | TextureKind::Product { .. }
         | TextureKind::VertexAlpha => Ok(()),
     }
+}
+
+fn check_filter(part: &Part<'_>, filter: TexelFilter) -> Result<()> {
+    let TexelFilter::Mip { filter, footprint } = filter else { return Ok(()) };
+    check_footprint(part, footprint)?;
+    match filter {
+        MipFilter::Ewa { anisotropy } => {
+            let is_known = (1.0..=MipFilter::MOST_ANISOTROPY).contains(&anisotropy);
+            part.number("anisotropy", anisotropy.into(), "1 to 64", is_known)
+        }
+        MipFilter::Nearest | MipFilter::Bilinear | MipFilter::Trilinear => Ok(()),
+    }
+}
+
+fn check_footprint(part: &Part<'_>, footprint: f32) -> Result<()> {
+    part.number("footprint", footprint.into(), "at least 0", footprint >= 0.0 && footprint.is_finite())
 }
 
 fn check_octaves(part: &Part<'_>, octaves: u32) -> Result<()> {

@@ -14,7 +14,7 @@ use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
 use lookfrom_scene::settings::{ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
-use lookfrom_scene::texture::{Mapping, TextureKind};
+use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
 
 fn read_files(files: &[(&str, &str)]) -> (Scene, Vec<String>) {
@@ -214,9 +214,42 @@ fn textures_of_numbers_and_of_colours_have_names_of_their_own() {
         panic!()
     };
     assert_eq!(by, Scalar::Value(0.3));
-    let TextureKind::Checker { even, odd, mapping } = scene.textures[checker.index()].kind else { panic!() };
+    let TextureKind::Checker { even, odd, footprint, mapping } = scene.textures[checker.index()].kind else {
+        panic!()
+    };
+    assert_eq!(footprint, TexelFilter::PBRT_FOOTPRINT);
     assert_eq!((even, odd), (Color::Value([0.1, 0.2, 0.3]), Color::BLACK));
     assert_eq!(mapping, Mapping::Uv { scale: [4.0, 1.0], offset: [0.0; 2] });
+}
+
+#[test]
+fn pictures_have_pbrts_filters() {
+    let pictures = [
+        "",
+        "\"string filter\" \"trilinear\"",
+        "\"string filter\" \"ewa\"",
+        "\"string filter\" \"EWA\" \"float maxanisotropy\" 16",
+        "\"string filter\" \"point\" \"float maxanisotropy\" 1000",
+    ];
+    let png = lookfrom_scene::image::encode_png(1, 1, &[255, 0, 0]).expect("it is a picture");
+    let of = |index: usize| {
+        let text = format!(
+            "WorldBegin Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" {}\n\
+             Material \"diffuse\" \"texture reflectance\" \"a\" Shape \"sphere\"",
+            pictures[index]
+        );
+        let files = Memory(
+            [(PathBuf::from("a.pbrt"), text.into_bytes()), (PathBuf::from("a.png"), png.clone())].into(),
+        );
+        let scene = load::scene(Path::new("a.pbrt"), &mut LoadContext::new(&files)).expect("a scene");
+        match scene.textures[0].kind {
+            TextureKind::Image { filter: TexelFilter::Mip { filter, footprint: 0.125 }, .. } => filter,
+            ref other => panic!("{other:?}"),
+        }
+    };
+    let ewa = |anisotropy| MipFilter::Ewa { anisotropy };
+    let expected = [MipFilter::Bilinear, MipFilter::Trilinear, ewa(8.0), ewa(16.0), MipFilter::Nearest];
+    assert_eq!([0, 1, 2, 3, 4].map(of), expected);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use lookfrom_scene::scene::MediumId;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
-use lookfrom_scene::texture::{Mapping, TextureKind};
+use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
 use lookfrom_scene::{LoadContext, Memory, Scene, image, load};
 
 fn read_files(texts: &[(&str, &str)]) -> Scene {
@@ -360,6 +360,45 @@ type = "wrinkled"
     assert!(matches!(*texture("e"), TextureKind::Mix { amount: Scalar::Texture(_), .. }));
     assert!(matches!(*texture("f"), TextureKind::Fbm { octaves: 8, roughness: 0.25, .. }));
     assert!(matches!(*texture("g"), TextureKind::Wrinkled { roughness: 0.5, .. }));
+}
+
+#[test]
+fn far_textures_are_filtered_as_they_say() {
+    let scene = read(
+        r#"
+[textures.a]
+type = "image"
+file = "half.png"
+[textures.b]
+type = "image"
+file = "half.png"
+filter = "trilinear"
+[textures.c]
+type = "image"
+file = "half.png"
+filter = "ewa"
+footprint = 0.5
+anisotropy = 16
+[textures.d]
+type = "checker"
+footprint = 1
+[textures.e]
+type = "fbm"
+"#,
+    );
+    let kinds: Vec<_> = scene.textures.iter().map(|texture| texture.kind.clone()).collect();
+    let filters: Vec<_> = kinds
+        .iter()
+        .filter_map(|kind| match kind {
+            TextureKind::Image { filter, .. } => Some(*filter),
+            _ => None,
+        })
+        .collect();
+    let mip = |filter, footprint| TexelFilter::Mip { filter, footprint };
+    let ewa = MipFilter::Ewa { anisotropy: 16.0 };
+    assert_eq!(filters, [TexelFilter::Bilinear, mip(MipFilter::Trilinear, 0.25), mip(ewa, 0.5)]);
+    assert!(matches!(kinds[3], TextureKind::Checker { footprint: 1.0, .. }));
+    assert_eq!(TextureKind::need_footprints(&kinds), [false, true, true, true, false]);
 }
 
 #[test]

@@ -48,7 +48,7 @@ impl CameraSpace {
     /// The AOVs of a surface interaction, with its albedo where that is known.
     pub(super) fn aovs(&self, world: &World, surface: &SurfaceInteraction, albedo: Option<[f32; 3]>) -> Aovs {
         let World { materials, textures, .. } = world;
-        let point = world.texture_point(surface);
+        let point = world.shading_point(surface);
         let ns = material::normal(materials, world.relief(), surface, &point);
         let [ng, ns] = [surface.ng.as_vec3(), ns]
             .map(|n| self.normal(Vector::from(n.to_array()), Vector::from(surface.wo.to_array())).into());

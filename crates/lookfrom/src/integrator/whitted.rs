@@ -203,7 +203,7 @@ pub(super) fn step<P: Probe>(
     // Shade what is seen: I_a and every light, and the branches of the tree.
     let (mode, material) = (output.mode(path), &world.materials[surface.material as usize]);
     let coefficients =
-        Coefficients::at(&material.whitted, &world.textures, &world.texture_point(surface), &mode);
+        Coefficients::at(&material.whitted, &world.textures, &world.shading_point(surface), &mode);
     output.leave_first_surface(world, path, surface, || {
         let Coefficients { diffuse, mirror, transmission, .. } = coefficients;
         let is_known = matches!(mode, SpectralMode::Rgb) && material.has_albedo_of_coefficients();

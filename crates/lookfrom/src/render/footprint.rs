@@ -52,6 +52,58 @@ mod tests {
         of_pixels(&Camera::new(&Written { view, projection, ..Written::default() }, 200, 100).unwrap())
     }
 
+    /// Where a ray of a camera meets a plane, from the origin of the world.
+    fn meets(camera: &Camera, pixel: [f64; 2], (p, n): (DVec3, DVec3)) -> DVec3 {
+        let ray = camera.ray(pixel, [0.5; 2]);
+        let origin = camera.lookfrom() + ray.a_from_eye;
+        origin + ray.direction * ((p - origin).dot(n) / ray.direction.dot(n))
+    }
+
+    /// The differences of neighbouring rays where pixels are all alike, and elsewhere not larger. Of parallel rays on the axis alone: other
+    /// points are not seen in the direction from the camera.
+    #[test]
+    fn footprints_are_differences_of_rays() {
+        let view = View::Look { lookfrom: DVec3::new(3.0, 2.0, -4.0), lookat: DVec3::ZERO, up: DVec3::Y };
+        let wide = Projection::Perspective { fov: 60.0 };
+        let narrow = [Projection::Perspective { fov: 5.0 }, Projection::Orthographic { height: 3.0 }];
+        for projection in narrow.into_iter().chain([wide.clone()]) {
+            let is_narrow = projection != wide;
+            let is_parallel = matches!(projection, Projection::Orthographic { .. });
+            let camera = Camera::new(&Written { view, projection, ..Written::default() }, 400, 300).unwrap();
+            let pixels = of_pixels(&camera);
+            for k in 0..200 {
+                let of = |index: u64| (crate::core::hash::pair(k, index) >> 11) as f64 / (1_u64 << 53) as f64;
+                let pixel = if is_parallel { [200.0, 150.0] } else { [400.0 * of(0), 300.0 * of(1)] };
+                let ray = camera.ray(pixel, [0.5; 2]);
+                let at = camera.lookfrom() + ray.a_from_eye + ray.direction * (0.1 + 10.0 * of(2));
+                // A plane that is not seen from its edge.
+                let toward = -ray.direction.normalize();
+                let n = (toward + 0.8 * DVec3::new(of(3), of(4), of(5)).normalize()).normalize();
+                let dpdu = n.cross(DVec3::new(0.3, 1.0, -0.2)).normalize() * (0.1 + of(6));
+                let dpdv = n.cross(dpdu).normalize() + 0.5 * dpdu;
+                let found = pixels.at(at, n, [dpdu.as_vec3(), dpdv.as_vec3()]);
+                for (axis, next) in
+                    [[pixel[0] + 1.0, pixel[1]], [pixel[0], pixel[1] + 1.0]].into_iter().enumerate()
+                {
+                    let step = meets(&camera, next, (at, n)) - at;
+                    let length = f64::from(found.p[axis].length());
+                    if is_narrow {
+                        let apart = (found.p[axis].as_dvec3() - step).length();
+                        assert!(apart < 0.06 * step.length(), "{} {step}", found.p[axis]);
+                    }
+                    assert!(
+                        length < 1.6 * step.length(),
+                        "{length} of {}, narrow: {is_narrow}",
+                        step.length()
+                    );
+                    // u and v move the point by as much.
+                    let by_uv = f64::from(found.uv[axis].x) * dpdu + f64::from(found.uv[axis].y) * dpdv;
+                    assert!((by_uv - found.p[axis].as_dvec3()).length() < 1e-4 * length, "{by_uv}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn pixels_of_a_pinhole_differ_in_direction_and_parallel_ones_in_origin() {
         let PixelFootprint { origins, directions, eye, .. } =

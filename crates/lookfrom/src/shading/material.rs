@@ -68,6 +68,8 @@ pub struct Material {
     pub pictures: PictureSet,
     /// False if its scattering function is known to be the same everywhere.
     pub varies: bool,
+    /// Whether its textures depend on the footprint of pixels.
+    pub needs_footprint: bool,
     /// Its [`albedo()`] where that is known to be the same everywhere.
     albedo: Option<[f32; 3]>,
 }

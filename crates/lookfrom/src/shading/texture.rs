@@ -1,11 +1,11 @@
 //! Textures: from a point of a surface to a spectrum or a number.
 //!
 //! The parameters are those of `lookfrom_scene::texture`; here only the names are resolved. Where pbrt-v4 has the
-//! same texture (Pharr, Jakob, Humphreys 2023), it means the same, except that there are no ray differentials:
-//! images are not filtered beyond bilinear, checkerboards have sharp edges and noise has all its octaves.
+//! same texture (Pharr, Jakob, Humphreys 2023), it means the same, with pbrt's approximation of footprints
+//! (`shading/footprint`) in place of ray differentials.
 //!
 //! `input`: the inputs of materials and lights; `node`: the textures themselves; `mapping`: texture coordinates;
-//! `picture`, `pattern`: image lookups and procedural patterns; `look_ups`: those of eight points at once; `evaluation`:
+//! `picture`, `mip`, `pattern`: image lookups, those in MIP maps, and procedural patterns; `look_ups`: those of eight points at once; `evaluation`:
 //! conversion to numbers, RGB or spectra; `shared`: values of textures that are used many times at a point.
 
 mod constants;
@@ -14,6 +14,7 @@ mod input;
 pub(crate) mod lanes;
 mod look_ups;
 mod mapping;
+mod mip;
 mod node;
 mod pattern;
 mod picture;
@@ -28,7 +29,7 @@ use lookfrom_scene::scene::{CurveId, TextureId};
 use lookfrom_scene::settings::ColorMode;
 use lookfrom_scene::shape::Mesh;
 use lookfrom_scene::spectrum::Curve;
-use lookfrom_scene::texture::{Channel, TextureKind, Wrap};
+use lookfrom_scene::texture::{Channel, Mapping, TextureKind, Wrap};
 
 pub(crate) use self::input::uplift;
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
@@ -43,8 +44,10 @@ use self::look_ups::Picture;
 use self::node::Node;
 use self::shared::Values;
 use crate::core::color::{DenselySampledSpectrum, Wavelengths};
-use crate::core::noise::{self, perlin};
+use crate::core::noise;
+use crate::core::noise::perlin::{self, Octaves};
 use crate::core::spectrum::Spectrum;
+use crate::shading::footprint::SurfaceFootprint;
 
 /// The meaning of a sample's four lanes.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +67,10 @@ pub struct Textures {
     /// Pictures as the nodes read them.
     pictures: Vec<Picture>,
     images: Vec<Image>,
+    /// The coarser levels of the images' MIP maps; none of images that are not filtered.
+    coarser_levels: Vec<Vec<Image>>,
+    /// Whether each texture depends on the footprint of pixels.
+    need_footprints: Vec<bool>,
     curves: Vec<Measured>,
     /// True if constants are uplifted to spectra when they are compiled.
     uplifts: bool,
@@ -97,6 +104,8 @@ pub struct TexturePoint<'a> {
     pub opacity: f32,
     /// Normal in world space, of unit length, on either side. pbrt-v4 takes the geometric one.
     pub n: Vec3,
+    /// The part of the surface that a pixel shows; `None` for a point alone.
+    pub footprint: Option<SurfaceFootprint>,
     /// Pictures that were looked up here beforehand.
     pub looked_up: Option<LookedUp<'a>>,
     /// The values here of textures that are used many times.
@@ -132,6 +141,7 @@ impl TexturePoint<'_> {
         color: [1.0; 3],
         opacity: 1.0,
         n: Vec3::Z,
+        footprint: None,
         looked_up: None,
         values: None,
     };
@@ -148,7 +158,32 @@ impl Textures {
         let curves = curves.into_iter().map(measured).collect();
         let uplifts = color == ColorMode::Spectral;
         let (nodes, pictures) = Node::compile_all(kinds, &images, uplifts);
-        Self { nodes, keeps_values: shared::keeps_values(kinds), pictures, images, curves, uplifts }
+        let mut coarser_levels = vec![Vec::new(); images.len()];
+        for picture in pictures.iter().filter(|picture| picture.filter.takes_levels()) {
+            let (Some(levels), Some(image)) =
+                (coarser_levels.get_mut(picture.image), images.get(picture.image))
+            else {
+                continue;
+            };
+            if levels.is_empty() {
+                *levels = image.coarser_levels();
+            }
+        }
+        Self {
+            nodes,
+            keeps_values: shared::keeps_values(kinds),
+            pictures,
+            images,
+            coarser_levels,
+            need_footprints: TextureKind::need_footprints(kinds),
+            curves,
+            uplifts,
+        }
+    }
+
+    /// Whether a texture depends on the footprint of pixels, itself or by what it uses.
+    pub(crate) fn needs_footprint(&self, id: TextureId) -> bool {
+        self.need_footprints.get(id.index()).copied().unwrap_or(false)
     }
 
     /// A colour of the scene, compiled for its spectrum type.
@@ -270,9 +305,12 @@ impl Textures {
                 let filter = self.pictures[*picture as usize].filter;
                 evaluation.texel(rgb.map(|c| scale * c), *invert, filter)
             }
-            Node::Checker { even, odd, mapping } => {
-                let is_even = pattern::is_even(mapping::off_border(mapping, at));
-                self.read(if is_even { even } else { odd }, at, evaluation)
+            Node::Checker { even, odd, footprint, mapping } => {
+                let p = mapping::off_border(mapping, at);
+                match averaged(*footprint, mapping, at) {
+                    Some(steps) => self.blend(even, odd, pattern::odd_share(p, steps), at, evaluation),
+                    None => self.read(if pattern::is_even(p) { even } else { odd }, at, evaluation),
+                }
             }
             Node::Noise { low, high, octaves, mapping } => {
                 let amount = 0.5 + 0.5 * noise::fbm(mapping::off_border(mapping, at).as_vec3(), *octaves);
@@ -301,16 +339,21 @@ impl Textures {
                 let is_inside = pattern::is_in_dot(space(mapping).truncate());
                 self.read(if is_inside { inside } else { outside }, at, evaluation)
             }
-            Node::Fbm { octaves, roughness, mapping } => {
-                evaluation.number(perlin::fbm(space(mapping), *roughness, *octaves))
+            Node::Fbm { octaves, roughness, footprint, mapping } => {
+                let octaves = Octaves::new(*octaves, detail(*footprint, mapping, at));
+                evaluation.number(perlin::fbm(space(mapping), *roughness, octaves))
             }
-            Node::Wrinkled { octaves, roughness, mapping } => {
-                evaluation.number(perlin::turbulence(space(mapping), *roughness, *octaves))
+            Node::Wrinkled { octaves, roughness, footprint, mapping } => {
+                let octaves = Octaves::new(*octaves, detail(*footprint, mapping, at));
+                evaluation.number(perlin::turbulence(space(mapping), *roughness, octaves))
             }
-            Node::Windy { mapping } => evaluation.number(pattern::windy(space(mapping))),
-            Node::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
+            Node::Windy { footprint, mapping } => {
+                evaluation.number(pattern::windy(space(mapping), detail(*footprint, mapping, at)))
+            }
+            Node::PbrtMarble { octaves, roughness, scale, variation, footprint, mapping } => {
                 let p = space(mapping) * *scale;
-                evaluation.reflectance(pattern::marble(p, *roughness, *octaves, *variation))
+                let octaves = Octaves::new(*octaves, scale.abs() * detail(*footprint, mapping, at));
+                evaluation.reflectance(pattern::marble(p, *roughness, octaves, *variation))
             }
             Node::VertexColor { tint } => evaluation.color(std::array::from_fn(|c| at.color[c] * tint[c])),
             Node::VertexAlpha => evaluation.number(at.opacity),
@@ -340,6 +383,19 @@ impl Textures {
         }
         self.read(low, at, evaluation) * (1.0 - amount) + self.read(high, at, evaluation) * amount
     }
+}
+
+/// The steps that a pattern is averaged over, by the width of its footprint in pixels; `None` where it is not.
+fn averaged(footprint: f32, mapping: &Mapping, at: &TexturePoint) -> Option<[DVec3; 2]> {
+    match footprint > 0.0 {
+        true => mapping::changes(mapping, at).map(|steps| steps.map(|step| step * f64::from(footprint))),
+        false => None,
+    }
+}
+
+/// The width of the detail of noise that is left out; 0 for none.
+fn detail(footprint: f32, mapping: &Mapping, at: &TexturePoint) -> f32 {
+    averaged(footprint, mapping, at).map_or(0.0, |[x, y]| x.length().max(y.length()) as f32)
 }
 
 #[cfg(test)]

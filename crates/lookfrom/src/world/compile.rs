@@ -90,12 +90,13 @@ impl World {
             std::mem::take(&mut scene.curves),
             scene.render.color,
         );
+        let need_footprints = need_footprints(&scene.materials, &textures);
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
             lights: Lights::new(&textures),
             shapes: Vec::new(),
-            grains: grains(&scene.materials),
+            grains: grains(&scene.materials, &need_footprints),
             has_instance_grain: false,
             is_in_object: false,
             light_motion: None,
@@ -251,8 +252,9 @@ impl World {
         let mut media: Vec<Medium> =
             written_media.iter().map(|written| Medium::compile(&textures, written, origin, around)).collect();
         let mut compiler = material::Compiler::new(&textures, vertex_normals);
-        for written in written_materials {
+        for (written, needs_footprint) in written_materials.into_iter().zip(need_footprints) {
             let (mut material, absorption) = compiler.compile(&written);
+            material.needs_footprint = needs_footprint;
             // An absorbing body is filled with a medium of its own.
             material.medium = written.medium.map(|id| id.0);
             if absorption != [0.0; 3] && material.medium.is_none() {
@@ -321,22 +323,34 @@ fn light_motion(
     Some(LightMotion::new(&maps))
 }
 
-/// By material: whether it needs derivatives by texture coordinates; a mixture needs them if any of its parts does.
-fn grains(materials: &[Written]) -> Vec<bool> {
-    let mut grains: Vec<bool> = materials.iter().map(Written::has_grain).collect();
+/// By material: whether its textures depend on the footprint of pixels.
+fn need_footprints(materials: &[Written], textures: &Textures) -> Vec<bool> {
+    let is_filtered = |material: &Written| material.textures().iter().any(|id| textures.needs_footprint(*id));
+    of_mixtures(materials, materials.iter().map(is_filtered).collect())
+}
+
+/// By material: whether it needs derivatives by texture coordinates.
+fn grains(materials: &[Written], need_footprints: &[bool]) -> Vec<bool> {
+    let grains =
+        materials.iter().zip(need_footprints).map(|(material, filtered)| material.has_grain() || *filtered);
+    of_mixtures(materials, grains.collect())
+}
+
+/// What is so of materials, and of mixtures if it is so of any of their parts.
+fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
     let mut has_changed = true;
     while has_changed {
         has_changed = false;
         for (index, material) in materials.iter().enumerate() {
             if let WrittenKind::Mix { materials: parts, .. } = &material.kind
-                && !grains[index]
-                && parts.iter().any(|part| grains[part.index()])
+                && !are_so[index]
+                && parts.iter().any(|part| are_so[part.index()])
             {
-                (grains[index], has_changed) = (true, true);
+                (are_so[index], has_changed) = (true, true);
             }
         }
     }
-    grains
+    are_so
 }
 
 /// The quality of the BVHs, on which the light does not depend. The best tree takes up to 4 µs more for each triangle and

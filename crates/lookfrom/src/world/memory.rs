@@ -1,8 +1,9 @@
 //! An estimate of the memory that compiling a scene takes, with its trees and lights: what was measured at the peak, by kinds
 //! of things (docs/benchmarks/memory.md), besides the scene itself.
 
-use lookfrom_scene::scene::Scene;
+use lookfrom_scene::scene::{Instance, Scene};
 use lookfrom_scene::shape::{Geometry, Shape};
+use lookfrom_scene::texture::TextureKind;
 
 use super::World;
 
@@ -14,6 +15,9 @@ const PRIMITIVE: u64 = 160;
 const SHAPE: u64 = 600;
 /// Bytes of an instance, and what building the tree over it takes; as written it is freed before.
 const INSTANCE: u64 = 400;
+/// Bytes of a triangle, and of an instance, for each further time of its motion.
+const MOVING_TRIANGLE: u64 = 120;
+const MOVING_INSTANCE: u64 = 200;
 /// Bytes of a primitive that emits light: the light, and its part of the light tree.
 const LIGHT: u64 = 160;
 
@@ -31,17 +35,36 @@ impl World {
             scene.objects.iter().map(|object| of(&mut object.shapes.iter().filter(dark))).sum();
         let lit: Vec<u64> =
             (scene.objects.iter()).map(|object| of(&mut object.shapes.iter().filter(is_lit))).collect();
-        let instances = scene.instances.iter().filter_map(|instance| lit.get(instance.object.index()));
-        let instances = instances.fold(0, |sum: u64, lit| sum.saturating_add(INSTANCE + lit));
-        (of(&mut scene.shapes.iter()) + objects).saturating_add(instances)
+        let of_instance = |instance: &Instance| {
+            let lit = lit.get(instance.object.index()).copied().unwrap_or(0);
+            let times = instance.motion.as_ref().map_or(0, |motion| motion.maps().len() as u64);
+            INSTANCE + times * MOVING_INSTANCE + lit
+        };
+        let instances = scene.instances.iter().map(of_instance).fold(0, u64::saturating_add);
+        (of(&mut scene.shapes.iter()) + objects + of_mip_maps(scene)).saturating_add(instances)
     }
+}
+
+/// Bytes of the levels of MIP maps besides the images themselves.
+fn of_mip_maps(scene: &Scene) -> u64 {
+    let mut filtered = vec![false; scene.images.len()];
+    for texture in &scene.textures {
+        if let TextureKind::Image { image, filter, .. } = &texture.kind
+            && let Some(is_filtered) = filtered.get_mut(image.index())
+        {
+            *is_filtered |= filter.takes_levels();
+        }
+    }
+    let levels = scene.images.iter().zip(filtered).filter(|(_, is_filtered)| *is_filtered);
+    levels.map(|(image, _)| image.bytes_of_levels()).sum()
 }
 
 fn of_shape(shape: &Shape, scene: &Scene) -> u64 {
     let (primitives, bytes) = match &shape.geometry {
         Geometry::Mesh(id) => {
             let mesh = scene.meshes.get(id.index());
-            (mesh.map_or(0, |mesh| mesh.triangles.len()), TRIANGLE)
+            let times = mesh.map_or(0, |mesh| mesh.later.len() as u64);
+            (mesh.map_or(0, |mesh| mesh.triangles.len()), TRIANGLE + times * MOVING_TRIANGLE)
         }
         Geometry::Spheres(spheres) => (spheres.len(), PRIMITIVE),
         Geometry::Bilinear(patches) => (patches.patches.len(), PRIMITIVE),
@@ -57,7 +80,7 @@ mod tests {
     use glam::{DMat4, DVec3};
     use lookfrom_scene::Location;
     use lookfrom_scene::material::Color;
-    use lookfrom_scene::scene::{Instance, MaterialId, Object, ObjectId};
+    use lookfrom_scene::scene::{MaterialId, Object, ObjectId};
     use lookfrom_scene::shape::{Emission, Sphere};
 
     use super::*;

@@ -15,6 +15,7 @@ mod dispersion;
 mod displacement;
 mod enough;
 mod films;
+mod filtered_textures;
 mod gltf_and_pbrt;
 mod gltf_media;
 mod inspect;

@@ -189,7 +189,7 @@ fn room(lights: &[&str], settings: &str) -> Scene {
 
 /// An integrator without its steps in lanes: the slow, obviously right twin.
 #[derive(Debug)]
-struct OneByOne<I>(I);
+pub(crate) struct OneByOne<I>(pub(crate) I);
 
 impl<I: Transport> Transport for OneByOne<I> {
     type State = I::State;

@@ -11,7 +11,7 @@ use lookfrom_scene::material::{
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
 use lookfrom_scene::shape::{Geometry, Profile, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
-use lookfrom_scene::texture::{Mapping, TextureKind};
+use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
 use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result};
 use proptest::prelude::*;
 
@@ -283,13 +283,24 @@ impl<'a> Places<'a> {
 
     fn texture(&mut self, kind: &'a mut TextureKind) {
         match kind {
-            TextureKind::Image { image, mapping, scale, .. } => {
+            TextureKind::Image { image, mapping, scale, filter, .. } => {
                 self.whole.push(&mut image.0);
                 self.single.push(scale);
+                if let TexelFilter::Mip { filter, footprint } = filter {
+                    self.single.push(footprint);
+                    if let MipFilter::Ewa { anisotropy } = filter {
+                        self.single.push(anisotropy);
+                    }
+                }
                 self.mapping(mapping);
             }
-            TextureKind::Checker { even: a, odd: b, mapping }
-            | TextureKind::Dots { inside: a, outside: b, mapping } => {
+            TextureKind::Checker { even: a, odd: b, footprint, mapping } => {
+                self.color(a);
+                self.color(b);
+                self.single.push(footprint);
+                self.mapping(mapping);
+            }
+            TextureKind::Dots { inside: a, outside: b, mapping } => {
                 self.color(a);
                 self.color(b);
                 self.mapping(mapping);
@@ -301,10 +312,11 @@ impl<'a> Places<'a> {
                 self.whole.push(octaves);
                 self.mapping(mapping);
             }
-            TextureKind::Fbm { octaves, mapping, .. }
-            | TextureKind::Wrinkled { octaves, mapping, .. }
-            | TextureKind::PbrtMarble { octaves, mapping, .. } => {
+            TextureKind::Fbm { octaves, footprint, mapping, .. }
+            | TextureKind::Wrinkled { octaves, footprint, mapping, .. }
+            | TextureKind::PbrtMarble { octaves, footprint, mapping, .. } => {
                 self.whole.push(octaves);
+                self.single.push(footprint);
                 self.mapping(mapping);
             }
             TextureKind::Scale { color, by: scalar } => {
@@ -323,7 +335,8 @@ impl<'a> Places<'a> {
             }
             TextureKind::VertexColor { tint } => self.single.push(&mut tint[0]),
             TextureKind::Threshold { value, .. } => self.scalar(value),
-            TextureKind::Windy { .. } | TextureKind::VertexAlpha => {}
+            TextureKind::Windy { footprint, .. } => self.single.push(footprint),
+            TextureKind::VertexAlpha => {}
         }
     }
 

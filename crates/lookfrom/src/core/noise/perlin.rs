@@ -3,9 +3,7 @@
 //! It repeats every 256 units, and reproduces the scenes that were made for it. New textures should use the noise
 //! of the parent module.
 //!
-//! Perlin 2002, with pbrt's sixteen gradients (Pharr, Jakob, Humphreys 2023), four of which occur twice. pbrt omits
-//! octaves that are finer than a pixel, by its ray differentials. There are none here: all octaves are summed, and
-//! detail below a pixel is left to the pixel's samples.
+//! Perlin 2002, with pbrt's sixteen gradients (Pharr, Jakob, Humphreys 2023), four of which occur twice.
 
 mod lanes;
 
@@ -63,27 +61,79 @@ pub fn noise(p: Vec3) -> f32 {
     mix_linearly(face(0), face(1), w)
 }
 
-/// Fractional Brownian motion: the sum of `octaves` noises, each of 1.99 times the frequency and `roughness` times
-/// the amplitude of the one before.
-pub fn fbm(p: Vec3, roughness: f32, octaves: u32) -> f32 {
-    sum(p, roughness, octaves, |noise| noise).0
+/// The octaves of noise that are summed: those that are not much finer than a pixel, as in pbrt-v4.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Octaves {
+    /// All that there are.
+    all: u32,
+    /// Those that are whole.
+    whole: u32,
+    /// The share of the next one.
+    next: f32,
 }
 
-/// [`fbm`] of magnitudes, plus the mean of the first omitted octave, as in pbrt.
-pub fn turbulence(p: Vec3, roughness: f32, octaves: u32) -> f32 {
-    let (sum, next) = sum(p, roughness, octaves, f32::abs);
-    sum + next * MEAN_MAGNITUDE
+impl Octaves {
+    /// Those whose detail is not finer than a width, in units of the noise: all for 0.
+    pub fn new(all: u32, detail: f32) -> Self {
+        let all = all.min(super::MOST_OCTAVES);
+        if !(detail > 0.0) {
+            return Self { all, whole: all, next: 0.0 };
+        }
+        // The n-th octave has a period of about 2⁻ⁿ; from half of that on it is left out.
+        let count = (-1.0 - libm::log2f(detail)).clamp(0.0, all as f32);
+        let share = ((count - count.floor() - 0.3) / 0.4).clamp(0.0, 1.0);
+        Self { all, whole: count as u32, next: share * share * (3.0 - 2.0 * share) }
+    }
 }
 
-/// The sum, and the amplitude of the octave after the last.
-fn sum(p: Vec3, roughness: f32, octaves: u32, shape: impl Fn(f32) -> f32) -> (f32, f32) {
-    let (mut sum, mut frequency, mut strength) = (0.0, 1.0, 1.0);
-    for _ in 0..octaves.min(super::MOST_OCTAVES) {
-        sum += strength * shape(noise(frequency * p));
-        frequency *= LACUNARITY;
+impl From<u32> for Octaves {
+    /// All of them.
+    fn from(all: u32) -> Self {
+        Self::new(all, 0.0)
+    }
+}
+
+/// Fractional Brownian motion: the sum of octaves of noise, each of 1.99 times the frequency and `roughness` times the amplitude of the one
+/// before.
+pub fn fbm(p: Vec3, roughness: f32, octaves: impl Into<Octaves>) -> f32 {
+    let octaves = octaves.into();
+    let Sum { sum, frequency, strength } = Sum::new(p, roughness, octaves.whole, |noise| noise);
+    if octaves.next == 0.0 { sum } else { sum + strength * octaves.next * noise(frequency * p) }
+}
+
+/// [`fbm`] of magnitudes, plus the mean of the first omitted octave after all, as in pbrt. Octaves that are left out have their mean, too.
+pub fn turbulence(p: Vec3, roughness: f32, octaves: impl Into<Octaves>) -> f32 {
+    let octaves = octaves.into();
+    let Sum { mut sum, frequency, mut strength } = Sum::new(p, roughness, octaves.whole, f32::abs);
+    let next = match octaves.next {
+        0.0 => MEAN_MAGNITUDE,
+        share => MEAN_MAGNITUDE * (1.0 - share) + noise(frequency * p).abs() * share,
+    };
+    sum += strength * next;
+    for _ in octaves.whole..octaves.all {
+        sum += strength * MEAN_MAGNITUDE;
         strength *= roughness;
     }
-    (sum, strength)
+    sum
+}
+
+/// A sum of octaves, and the frequency and amplitude of the octave after the last.
+struct Sum {
+    sum: f32,
+    frequency: f32,
+    strength: f32,
+}
+
+impl Sum {
+    fn new(p: Vec3, roughness: f32, octaves: u32, shape: impl Fn(f32) -> f32) -> Self {
+        let mut sum = Self { sum: 0.0, frequency: 1.0, strength: 1.0 };
+        for _ in 0..octaves {
+            sum.sum += sum.strength * shape(noise(sum.frequency * p));
+            sum.frequency *= LACUNARITY;
+            sum.strength *= roughness;
+        }
+        sum
+    }
 }
 
 #[cfg(test)]

@@ -8,7 +8,8 @@ use super::step::BareEight;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::integrator::wavefront::{Modes, Surfaces, bare_hits};
+use crate::integrator::wavefront::bare_hits::{self, BareHits};
+use crate::integrator::wavefront::{Modes, Surfaces};
 use crate::shading::material::{Coefficients, WhittedMaterial};
 use crate::shading::texture::lanes::TexturePoints;
 use crate::shading::texture::{SpectrumTexture, TexturePoint};
@@ -134,7 +135,7 @@ fn texture_points<'a, S: Simd>(
     let mut points = [TexturePoint::NOWHERE; LANES];
     for (lane, point) in points.iter_mut().enumerate() {
         if varies(&world.materials[eight.materials[lane] as usize].whitted) {
-            *point = texture_point(world, eight.bare.hits[lane], positions[lane], normals[lane]);
+            *point = texture_point(world, &eight.bare, lane, (positions[lane], normals[lane]));
         }
     }
     points
@@ -147,13 +148,19 @@ fn varies(material: &WhittedMaterial) -> bool {
     [diffuse, specular, mirror, transmission].into_iter().chain(ambient).any(SpectrumTexture::varies)
 }
 
+/// The texture point of one of eight hits, by its position and geometric normal.
 #[inline(never)]
 pub(super) fn texture_point<'a>(
     world: &'a World,
-    hit: &Hit,
-    position: [f64; 3],
-    ng: [f32; 3],
+    bare: &BareHits<'_>,
+    lane: usize,
+    (position, ng): ([f64; 3], [f32; 3]),
 ) -> TexturePoint<'a> {
+    let (ray, hit) = (bare.rays[lane], bare.hits[lane]);
+    let is_filtered = |material: u32| world.materials[material as usize].needs_footprint;
+    if world.footprint.is_some() && world.bare_surface(hit).is_some_and(|bare| is_filtered(bare.material)) {
+        return world.shading_point(&world.surface(ray, hit));
+    }
     if let Some(mesh) = bare_hits::mesh(world, hit) {
         let Hit { u, v, primitive, .. } = *hit;
         let [uv0, uv1, uv2] = mesh.corner_uvs(primitive as usize);

@@ -53,7 +53,7 @@ impl BareEight<'_> {
             }
             let albedo = material.even_albedo().unwrap_or_else(|| {
                 let (position, ng) = (row(&first.position, lane), row(&first.ng, lane));
-                let point = texture_point(world, self.bare.hits[lane], position, ng);
+                let point = texture_point(world, &self.bare, lane, (position, ng));
                 material::albedo(materials, textures, material, &point)
             });
             set_row(&mut first.albedo, lane, albedo);

@@ -201,7 +201,8 @@ fn bumped(height: FloatTexture, relief: Relief<'_>, surface: &ShadingGeometry, a
     let Relief { textures, footprint } = relief;
     let n = surface.ns;
     let here = textures.float(height, at);
-    let half = footprint.and_then(|footprint| footprint.half(at, surface)).unwrap_or_default();
+    let half = footprint.and_then(|pixels| pixels.half(at.world, surface.ng, [surface.dpdu, surface.dpdv]));
+    let half = half.unwrap_or_default();
     let [dpdu, dpdv] =
         [(surface.dpdu, Vec2::X, half.x), (surface.dpdv, Vec2::Y, half.y)].map(|(along, axis, half)| {
             let step = if half > 0.0 { half } else { STEP };

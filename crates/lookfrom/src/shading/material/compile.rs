@@ -42,6 +42,7 @@ impl<'a> Compiler<'a> {
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
         let compiled = Material {
             albedo,
+            needs_footprint: false,
             pictures,
             varies,
             kind,

@@ -280,6 +280,7 @@ mod tests {
             let checker = TextureKind::Checker {
                 even: Color::Value([number(), number(), number()]),
                 odd: Color::Value([1.2 * number(); 3]),
+                footprint: 0.0,
                 mapping: Mapping::UV,
             };
             let textures = Textures::new(&[checker], Vec::new(), Vec::new(), mode);

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Mul};
 
-use lookfrom_scene::texture::TexelFilter;
+use lookfrom_scene::texture::{MipFilter, TexelFilter};
 
 use super::input::{Constant, uplift};
 use super::shared::Kept;
@@ -79,8 +79,8 @@ impl Evaluation for FloatEvaluation {
     /// The mean of the channels; but with pbrt's nearest filtering, the first channel.
     fn texel(&self, rgb: [f32; 3], invert: bool, filter: TexelFilter) -> f32 {
         let value = match filter {
-            TexelFilter::Nearest => rgb[0],
-            TexelFilter::Bilinear => mean(rgb),
+            TexelFilter::Nearest | TexelFilter::Mip { filter: MipFilter::Nearest, .. } => rgb[0],
+            TexelFilter::Bilinear | TexelFilter::Mip { .. } => mean(rgb),
         };
         if invert { (1.0 - value).max(0.0) } else { value }
     }

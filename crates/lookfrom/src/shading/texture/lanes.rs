@@ -36,7 +36,12 @@ impl Textures {
         let Input::Texture(id) = texture.input else { return None };
         let evaluation = RgbEvaluation(texture.spectrum_type);
         match &self.nodes[id.index()] {
-            Node::Checker { even: Input::Constant(even), odd: Input::Constant(odd), mapping } => {
+            Node::Checker {
+                even: Input::Constant(even),
+                odd: Input::Constant(odd),
+                footprint: 0.0,
+                mapping,
+            } => {
                 let is_even = are_even(off_border(mapping, at)?);
                 let is_even = f32x8::splat(simd, 0.0).narrow_mask(is_even);
                 let (even, odd) = (evaluation.constant(even), evaluation.constant(odd));
@@ -183,7 +188,7 @@ mod tests {
         let mut kinds = Vec::new();
         for mapping in mappings() {
             let (even, odd) = (Color::Value([0.75, 0.1, 1.5]), Color::Value([0.0, 0.8, 0.2]));
-            kinds.push(TextureKind::Checker { even, odd, mapping });
+            kinds.push(TextureKind::Checker { even, odd, footprint: 0.0, mapping });
             for (wrap, invert) in [(Wrap::Repeat, false), (Wrap::Black, true), (Wrap::Mirror, false)] {
                 kinds.push(TextureKind::Image {
                     image: ImageId(0),

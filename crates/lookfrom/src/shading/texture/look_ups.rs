@@ -6,26 +6,31 @@
 
 mod places;
 
+use glam::Vec2;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::texture::{Mapping, TexelFilter, Wrap};
+use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, Wrap};
+use lookfrom_simd::LaneMask;
 
 use self::places::{Places, UvMap};
 use super::input::{FloatTexture, Input, SpectrumTexture};
+use super::mip::{Levels, MipMap};
 use super::node::Node;
 use super::picture::Footprint;
 use super::{TexturePoint, Textures, mapping};
 use crate::core::lanes::{LANES, by_lane};
 
 /// A picture on a surface: what is looked up there for all textures that read it in the same way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Picture {
     /// Index of the image.
     pub(super) image: usize,
     pub(super) mapping: Mapping,
     pub(super) wraps: [Wrap; 2],
     pub(super) filter: TexelFilter,
-    /// The mapping, where it is one of texture coordinates, and the filter is bilinear.
+    /// The mapping, where it is one of texture coordinates, and texels may be blended bilinearly; then also that to the coarser levels of the
+    /// image's MIP map, if the filter takes them.
     uv_map: Option<UvMap>,
+    coarser_maps: Vec<UvMap>,
 }
 
 impl Picture {
@@ -36,14 +41,25 @@ impl Picture {
         filter: TexelFilter,
         images: &[Image],
     ) -> Self {
-        let uv_map = |set, matrix| images.get(image).map(|image| UvMap::new(set, matrix, image, wraps));
-        let uv_map = match mapping {
-            _ if filter != TexelFilter::Bilinear => None,
-            Mapping::Uv { scale: [s, t], offset } => uv_map(0, [[s, 0.0, offset[0]], [0.0, t, offset[1]]]),
-            Mapping::Affine { set, matrix } => uv_map(set as usize, matrix),
+        let is_nearest = match filter {
+            TexelFilter::Bilinear => false,
+            TexelFilter::Nearest => true,
+            TexelFilter::Mip { filter, .. } => filter == MipFilter::Nearest,
+        };
+        let affine = match mapping {
+            Mapping::Uv { scale: [s, t], offset } => Some((0, [[s, 0.0, offset[0]], [0.0, t, offset[1]]])),
+            Mapping::Affine { set, matrix } => Some((set as usize, matrix)),
             _ => None,
         };
-        Self { image, mapping, wraps, filter, uv_map }
+        let (mut uv_map, mut coarser_maps) = (None, Vec::new());
+        if let (false, Some((set, matrix)), Some(image)) = (is_nearest, affine, images.get(image)) {
+            uv_map = Some(UvMap::new(set, matrix, [image.width, image.height], wraps));
+            if filter.takes_levels() {
+                coarser_maps =
+                    image.sizes_of_levels().map(|size| UvMap::new(set, matrix, size, wraps)).collect();
+            }
+        }
+        Self { image, mapping, wraps, filter, uv_map, coarser_maps }
     }
 }
 
@@ -131,7 +147,10 @@ impl Textures {
         // Pictures by texture coordinates are looked up side by side; lanes without one do what another does.
         let mut places = None;
         for (lane, picture) in pictures.iter().enumerate() {
-            let Some(Picture { image, wraps, uv_map: Some(map), .. }) = picture else { continue };
+            let Some(Picture { image, wraps, uv_map: Some(map), filter, .. }) = picture else { continue };
+            if filter.takes_levels() {
+                return self.look_up_levels(&pictures, points, texels);
+            }
             let (image, uv) = (&self.images[*image], map.uv(&points[lane]));
             places
                 .get_or_insert_with(|| Places::all_at(map, image, *wraps, uv))
@@ -140,9 +159,72 @@ impl Textures {
         if let Some(places) = places {
             *texels = places.look_up();
         }
+        self.look_up_others(&pictures, points, texels);
+    }
+
+    /// Pictures of which some are blended from levels of MIP maps.
+    #[inline(never)]
+    fn look_up_levels(
+        &self,
+        pictures: &[Option<&Picture>; LANES],
+        points: &[TexturePoint<'_>; LANES],
+        texels: &mut [[f32; 4]; LANES],
+    ) {
+        let (mut fine, mut coarse) = (None, None);
+        let mut levels = [Levels::FINEST; LANES];
+        let mut ellipses = 0;
         for (lane, picture) in pictures.iter().enumerate() {
-            if let Some(picture @ Picture { image, uv_map: None, .. }) = picture {
-                texels[lane] = self.footprint(picture, &points[lane]).blend(&self.images[*image]);
+            let Some(Picture { image, mapping, wraps, filter, uv_map: Some(finest), coarser_maps }) = picture
+            else {
+                continue;
+            };
+            let (mip_map, uv) = (self.mip_map(*image), finest.uv(&points[lane]));
+            if let TexelFilter::Mip { filter, footprint } = *filter {
+                match mip_map.levels(steps_of(mapping, footprint, &points[lane]), filter) {
+                    Some(blended) => levels[lane] = blended,
+                    None => {
+                        ellipses |= 1 << lane;
+                        continue;
+                    }
+                }
+            }
+            let Levels { fine: level, coarse: share } = levels[lane];
+            for (places, level) in [(&mut fine, level), (&mut coarse, level + usize::from(share > 0.0))] {
+                let map = level.checked_sub(1).map_or(finest, |coarser| &coarser_maps[coarser]);
+                let image = mip_map.level(level);
+                places
+                    .get_or_insert_with(|| Places::all_at(map, image, *wraps, uv))
+                    .set(lane, map, image, *wraps, uv);
+            }
+        }
+        if let (Some(fine), Some(coarse)) = (fine, coarse) {
+            *texels = fine.look_up();
+            if levels.iter().any(|levels| levels.coarse > 0.0) {
+                let coarse = coarse.look_up();
+                for (lane, levels) in levels.iter().enumerate().filter(|(_, levels)| levels.coarse > 0.0) {
+                    texels[lane] = levels.mixed(texels[lane], coarse[lane]);
+                }
+            }
+        }
+        for lane in LaneMask(ellipses) {
+            if let Some(picture) = pictures[lane] {
+                texels[lane] = self.look_up_alone(picture, &points[lane]);
+            }
+        }
+        self.look_up_others(pictures, points, texels);
+    }
+
+    /// Pictures that are not looked up side by side.
+    #[inline]
+    fn look_up_others(
+        &self,
+        pictures: &[Option<&Picture>; LANES],
+        points: &[TexturePoint<'_>; LANES],
+        texels: &mut [[f32; 4]; LANES],
+    ) {
+        for (lane, picture) in pictures.iter().enumerate() {
+            if let Some(picture @ Picture { uv_map: None, .. }) = picture {
+                texels[lane] = self.look_up_alone(picture, &points[lane]);
             }
         }
     }
@@ -150,17 +232,30 @@ impl Textures {
     /// The colour and opacity of a picture at a point, by its index.
     #[inline]
     pub(super) fn look_up(&self, picture: u32, at: &TexturePoint<'_>) -> [f32; 4] {
-        at.looked_up.and_then(|looked_up| looked_up.find(picture)).unwrap_or_else(|| {
-            let picture = &self.pictures[picture as usize];
-            self.footprint(picture, at).blend(&self.images[picture.image])
-        })
+        at.looked_up
+            .and_then(|looked_up| looked_up.find(picture))
+            .unwrap_or_else(|| self.look_up_alone(&self.pictures[picture as usize], at))
     }
 
     #[inline]
-    fn footprint(&self, picture: &Picture, at: &TexturePoint<'_>) -> Footprint {
+    fn look_up_alone(&self, picture: &Picture, at: &TexturePoint<'_>) -> [f32; 4] {
         let [s, t] = mapping::coordinates(&picture.mapping, at).as_vec3().truncate().to_array();
         // v runs up, rows run down.
-        Footprint::new(&self.images[picture.image], [s, 1.0 - t], picture.wraps, picture.filter)
+        let (image, st) = (&self.images[picture.image], [s, 1.0 - t]);
+        match picture.filter {
+            TexelFilter::Mip { filter, footprint } => {
+                let steps = steps_of(&picture.mapping, footprint, at);
+                self.mip_map(picture.image).look_up(st, steps, filter, picture.wraps)
+            }
+            TexelFilter::Bilinear | TexelFilter::Nearest => {
+                Footprint::new(image, st, picture.wraps, picture.filter).blend(image)
+            }
+        }
+    }
+
+    #[inline]
+    fn mip_map(&self, image: usize) -> MipMap<'_> {
+        MipMap { image: &self.images[image], coarser: &self.coarser_levels[image] }
     }
 
     /// Adds the pictures of a colour.
@@ -194,6 +289,12 @@ impl Textures {
     }
 }
 
+/// The steps in a picture, right and down, from one pixel of a width to the next; 0 for a point alone.
+fn steps_of(mapping: &Mapping, footprint: f32, at: &TexturePoint<'_>) -> [Vec2; 2] {
+    let steps = mapping::changes(mapping, at).unwrap_or_default();
+    steps.map(|step| footprint * Vec2::new(step.x as f32, -step.y as f32))
+}
+
 #[cfg(test)]
 mod tests {
     use lookfrom_scene::image::Image;
@@ -203,6 +304,7 @@ mod tests {
 
     use super::*;
     use crate::core::hash;
+    use crate::shading::footprint::SurfaceFootprint;
 
     #[test]
     fn eight_at_once_are_eight_one_by_one() {
@@ -211,35 +313,51 @@ mod tests {
             Image::from_bytes("", 7, 5, bytes, lookfrom_scene::image::Encoding::Srgb),
             Image::from_linear("", 3, 2, (0..6).map(|k| [k as f32, -1.0, 0.1]).collect()),
         ];
-        let kinds: Vec<TextureKind> = (0..8)
+        const MIP: fn(MipFilter) -> TexelFilter = |filter| TexelFilter::Mip { filter, footprint: 0.5 };
+        let filters = [
+            TexelFilter::Bilinear,
+            TexelFilter::Nearest,
+            MIP(MipFilter::Nearest),
+            MIP(MipFilter::Bilinear),
+            MIP(MipFilter::Trilinear),
+            MIP(MipFilter::Ewa { anisotropy: 4.0 }),
+        ];
+        let kinds: Vec<TextureKind> = (0..36)
             .map(|k| TextureKind::Image {
                 image: ImageId(k % 2),
                 mapping: match k % 3 {
                     0 => Mapping::Uv { scale: [1.0 + (k / 2) as f32; 2], offset: [0.25; 2] },
-                    1 => Mapping::Affine { set: k / 3, matrix: [[0.5, 1.0, -0.25], [2.0, -0.5, 0.75]] },
+                    1 => Mapping::Affine { set: k / 18, matrix: [[0.5, 1.0, -0.25], [2.0, -0.5, 0.75]] },
                     _ => Mapping::Spherical { texture_from_world: glam::DMat4::IDENTITY },
                 },
-                wrap: [[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black][k as usize / 2]; 2],
-                filter: [TexelFilter::Bilinear, TexelFilter::Nearest][k as usize / 4],
+                wrap: [[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black][k as usize / 2 % 4]; 2],
+                filter: filters[k as usize / 3 % 6],
                 channel: Channel::Rgb,
                 scale: 1.0,
                 invert: false,
             })
             .collect();
         let textures = Textures::new(&kinds, images, Vec::new(), ColorMode::Rgb);
-        for round in 0..500 {
+        for round in 0..2000 {
             let number = |k: u64| (hash::pair(round, k) >> 40) as f32 / 1_048_576.0 - 8.0;
+            let step = |k: u64| 0.1 * number(k) * libm::exp2f(number(k + 1));
+            let steps = |k: u64| [Vec2::new(step(k), step(k + 2)), Vec2::new(step(k + 4), step(k + 6))];
             let points: [_; LANES] = std::array::from_fn(|lane| TexturePoint {
-                uv: glam::Vec2::new(number(2 * lane as u64), number(2 * lane as u64 + 1)),
-                more_uvs: [glam::Vec2::splat(number(100 + lane as u64)); super::super::MORE_UV_SETS],
+                uv: Vec2::new(number(2 * lane as u64), number(2 * lane as u64 + 1)),
+                more_uvs: [Vec2::splat(number(100 + lane as u64)); super::super::MORE_UV_SETS],
                 world: glam::DVec3::new(0.5, f64::from(number(200 + lane as u64)), 1.0),
+                footprint: (lane != 3).then(|| SurfaceFootprint {
+                    uv: steps(300 + 20 * lane as u64),
+                    p: steps(500 + 20 * lane as u64).map(|step| step.extend(0.1)),
+                }),
                 ..TexturePoint::NOWHERE
             });
+            let first = (round % 36) as u32;
             let sets: [_; LANES] = std::array::from_fn(|lane| {
                 let mut set = PictureSet::EMPTY;
                 for k in 0..lane as u32 % 4 {
                     textures.add_pictures_of_float(
-                        FloatTexture::Texture(TextureId((lane as u32 + 3 * k) % 8)),
+                        FloatTexture::Texture(TextureId((first + 5 * lane as u32 + 3 * k) % 36)),
                         &mut set,
                     );
                 }

@@ -1,8 +1,9 @@
 //! Texture mappings.
 
 use std::f32::consts::PI;
+use std::f64::consts::PI as PI_F64;
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use lookfrom_scene::texture::Mapping;
 use lookfrom_simd::Float;
 
@@ -44,6 +45,42 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
         Mapping::World { texture_from_world } => texture_from_world.transform_point3(at.world),
     };
     p.to_array().map(bounded).into()
+}
+
+/// How far [`coordinates`] move from one pixel to the next, in x and in y: always finite. `None` without a footprint, and of
+/// further sets of texture coordinates.
+pub(super) fn changes(mapping: &Mapping, at: &TexturePoint) -> Option<[DVec3; 2]> {
+    let footprint = at.footprint?;
+    // By the position in texture space, and its changes.
+    let by_position = |matrix: &DMat4, change: &dyn Fn(DVec3, DVec3) -> DVec3| {
+        let p = matrix.transform_point3(at.world);
+        footprint.p.map(|step| change(p, matrix.transform_vector3(step.as_dvec3())))
+    };
+    // Of the azimuth, in turns.
+    let around = |p: DVec3, d: DVec3| (p.x * d.y - p.y * d.x) / (p.x * p.x + p.y * p.y) / (2.0 * PI_F64);
+    let changes = match mapping {
+        Mapping::Uv { scale, .. } => {
+            footprint.uv.map(|step| (step * Vec2::from_array(*scale)).as_dvec2().extend(0.0))
+        }
+        Mapping::Affine { set: 0, matrix } => footprint.uv.map(|step| {
+            let [s, t] = matrix.map(|[of_u, of_v, _]| of_u * step.x + of_v * step.y);
+            DVec3::new(s.into(), t.into(), 0.0)
+        }),
+        Mapping::Affine { .. } => return None,
+        Mapping::Spherical { texture_from_world } => by_position(texture_from_world, &|p, d| {
+            let squared = p.x * p.x + p.y * p.y;
+            let down = p.z * (p.x * d.x + p.y * d.y) - squared * d.z;
+            DVec3::new(down / ((squared + p.z * p.z) * squared.sqrt()) / PI_F64, around(p, d), 0.0)
+        }),
+        Mapping::Cylindrical { texture_from_world } => {
+            by_position(texture_from_world, &|p, d| DVec3::new(around(p, d), d.z, 0.0))
+        }
+        Mapping::Planar { texture_from_world, axes, .. } => by_position(texture_from_world, &|_, d| {
+            DVec2::from_array(axes.map(|axis| d.dot(axis.as_dvec3()))).extend(0.0)
+        }),
+        Mapping::World { texture_from_world } => by_position(texture_from_world, &|_, d| d),
+    };
+    Some(changes.map(|change| change.to_array().map(bounded).into()))
 }
 
 /// A coordinate within the bounds of [`coordinates`]; 0 for NaN.

@@ -21,6 +21,7 @@ pub(super) enum Node {
     Checker {
         even: Input,
         odd: Input,
+        footprint: f32,
         mapping: Mapping,
     },
     Noise {
@@ -62,14 +63,17 @@ pub(super) enum Node {
     Fbm {
         octaves: u32,
         roughness: f32,
+        footprint: f32,
         mapping: Mapping,
     },
     Wrinkled {
         octaves: u32,
         roughness: f32,
+        footprint: f32,
         mapping: Mapping,
     },
     Windy {
+        footprint: f32,
         mapping: Mapping,
     },
     PbrtMarble {
@@ -77,6 +81,7 @@ pub(super) enum Node {
         roughness: f32,
         scale: f32,
         variation: f32,
+        footprint: f32,
         mapping: Mapping,
     },
     VertexColor {
@@ -123,8 +128,8 @@ impl Node {
                 });
                 Self::Image { picture: known as u32, channel, scale, invert }
             }
-            TextureKind::Checker { even, odd, mapping } => {
-                Self::Checker { even: input(even), odd: input(odd), mapping }
+            TextureKind::Checker { even, odd, footprint, mapping } => {
+                Self::Checker { even: input(even), odd: input(odd), footprint, mapping }
             }
             TextureKind::Noise { low, high, octaves, mapping } => {
                 Self::Noise { low: input(low), high: input(high), octaves, mapping }
@@ -145,13 +150,15 @@ impl Node {
             TextureKind::Dots { inside, outside, mapping } => {
                 Self::Dots { inside: input(inside), outside: input(outside), mapping }
             }
-            TextureKind::Fbm { octaves, roughness, mapping } => Self::Fbm { octaves, roughness, mapping },
-            TextureKind::Wrinkled { octaves, roughness, mapping } => {
-                Self::Wrinkled { octaves, roughness, mapping }
+            TextureKind::Fbm { octaves, roughness, footprint, mapping } => {
+                Self::Fbm { octaves, roughness, footprint, mapping }
             }
-            TextureKind::Windy { mapping } => Self::Windy { mapping },
-            TextureKind::PbrtMarble { octaves, roughness, scale, variation, mapping } => {
-                Self::PbrtMarble { octaves, roughness, scale, variation, mapping }
+            TextureKind::Wrinkled { octaves, roughness, footprint, mapping } => {
+                Self::Wrinkled { octaves, roughness, footprint, mapping }
+            }
+            TextureKind::Windy { footprint, mapping } => Self::Windy { footprint, mapping },
+            TextureKind::PbrtMarble { octaves, roughness, scale, variation, footprint, mapping } => {
+                Self::PbrtMarble { octaves, roughness, scale, variation, footprint, mapping }
             }
             TextureKind::VertexColor { tint } => Self::VertexColor { tint },
             TextureKind::VertexAlpha => Self::VertexAlpha,

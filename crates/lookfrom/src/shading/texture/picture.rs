@@ -42,7 +42,8 @@ impl Footprint {
                     weights: [weight, 0.0, 0.0, 0.0],
                 }
             }
-            TexelFilter::Bilinear => {
+            // Without a footprint a MIP map is its finest level.
+            TexelFilter::Bilinear | TexelFilter::Mip { .. } => {
                 // texel centres are at halves
                 let ((x, fx), (y, fy)) = (split(x - 0.5), split(y - 0.5));
                 let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
@@ -99,7 +100,7 @@ fn split(x: f32) -> (i32, f32) {
 }
 
 /// The column (or row) after wrapping; `None` for a black one outside.
-fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<u32> {
+pub(super) fn wrapped(x: i32, size: u32, wrap: Wrap) -> Option<u32> {
     // Without a division in the common case.
     if x >= 0 && (x as u32) < size {
         return Some(x as u32);

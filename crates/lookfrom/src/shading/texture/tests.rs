@@ -115,8 +115,9 @@ fn a_scaled_picture_is_clamped_after_its_scale() {
 
 #[test]
 fn a_checker_alternates() {
-    let checker =
-        |mapping| only(TextureKind::Checker { even: Color::gray(1.0), odd: Color::gray(0.0), mapping });
+    let checker = |mapping| {
+        only(TextureKind::Checker { even: Color::gray(1.0), odd: Color::gray(0.0), footprint: 0.0, mapping })
+    };
     let squares = checker(Mapping::UV);
     let found = [(0.5, 0.5), (1.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)].map(|(u, v)| number(&squares, &at(u, v)));
     assert_eq!(found, [1.0, 0.0, 0.0, 1.0]);
@@ -210,16 +211,22 @@ fn dots_are_round_and_stay_in_their_cells() {
 fn patterns_of_noise() {
     let p = Vec3::new(3.3, -0.4, 7.9);
     let here = in_world(3.3, -0.4, 7.9);
-    let fbm = only(TextureKind::Fbm { octaves: 5, roughness: 0.7, mapping: WORLD });
+    let fbm = only(TextureKind::Fbm { octaves: 5, roughness: 0.7, footprint: 0.0, mapping: WORLD });
     assert_eq!(number(&fbm, &here), perlin::fbm(p, 0.7, 5));
-    let wrinkled = only(TextureKind::Wrinkled { octaves: 5, roughness: 0.7, mapping: WORLD });
+    let wrinkled = only(TextureKind::Wrinkled { octaves: 5, roughness: 0.7, footprint: 0.0, mapping: WORLD });
     assert_eq!(number(&wrinkled, &here), perlin::turbulence(p, 0.7, 5));
-    let windy = only(TextureKind::Windy { mapping: WORLD });
+    let windy = only(TextureKind::Windy { footprint: 0.0, mapping: WORLD });
     assert_eq!(number(&windy, &here), perlin::fbm(0.1 * p, 0.5, 3).abs() * perlin::fbm(p, 0.5, 6));
 
     // Without variation the marble's colours are those of the palette's curve.
-    let kind =
-        TextureKind::PbrtMarble { octaves: 8, roughness: 0.5, scale: 2.0, variation: 0.0, mapping: WORLD };
+    let kind = TextureKind::PbrtMarble {
+        octaves: 8,
+        roughness: 0.5,
+        scale: 2.0,
+        variation: 0.0,
+        footprint: 0.0,
+        mapping: WORLD,
+    };
     let marble = only(kind);
     let rgb = |y| marble.rgb_of(Color::Texture(FIRST), SpectrumType::Albedo, &in_world(0.0, y, 0.0));
     let near = |found: [f32; 3], expected: [f32; 3]| {
@@ -299,15 +306,22 @@ fn nothing_is_nan_anywhere() {
     ];
     for mapping in mappings {
         let mut kinds = vec![
-            TextureKind::Checker { even: a, odd: b, mapping },
+            TextureKind::Checker { even: a, odd: b, footprint: 0.0, mapping },
             TextureKind::Noise { low: a, high: b, octaves, mapping },
             TextureKind::Marble { vein: a, base: b, octaves, turbulence: 3.0, mapping },
             TextureKind::Bilinear { corners: [a, b, a, b], mapping },
             TextureKind::Dots { inside: a, outside: b, mapping },
-            TextureKind::Fbm { octaves, roughness, mapping },
-            TextureKind::Wrinkled { octaves, roughness, mapping },
-            TextureKind::Windy { mapping },
-            TextureKind::PbrtMarble { octaves, roughness, scale: 1.0, variation: 0.2, mapping },
+            TextureKind::Fbm { octaves, roughness, footprint: 0.0, mapping },
+            TextureKind::Wrinkled { octaves, roughness, footprint: 0.0, mapping },
+            TextureKind::Windy { footprint: 0.0, mapping },
+            TextureKind::PbrtMarble {
+                octaves,
+                roughness,
+                scale: 1.0,
+                variation: 0.2,
+                footprint: 0.0,
+                mapping,
+            },
         ];
         for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp, Wrap::Black] {
             for filter in [TexelFilter::Bilinear, TexelFilter::Nearest] {

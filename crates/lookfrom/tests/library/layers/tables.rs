@@ -39,9 +39,9 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("lens_system", "lanes vector"),
     ("camera", "lanes lens_system math vector warp"),
     ("interior_stack", ""),
-    ("texture", "color hash lanes noise spectrum vector"),
+    ("footprint", "hash lanes vector"),
+    ("texture", "color footprint hash lanes noise spectrum vector"),
     ("interaction", "interior_stack math points texture"),
-    ("footprint", "interaction texture"),
     (
         "material",
         "bsdf bssrdf color elementary footprint interior_stack math optics points spectrum interaction texture vector warp",
@@ -66,8 +66,8 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("view", "camera"),
     (
         "integrator",
-        "aov bsdf bssrdf elementary hash interior_stack lanes light material math medium optics points sampler primitive \
-         spectrum interaction texture vector warp world",
+        "aov bsdf bssrdf elementary footprint hash interior_stack lanes light material math medium optics points sampler \
+         primitive spectrum interaction texture vector warp world",
     ),
     (
         "render",

@@ -91,3 +91,50 @@ fn noise_is_finite_everywhere() {
         }
     }
 }
+
+#[test]
+fn octaves_are_left_out_by_their_detail() {
+    let p = Vec3::new(0.3, 5.7, -1.1);
+    assert_eq!(fbm(p, 0.5, Octaves::new(6, 0.0)), fbm(p, 0.5, 6));
+    assert_eq!(turbulence(p, 0.5, Octaves::new(6, 1e-9)), turbulence(p, 0.5, 6));
+    assert_eq!(fbm(p, 0.5, Octaves::new(6, 4.0)), 0.0);
+    // The first three are whole from a width of 2⁻⁴ on; a fourth comes smoothly.
+    assert_eq!(fbm(p, 0.5, Octaves::new(6, 0.0624)), fbm(p, 0.5, 3));
+    assert_eq!(fbm(p, 0.5, Octaves::new(6, libm::exp2f(-4.75))), fbm(p, 0.5, 4));
+    let mut before = fbm(p, 0.5, Octaves::new(8, 2.0));
+    for k in 0..1000 {
+        let next = fbm(p, 0.5, Octaves::new(8, libm::exp2f(1.0 - 0.01 * k as f32)));
+        assert!((next - before).abs() < 0.03, "{next} after {before} at {k}");
+        before = next;
+    }
+    assert_eq!(before, fbm(p, 0.5, 8));
+}
+
+/// pbrt-v4's `Turbulence` as it is written: the octave that is faded counts once more among those that are left out.
+fn slow_turbulence(p: Vec3, roughness: f64, octaves: u32, detail: f64) -> f64 {
+    let count = (-1.0 - 0.5 * libm::log2(detail * detail)).clamp(0.0, f64::from(octaves));
+    let (mut sum, mut frequency, mut strength) = (0.0, 1.0_f32, 1.0);
+    for _ in 0..count as u32 {
+        sum += strength * f64::from(noise(frequency * p).abs());
+        (frequency, strength) = (1.99 * frequency, roughness * strength);
+    }
+    let t = ((count.fract() - 0.3) / 0.4).clamp(0.0, 1.0);
+    let smooth = t * t * (3.0 - 2.0 * t);
+    sum += strength * (0.2 * (1.0 - smooth) + smooth * f64::from(noise(frequency * p).abs()));
+    for _ in count as u32..octaves {
+        sum += 0.2 * strength;
+        strength *= roughness;
+    }
+    sum
+}
+
+#[test]
+fn turbulence_has_the_mean_of_octaves_that_are_left_out() {
+    for k in 0..5000 {
+        let p = Vec3::new(0.37, 0.73, 0.19) * k as f32;
+        let detail = libm::exp2f((k % 200) as f32 / 16.0 - 10.0);
+        let found = f64::from(turbulence(p, 0.6, Octaves::new(7, detail)));
+        let expected = slow_turbulence(p, 0.6, 7, detail.into());
+        assert!((found - expected).abs() < 1e-4, "{found} {expected} at {detail}");
+    }
+}

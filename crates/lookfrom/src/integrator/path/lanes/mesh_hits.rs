@@ -15,6 +15,7 @@ use crate::integrator::wavefront::{Boundary, Eight};
 use crate::integrator::{Event, Integrator, Probe, SampleStream};
 use crate::primitive::Mesh;
 use crate::shading::bsdf::BsdfClass;
+use crate::shading::footprint::PixelFootprint;
 use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext};
 use crate::shading::texture::{LookUps, TexturePoint};
 use crate::world::World;
@@ -71,6 +72,8 @@ pub(super) struct MeshHits<'a> {
     pub(super) vary: bool,
     /// Lanes of camera rays whose surfaces AOVs need.
     pub(super) are_first: u32,
+    /// The pixels of the camera, if any material depends on their footprint.
+    pub(super) pixels: Option<&'a PixelFootprint>,
 }
 
 impl PathTracer {
@@ -89,7 +92,7 @@ impl PathTracer {
         let hits = &mesh_hits.hits;
 
         // Find the points; paths from the camera pass the back faces of single-sided meshes.
-        MeshKernel { mesh_hits: &mesh_hits, points }.set_points();
+        MeshKernel { world, mesh_hits: &mesh_hits, points }.set_points();
         let active = self.pass_back_faces(batch, eight.paths, (hits, points.front), output);
         if active == 0 {
             return;
@@ -197,7 +200,9 @@ impl<'a> MeshHits<'a> {
         let hits = by_lane!(lane => batch.mesh_hit(indices[lane.min(indices.len() - 1)])?);
         let vary = hits.iter().any(|hit| hit.material.varies);
         let are_first = if wants_first { bitmask(&by_lane!(lane => hits[lane].path.is_root())) } else { 0 };
-        Some(Self { hits, vary, are_first })
+        let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
+        let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
+        Some(Self { hits, vary, are_first, pixels })
     }
 
     /// The texture points of materials that vary, with what their pictures are there, if any does.
@@ -205,7 +210,7 @@ impl<'a> MeshHits<'a> {
     fn texture_points<'b>(
         &self,
         world: &'b World,
-        MeshPoints { surfaces, uv, .. }: &MeshPoints,
+        MeshPoints { surfaces, uv, footprints, .. }: &MeshPoints,
         look_ups: &'b mut Option<LookUps>,
     ) -> Option<[TexturePoint<'b>; LANES]>
     where
@@ -218,6 +223,9 @@ impl<'a> MeshHits<'a> {
         for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
             let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
             points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
+            if self.pixels.is_some() && hit.material.needs_footprint {
+                points[lane].footprint = Some(footprints.of(lane));
+            }
         }
         let pictures = by_lane!(lane => &self.hits[lane].material.pictures);
         *look_ups = world.textures.look_up_lanes(&pictures, &points);

@@ -5,11 +5,13 @@ use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*};
 use super::bent_frames::BentFrames;
 use super::mesh_hits::MeshHits;
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, by_lane, gather, shade_together, store};
+use crate::core::lanes::{Columns, by_lane, gather, row, shade_together, store};
 use crate::core::points::Lift;
 use crate::core::vector::Vector;
 use crate::primitive::points_on_meshes;
+use crate::shading::footprint::{Changes, SurfaceFootprint};
 use crate::shading::material::frame_about;
+use crate::world::World;
 
 /// The points of eight hits, in the frames of materials without bump mapping.
 #[derive(Default)]
@@ -22,10 +24,33 @@ pub(super) struct MeshPoints {
     pub(super) smooth: u32,
     /// The frames of materials that bend them.
     pub(super) bent: BentFrames,
+    /// The footprints of pixels, where materials depend on them.
+    pub(super) footprints: Footprints,
+}
+
+/// [`SurfaceFootprint`]s.
+#[derive(Default)]
+pub(super) struct Footprints {
+    uv: [Columns<2>; 2],
+    p: [Columns<3>; 2],
+}
+
+impl Footprints {
+    fn set<S: Simd>(&mut self, Changes { uv: [x, y], p }: Changes<f32x8<S>>) {
+        self.uv = [[x[0].into(), x[1].into()], [y[0].into(), y[1].into()]];
+        self.p = [store(p[0]), store(p[1])];
+    }
+
+    /// That in a lane.
+    pub(super) fn of(&self, lane: usize) -> SurfaceFootprint {
+        let uv = [row(&self.uv[0], lane).into(), row(&self.uv[1], lane).into()];
+        SurfaceFootprint { uv, p: [row(&self.p[0], lane).into(), row(&self.p[1], lane).into()] }
+    }
 }
 
 /// Finds the points of hits.
 pub(super) struct MeshKernel<'a> {
+    pub(super) world: &'a World,
     pub(super) mesh_hits: &'a MeshHits<'a>,
     pub(super) points: &'a mut MeshPoints,
 }
@@ -42,7 +67,7 @@ impl Kernel for MeshKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { mesh_hits: MeshHits { hits, vary, are_first }, points } = self;
+        let Self { world, mesh_hits: MeshHits { hits, vary, are_first, pixels }, points } = self;
         let are_first = *are_first != 0;
         let at = points_on_meshes(
             simd,
@@ -70,6 +95,12 @@ impl Kernel for MeshKernel<'_> {
             let dpdv: Vector<f32x8<S>> = Vector::narrow(at.shading_dpdv);
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
             points.bent.dpdv = store(dpdv);
+        }
+        if let Some(pixels) = pixels {
+            let like = at.ng.x;
+            let position = Vector::splat(like, world.origin.to_array()) + at.points.position;
+            let derivatives = [Vector::narrow(at.dpdu), Vector::narrow(at.dpdv)];
+            points.footprints.set(pixels.changes::<f32x8<S>>(position, at.ng, derivatives));
         }
     }
 }

@@ -20,10 +20,10 @@ impl UvMap {
     pub(super) fn new(
         set: usize,
         [[a, b, c], [d, e, f]]: [[f32; 3]; 2],
-        image: &Image,
+        size: [u32; 2],
         wraps: [Wrap; 2],
     ) -> Self {
-        let [width, height] = signed_size(image, wraps);
+        let [width, height] = signed_size(size, wraps);
         Self { set, numbers: [a, b, c, d, e, f, width, height] }
     }
 

@@ -15,7 +15,7 @@ pub(crate) fn look_up_lanes<S: Simd>(
     st: [f32x8<S>; 2],
     wraps: [Wrap; 2],
 ) -> [[f32; 4]; LANES] {
-    let [width, height] = signed_size(image, wraps);
+    let [width, height] = signed_size([image.width, image.height], wraps);
     let signed_size = [f32x8::splat(simd, width), f32x8::splat(simd, height)];
     look_up_each(simd, &[image; LANES], signed_size, &[wraps; LANES], st)
 }
@@ -65,8 +65,8 @@ pub(in crate::shading::texture) fn look_up_each<S: Simd>(
 
 /// Width and height of an image; negative along axes in which it repeats.
 #[inline]
-pub(in crate::shading::texture) fn signed_size(image: &Image, wraps: [Wrap; 2]) -> [f32; 2] {
-    let [width, height] = [image.width as f32, image.height as f32];
+pub(in crate::shading::texture) fn signed_size(size: [u32; 2], wraps: [Wrap; 2]) -> [f32; 2] {
+    let [width, height] = size.map(|size| size as f32);
     let sign = |wrap| if wrap == Wrap::Repeat { -1.0 } else { 1.0 };
     [sign(wraps[0]) * width, sign(wraps[1]) * height]
 }
