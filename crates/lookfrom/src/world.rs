@@ -7,6 +7,7 @@
 mod catcher;
 mod class;
 mod compile;
+mod instance;
 mod lights;
 mod medium;
 mod memory;
@@ -18,15 +19,15 @@ mod sides;
 
 use class::Class;
 pub(crate) use compile::Kept;
+pub(crate) use instance::Instance;
+pub use instance::PlacedInstance;
 
 use std::sync::Arc;
 
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Affine, Bvh, Hit, NONE, OriginPrimitive, Point, Ray};
+use glam::{DMat3, DVec3, Vec2, Vec3};
+use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::scene::MediumId;
 
-use crate::core::math;
-use crate::core::points::{Points, StoredPlacement, amplification};
 use crate::core::spectrum::Spectrum;
 use crate::light::{ChosenLight, IncompletePdf, Light, LightChoice, LightSample, LightSampleContext};
 use crate::medium::Medium;
@@ -111,30 +112,6 @@ pub struct Names {
     pub lights: Vec<String>,
 }
 
-/// An instance of an object: what the kernel does not know of it. There may be millions.
-#[derive(Clone, Debug)]
-pub(crate) struct Instance {
-    /// Index into the world's objects.
-    pub(crate) object: u32,
-    /// Replaces the materials of the object.
-    pub(crate) material: Option<u32>,
-    /// Whether it moves, or something in its object does.
-    pub(crate) moves: bool,
-    /// From render space to the object's; of an instance that moves when the shutter opens.
-    object_from_render: Affine,
-    /// The amplification of errors by both maps.
-    amplification: [[f64; 3]; 3],
-}
-
-/// An instance in its place, at a time.
-#[derive(Clone, Copy, Debug)]
-pub struct PlacedInstance<'a> {
-    pub(crate) instance: &'a Instance,
-    render_from_object: Affine,
-    object_from_render: Affine,
-    amplification: [[f64; 3]; 3],
-}
-
 impl World {
     /// The origin of render space, in the world.
     pub fn origin(&self) -> DVec3 {
@@ -174,31 +151,6 @@ impl World {
         }
         let placed = self.instance(hit.instance, time);
         (&self.objects[placed.instance.object as usize][hit.geometry as usize], Some(placed))
-    }
-
-    /// An instance, by the kernel's id, at a time.
-    pub(crate) fn instance(&self, id: u32, time: f32) -> PlacedInstance<'_> {
-        let instance = &self.instances[id as usize];
-        match self.bvh.instance_map_at(id, time) {
-            None => {
-                let Instance { object_from_render, amplification, .. } = *instance;
-                let render_from_object = *self.bvh.instance_map(id);
-                PlacedInstance { instance, render_from_object, object_from_render, amplification }
-            }
-            Some(render_from_object) => {
-                let object_from_render = inverse(&render_from_object);
-                let amplification = amplification(&render_from_object);
-                PlacedInstance { instance, render_from_object, object_from_render, amplification }
-            }
-        }
-    }
-
-    /// The placement of an instance that stands still.
-    #[inline]
-    fn standing_placement(&self, id: u32) -> StoredPlacement<'_> {
-        let Instance { object_from_render, amplification, .. } = &self.instances[id as usize];
-        let affine = self.bvh.instance_map(id);
-        StoredPlacement { affine, inverse: &object_from_render.matrix, amplification }
     }
 
     /// The surface interaction of `ray` at `hit`; of what moves when the shutter opens.
@@ -445,63 +397,5 @@ impl World {
     /// The illuminant spectrum of a colour.
     pub fn light_of(&self, rgb: [f32; 3], mode: &SpectralMode) -> Spectrum {
         spectrum_of(rgb, SpectrumType::Illuminant, mode)
-    }
-}
-
-impl Instance {
-    /// An instance with a map from the object's space to render space.
-    fn new(object: u32, material: Option<u32>, render_from_object: &Affine, moves: bool) -> Self {
-        let object_from_render = inverse(render_from_object);
-        Self { object, material, moves, object_from_render, amplification: amplification(render_from_object) }
-    }
-}
-
-fn inverse(map: &Affine) -> Affine {
-    math::affine(&math::matrix(map).inverse())
-}
-
-impl PlacedInstance<'_> {
-    /// From the object's space to render space.
-    pub fn render_from_object(&self) -> DMat4 {
-        math::matrix(&self.render_from_object)
-    }
-
-    /// The inverse.
-    pub fn object_from_render(&self) -> DMat4 {
-        math::matrix(&self.object_from_render)
-    }
-
-    /// A ray's origin and direction in the object's space; its t stays the same.
-    pub fn in_object(&self, origin: DVec3, direction: DVec3) -> (DVec3, DVec3) {
-        let to_object = self.object_from_render();
-        (to_object.transform_point3(origin), to_object.transform_vector3(direction))
-    }
-
-    /// A surface point of the object, in render space.
-    fn place(&self, of_object: SurfacePoint) -> SurfacePoint {
-        let stored = StoredPlacement {
-            affine: &self.render_from_object,
-            inverse: &self.object_from_render.matrix,
-            amplification: &self.amplification,
-        };
-        let placement = stored.placement();
-        let vector = |v: DVec3| placement.vector(v.into()).into();
-        let normal = |n: DVec3| placement.normal(n.into()).normalize().into();
-        let mut binding = of_object.binding;
-        binding.material = self.instance.material.unwrap_or(binding.material);
-        let Point { position, error } = of_object.point;
-        let points = Points { position: position.into(), error: error.into() }.placed(&placement);
-        SurfacePoint {
-            point: Point { position: points.position.into(), error: points.error.into() },
-            ng: normal(of_object.ng),
-            ns: normal(of_object.ns),
-            dpdu: vector(of_object.dpdu),
-            dpdv: vector(of_object.dpdv),
-            shading_dpdu: vector(of_object.shading_dpdu),
-            shading_dpdv: vector(of_object.shading_dpdv),
-            lift: vector(of_object.lift),
-            binding,
-            ..of_object
-        }
     }
 }
