@@ -43,6 +43,12 @@ fn check(part: &Part, scene: &Scene) {
                 assert!(sphere.center.is_finite() && sphere.radius > 0.0 && sphere.radius.is_finite());
             }
         }
+        Geometry::Curves(strands) => {
+            for strand in &**strands {
+                assert!(strand.points.iter().all(|point| point.is_finite()));
+                assert!(strand.width.iter().all(|width| *width > 0.0 && width.is_finite()));
+            }
+        }
         other => panic!("a model file has no {other:?}"),
     }
 }

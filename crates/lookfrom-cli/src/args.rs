@@ -180,7 +180,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl), folders of them, or - for one from stdin
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl, .hair), folders of them, or - for one from stdin
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -265,7 +265,7 @@ impl RenderArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml, .pbrt), models (.gltf, .glb, .obj, .ply, .stl) or pictures and films (.exr)
+    /// Scenes (.toml, .pbrt), models (.gltf, .glb, .obj, .ply, .stl, .hair) or pictures and films (.exr)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -324,7 +324,7 @@ pub(crate) struct CompareArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchArguments {
-    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl)
+    /// Scenes (.toml, .pbrt) or models (.gltf, .glb, .obj, .ply, .stl, .hair)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -458,7 +458,7 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     pub(crate) lookat: Option<DVec3>,
 
-    /// Up vector of the camera, and of a model's studio and floor: an axis (z, -y) or any direction [default for STL: z]
+    /// Up vector of the camera, and of a model's studio and floor: an axis (z, -y) or any direction [default for STL and HAIR: z]
     #[arg(long, value_name = "AXIS|X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) up: Option<DVec3>,
 

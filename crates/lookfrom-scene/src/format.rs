@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::model::{number, scan, text};
-use crate::{packed, stl};
+use crate::{hair, packed, stl};
 
 /// A format of scenes or models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +14,7 @@ pub(crate) enum Format {
     Ply,
     Stl,
     Obj,
+    Hair,
 }
 
 /// A row of the table of formats.
@@ -33,6 +34,7 @@ const FORMATS: &[Row] = &[
     Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
     Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: is_gltf },
     Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
+    Row { format: Format::Hair, extensions: &["hair"], may_be_packed: true, sniff: hair::is_hair },
     Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
     Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
 ];
@@ -62,7 +64,7 @@ impl Format {
 
     /// Whether it is one of models that have neither a camera nor lights.
     pub(crate) fn is_model(self) -> bool {
-        matches!(self, Self::Obj | Self::Ply | Self::Stl)
+        matches!(self, Self::Obj | Self::Ply | Self::Stl | Self::Hair)
     }
 
     /// Whether files may be compressed.

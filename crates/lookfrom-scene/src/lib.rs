@@ -24,6 +24,7 @@ mod format;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 pub mod grid;
+pub mod hair;
 pub mod ies;
 pub mod image;
 pub mod inputs;

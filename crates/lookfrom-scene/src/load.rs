@@ -78,7 +78,7 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         }
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
-        Some(Format::Obj | Format::Ply | Format::Stl) => scene_of_model(&source, context),
+        Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => scene_of_model(&source, context),
         None if is_stream(path, context) => toml::from_bytes(&source.bytes, path, context),
         None => Err(unknown_format(path)),
     }
@@ -91,8 +91,8 @@ fn scene_of_model(source: &Source<'_>, context: &mut LoadContext<'_>) -> Result<
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
     let parts = model::of_source(source, context, &mut scene)?;
     let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
-    // Programs for construction and for printers put parts onto the plane of x and y.
-    let is_custom = source.format == Some(Format::Stl);
+    // Programs for construction and for printers put parts onto the plane of x and y, and heads of hair look along it.
+    let is_custom = matches!(source.format, Some(Format::Stl | Format::Hair));
     let is_odd = is_custom && model::stand::stands_on_y(points);
     scene.z_is_up = is_custom && !is_odd;
     if is_odd {
@@ -144,7 +144,7 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         Some(Format::Gltf) => gltf::model(source.bytes, path, context, scene),
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
-        Some(Format::Obj | Format::Ply | Format::Stl) => {
+        Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => {
             Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
         }
         Some(Format::Pbrt) => Err(of_pbrt()),
@@ -158,7 +158,7 @@ fn unknown_format(path: &Path) -> Error {
 
 fn unsupported(path: &Path, message: &str) -> Error {
     Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply or .stl")
+        .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply, .stl or .hair")
 }
 
 /// The refusal of a format whose reader was not compiled.

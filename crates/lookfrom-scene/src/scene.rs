@@ -58,7 +58,7 @@ pub struct Scene {
     pub source_format: SourceFormat,
     /// The use of vertex normals.
     pub vertex_normals: VertexNormals,
-    /// Whether z is up by the custom of its format, not y: of STL, without a camera that says so.
+    /// Whether z is up by the custom of its format, not y: of STL and HAIR files, without a camera that says so.
     pub z_is_up: bool,
     /// The animations, variants, cameras and scenes of the file.
     pub contents: Contents,

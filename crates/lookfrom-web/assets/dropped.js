@@ -4,7 +4,7 @@ import { unzip } from "./zip.js";
 
 /** @typedef {import("./worker-transport.js").File} File */
 
-const SCENES = [/\.toml$/i, /\.pbrt$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl)$/i];
+const SCENES = [/\.toml$/i, /\.pbrt$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl|hair)$/i];
 const PICTURE = /\.(exr|hdr|pfm|png|jpe?g|webp|gif|bmp|tga|tiff?)$/i;
 
 /** Whether a file is a picture. @param {string} path */

@@ -31,7 +31,7 @@ Give the same options as for the render: they determine the rays of the sample."
 
 #[derive(Args, Debug)]
 pub(crate) struct InspectArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl)
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 

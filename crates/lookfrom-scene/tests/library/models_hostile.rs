@@ -24,6 +24,16 @@ const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex
     endsolid a\nsolid b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 1\nvertex 1 1 1\nvertex 0 1 1\nendloop\n\
     endfacet\nendsolid\n";
 
+/// Two strands of one and of two segments, with all arrays.
+fn hair() -> Vec<u8> {
+    let mut hair = b"HAIR".to_vec();
+    hair.extend([2_u32, 5, 31, 0].into_iter().flat_map(u32::to_le_bytes));
+    hair.resize(128, 0);
+    hair.extend([1, 0, 2, 0]);
+    hair.extend((0..40_u8).flat_map(|number| (f32::from(number) / 40.0).to_le_bytes()));
+    hair
+}
+
 /// Small files of every kind, all good.
 fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     let mesh = Mesh {
@@ -57,6 +67,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("a.stl", STL.as_bytes().to_vec()),
         ("a.stl", stl),
         ("a.mtl", MTL.as_bytes().to_vec()),
+        ("a.hair", hair()),
     ]
 }
 
@@ -177,7 +188,7 @@ proptest! {
 
     #[test]
     fn noise_is_survived(
-        name in prop::sample::select(vec!["a.obj", "a.ply", "a.stl", "a.mtl", "a"]),
+        name in prop::sample::select(vec!["a.obj", "a.ply", "a.stl", "a.mtl", "a.hair", "a"]),
         head in prop::sample::select(vec!["", "ply\nformat ascii 1.0\nelement vertex 9\n", "solid facet ", "v 0 0 0\nf "]),
         noise in prop::collection::vec(any::<u8>(), 0..400),
     ) {

@@ -94,7 +94,10 @@ fn kind<'a>(scene: &'a Scene, shape: &Shape) -> &'a str {
 fn file_stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let plain = file.strip_suffix(".gz").unwrap_or(file);
-    [".ply", ".obj", ".stl"].into_iter().find_map(|ending| plain.strip_suffix(ending)).unwrap_or(file)
+    [".ply", ".obj", ".stl", ".hair"]
+        .into_iter()
+        .find_map(|ending| plain.strip_suffix(ending))
+        .unwrap_or(file)
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "shape texture",
             "composite scene text",
             "builder chain count duplicates model nanovdb",
-            "boolean ies npy stl subdivision tessellation validate",
+            "boolean hair ies npy stl subdivision tessellation validate",
             "obj ply",
             "pbrt studio",
             "gltf",
@@ -148,7 +148,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             ("a measured material has its tables", "material > measured"),
             (
                 "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
-                "spectrum > model, model > format, model > obj, model > ply, model > source, model > stl, model > subdivision",
+                "spectrum > model, model > format, model > hair, model > obj, model > ply, model > source, model > stl, model > subdivision",
             ),
             (
                 "models in a scene, and their animations, are read as those of the command line",
