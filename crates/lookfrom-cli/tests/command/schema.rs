@@ -82,7 +82,7 @@ file = "roof.obj"
 "#;
 
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 30] = [
+const INSPECTED: [&str; 31] = [
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
@@ -105,6 +105,7 @@ const INSPECTED: [&str; 30] = [
     "scenes/environment.toml 20 20 --width 40 --samples 2",
     "docs/guide/scenes/shape-disk.toml 8 11 --width 40",
     "docs/guide/scenes/camera-lens-system.toml 20 15 --width 40",
+    "docs/guide/scenes/motion-blur.toml 20 10 --width 40",
     "docs/guide/scenes/material-gltf-volume.toml 20 15 --width 40 --integrator path",
     "docs/guide/scenes/material-subsurface.toml 20 14 --width 40 --samples 8 --sample 0",
     "scenes/star.pbrt 20 20 --width 40 --height 30 --samples 4 --sample 2",

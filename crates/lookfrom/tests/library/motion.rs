@@ -79,7 +79,7 @@ fn picture(mut scene: Scene, integrator: Integrator, samples: u32) -> Vec<[f64; 
 /// Whether the blurred picture is the mean of instants: that of all its pixels within a part, and that of each within another.
 fn is_the_mean_of_instants(integrator: Integrator, [of_all, of_each]: [f64; 2]) {
     const INSTANTS: u32 = 48;
-    const SAMPLES: u32 = 96;
+    const SAMPLES: u32 = 256;
     let blurred = picture(scene(0.0, 1.0), integrator, INSTANTS * SAMPLES);
     let mut mean = vec![[0.0; 3]; blurred.len()];
     for instant in 0..INSTANTS {
@@ -105,7 +105,7 @@ fn is_the_mean_of_instants(integrator: Integrator, [of_all, of_each]: [f64; 2]) 
 
 #[test]
 fn paths_see_the_mean_of_instants() {
-    is_the_mean_of_instants(Integrator::Path, [0.004, 0.06]);
+    is_the_mean_of_instants(Integrator::Path, [0.008, 0.08]);
 }
 
 #[test]

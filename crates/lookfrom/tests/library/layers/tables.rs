@@ -129,7 +129,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "atmosphere lens light settings",
             "shape texture",
             "composite scene text",
-            "builder chain count duplicates model nanovdb",
+            "builder chain count duplicates model nanovdb shutter",
             "boolean hair ies npy stl subdivision tessellation validate",
             "obj ply",
             "pbrt studio",
