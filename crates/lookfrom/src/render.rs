@@ -352,6 +352,7 @@ impl Renderer {
 
         let streams = BatchStreams { sampler: &self.sampler, ids };
         let moves = !start.times.is_empty();
+        times.clear();
         let mut are_from_camera = true;
         while !output.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
@@ -365,8 +366,10 @@ impl Renderer {
             } else if are_from_camera {
                 rays.clear();
                 rays.extend(under_way.iter().map(|path| path.ray));
-                times.clear();
-                times.extend(under_way.iter().filter(|_| moves).map(|path| output.time(path)));
+                if moves {
+                    times.clear();
+                    times.extend(under_way.iter().map(|path| output.time(path)));
+                }
                 self.world.bvh.query().times(times).closest_hits(rays, hits);
                 let slots = under_way.iter().map(|path| path.slot);
                 output.queues.first_surfaces.note_outermost_of(slots, hits, ids.len());
@@ -375,8 +378,10 @@ impl Renderer {
                 rays.extend(under_way.iter().map(|path| path.ray));
                 origin_primitives.clear();
                 origin_primitives.extend(under_way.iter().map(|path| path.origin_primitive));
-                times.clear();
-                times.extend(under_way.iter().filter(|_| moves).map(|path| output.time(path)));
+                if moves {
+                    times.clear();
+                    times.extend(under_way.iter().map(|path| output.time(path)));
+                }
                 let query = self.world.bvh.query().origins(origin_primitives).times(times);
                 query.closest_hits(rays, hits);
                 output.queues.first_surfaces.note_behind(straight(&under_way, hits));

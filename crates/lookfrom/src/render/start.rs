@@ -134,7 +134,9 @@ impl Renderer {
         filter_weights.clear();
         rays.clear();
         times.clear();
-        times.extend(ids.iter().filter(|_| self.moves()).map(|id| self.time(*id)));
+        if self.moves() {
+            times.extend(ids.iter().map(|id| self.time(*id)));
+        }
         if camera.is_flat() {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
         } else {
