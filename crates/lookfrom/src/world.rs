@@ -215,15 +215,15 @@ impl World {
     }
 
     /// [`World::texture_point`] with the footprint of pixels, where the surface's material depends on it.
+    #[inline]
     pub(crate) fn shading_point(&self, surface: &SurfaceInteraction) -> TexturePoint<'_> {
-        let point = self.texture_point(surface);
-        match &self.footprint {
-            Some(pixels) if self.materials[surface.material as usize].needs_footprint => {
-                let footprint = pixels.at(point.world, surface.ng, [surface.dpdu, surface.dpdv]);
-                TexturePoint { footprint: Some(footprint), ..point }
-            }
-            _ => point,
+        let mut point = self.texture_point(surface);
+        if let Some(pixels) = &self.footprint
+            && self.materials[surface.material as usize].needs_footprint
+        {
+            point.footprint = Some(pixels.at(point.world, surface.ng, [surface.dpdu, surface.dpdv]));
         }
+        point
     }
 
     /// [`World::texture_point`] of a hit on a mesh, by position and geometric normal, and texture coordinates.
