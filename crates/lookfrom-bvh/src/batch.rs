@@ -8,7 +8,7 @@ use crate::coherence::Coherence;
 use crate::collector::{AnyHit, BatchQuery, ClosestHit};
 use crate::dispatch::dispatch;
 use crate::interleaved::{self, trace_interleaved};
-use crate::moving::trace_batch;
+use crate::moving::go_on_through_moving;
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
 use crate::ray::{Hit, Ray};
@@ -37,21 +37,11 @@ fn trace_all<C: BatchQuery>(settings: &Settings<'_>, rays: &[Ray], results: &mut
     for_batches(rays, results, |first, rays, results| {
         let settings = settings.from(first);
         match settings.visibility_kind() {
-            VisibilityKind::Everything => trace_both::<C, Everything>(settings, rays, results),
-            VisibilityKind::ExceptOrigin => trace_both::<C, ExceptOrigin>(settings, rays, results),
-            VisibilityKind::Masked => trace_both::<C, Masked<'_>>(settings, rays, results),
+            VisibilityKind::Everything => Batch::<C, Everything>::trace(settings, rays, results),
+            VisibilityKind::ExceptOrigin => Batch::<C, ExceptOrigin>::trace(settings, rays, results),
+            VisibilityKind::Masked => Batch::<C, Masked<'_>>::trace(settings, rays, results),
         }
     });
-}
-
-/// Traces rays through what stands still, and then through what moves.
-fn trace_both<'a, C: BatchQuery, V: Visibility<'a>>(
-    settings: Settings<'a>,
-    rays: &[Ray],
-    results: &mut [C::Result],
-) {
-    Batch::<C, V>::trace(settings, rays, results);
-    trace_batch::<C, V>(settings, rays, results);
 }
 
 /// The results for rays, in their order; as many as fit into `results`.
@@ -111,6 +101,9 @@ impl<'a, C: BatchQuery, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
                     }
                 }
                 trace_rest::<S, C, V>(simd, &settings, rays, results, first_left..count, stack);
+                if settings.bvh.moving.is_some() {
+                    go_on_through_moving::<S, C, V>(simd, &settings, rays, results, stack);
+                }
             },
         );
     }

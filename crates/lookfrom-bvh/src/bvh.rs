@@ -49,7 +49,7 @@ pub struct Bvh {
     /// By id, as the builder numbered them; shared with the builder.
     pub(crate) instances: Arc<Vec<Instance>>,
     pub(crate) masks: Masks,
-    /// What moves, if anything does.
+    /// The moving part, if there is one.
     pub(crate) moving: Option<Arc<Moving>>,
     pub(crate) bounds: Aabb,
     pub(crate) statistics: Statistics,

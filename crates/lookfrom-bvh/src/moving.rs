@@ -3,5 +3,5 @@
 mod batch;
 mod trace;
 
-pub(crate) use batch::trace_batch;
+pub(crate) use batch::go_on_through_moving;
 pub(crate) use trace::continued;

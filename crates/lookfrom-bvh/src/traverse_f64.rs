@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use crate::aabb::Aabb;
 use crate::batch::for_each;
-use crate::bvh::{Bvh, Moment, Moving};
+use crate::bvh::{Bvh, Instance, Moment, Moving};
 use crate::conservative::TriangleBlock;
 use crate::exact::ExactRay;
 use crate::item::Leaf;
@@ -246,7 +246,7 @@ impl<O: Observer> Traversal<'_, O> {
                     let instance = &outer.instances[place];
                     let inside = match outer.instance_map_at(place as u32, self.time) {
                         None => Some(instance.ray_in_object(ray)),
-                        Some(map) => instance.moved(map).map(|moved| moved.ray_in_object(ray)),
+                        Some(map) => Instance::ray_in_moved(&map, ray),
                     };
                     if let Some(inside) = inside.filter(is_usable)
                         && self.visibility.enter_instance(place)

@@ -23,27 +23,42 @@ pub(crate) struct Instance {
 impl Instance {
     /// `None` where the map has no usable inverse.
     pub(crate) fn new(bvh: Arc<Bvh>, world_from_object: Affine) -> Option<Self> {
-        let object_from_world = world_from_object.inverse()?.matrix;
-        let entries = world_from_object.matrix.iter().chain(&object_from_world).flatten();
-        let usable = entries.into_iter().all(|entry| entry.abs() < LARGEST_ENTRY);
-        usable.then_some(Self { bvh, world_from_object, object_from_world })
+        let object_from_world = usable_inverse(&world_from_object)?;
+        Some(Self { bvh, world_from_object, object_from_world })
     }
 
     /// A ray of the world in the object's space; t is unchanged.
     #[inline(always)]
     pub(crate) fn ray_in_object<T: Rounded>(&self, ray: &ExactRay<T>) -> ExactRay<T> {
-        let in_object = |v: [f64; 3]| self.object_from_world.map(|row| dot(row, v));
-        ExactRay {
-            // Subtract first, to keep the significant digits near the object.
-            origin: in_object(subtract(ray.origin, self.world_from_object.translation)),
-            direction: in_object(ray.direction),
-            t_min: ray.t_min,
-        }
+        in_object(&self.world_from_object, &self.object_from_world, ray)
+    }
+
+    /// [`Self::ray_in_object`] where the instance is by another map; `None` where that has no usable inverse.
+    pub(crate) fn ray_in_moved<T: Rounded>(map: &Affine, ray: &ExactRay<T>) -> Option<ExactRay<T>> {
+        Some(in_object(map, &usable_inverse(map)?, ray))
     }
 
     /// The box in the world.
     pub(crate) fn bounds(&self) -> Aabb {
         self.bvh.bounds_under(&self.world_from_object)
+    }
+}
+
+/// The linear part of a map's inverse, if both are in the range of f32.
+fn usable_inverse(map: &Affine) -> Option<[[f64; 3]; 3]> {
+    let inverse = map.inverse()?.matrix;
+    let entries = map.matrix.iter().chain(&inverse).flatten();
+    entries.into_iter().all(|entry| entry.abs() < LARGEST_ENTRY).then_some(inverse)
+}
+
+#[inline(always)]
+fn in_object<T: Rounded>(map: &Affine, inverse: &[[f64; 3]; 3], ray: &ExactRay<T>) -> ExactRay<T> {
+    let in_object = |v: [f64; 3]| inverse.map(|row| dot(row, v));
+    ExactRay {
+        // Subtract first, to keep the significant digits near the object.
+        origin: in_object(subtract(ray.origin, map.translation)),
+        direction: in_object(ray.direction),
+        t_min: ray.t_min,
     }
 }
 

@@ -110,10 +110,7 @@ impl Moving {
     /// The map of an instance, world from object, at a moment; `None` where it stands still.
     pub(crate) fn map(&self, instance: u32, time: f32) -> Option<Affine> {
         let maps = &self.maps[instance as usize];
-        (!maps.is_empty()).then(|| {
-            let Moment { earlier, fraction } = self.moment(time);
-            maps[earlier].between(&maps[earlier + 1], f64::from(fraction))
-        })
+        (!maps.is_empty()).then(|| Affine::at_time(maps, time))
     }
 
     /// Memory in bytes.
@@ -138,6 +135,23 @@ impl Moment {
     }
 }
 
+impl Affine {
+    /// A map at a time, of those at equally spaced times from 0 to 1, at least two, as queries interpolate them.
+    ///
+    /// ```
+    /// use lookfrom_bvh::Affine;
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// assert_eq!(Affine::at_time(&[Affine::IDENTITY, up, Affine::IDENTITY], 0.75).translation[2], 2.0);
+    /// ```
+    ///
+    /// # Panics
+    /// For fewer than two maps.
+    pub fn at_time(maps: &[Self], time: f32) -> Self {
+        let Moment { earlier, fraction } = Moment::among(maps.len(), time);
+        maps[earlier].between(&maps[earlier + 1], f64::from(fraction))
+    }
+}
+
 /// Finds a time among equally spaced ones from 0 to 1, at least two: the number of the last one before it, never that of the
 /// last of all, and the part of the way to the next, as queries interpolate what moves.
 ///
@@ -151,13 +165,6 @@ impl Moment {
 pub fn moment(times: usize, time: f32) -> (usize, f32) {
     let Moment { earlier, fraction } = Moment::among(times, time);
     (earlier, fraction)
-}
-
-impl Instance {
-    /// This instance elsewhere; `None` where the map has no usable inverse.
-    pub(crate) fn moved(&self, map: Affine) -> Option<Self> {
-        Self::new(self.bvh.clone(), map)
-    }
 }
 
 #[cfg(test)]

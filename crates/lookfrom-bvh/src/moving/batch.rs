@@ -1,51 +1,26 @@
 //! Batches of rays through the moving part of a tree, after what stands still.
 
-use std::marker::PhantomData;
-
 use crate::collector::BatchQuery;
-use crate::dispatch::dispatch;
 use crate::ray::Ray;
 use crate::settings::Settings;
-use crate::stack::with_stack;
+use crate::stack::Stack;
 use crate::visibility::Visibility;
-use lookfrom_simd::{Kernel, Simd};
+use lookfrom_simd::Simd;
 
 use super::continued;
 
-/// Continues the queries of rays, each at its time.
-pub(crate) fn trace_batch<'a, C: BatchQuery, V: Visibility<'a>>(
-    settings: Settings<'a>,
+/// Continues the queries of rays, each at its time, from their results so far.
+#[inline(never)]
+pub(crate) fn go_on_through_moving<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
+    simd: S,
+    settings: &Settings<'a>,
     rays: &[Ray],
     results: &mut [C::Result],
+    stack: &mut Stack,
 ) {
-    if settings.bvh.moving.is_some() {
-        let level = settings.bvh.level;
-        dispatch(level, Batch::<C, V> { settings, rays, results, visibility: PhantomData });
-    }
-}
-
-struct Batch<'a, 'b, C: BatchQuery, V> {
-    settings: Settings<'a>,
-    rays: &'b [Ray],
-    results: &'b mut [C::Result],
-    visibility: PhantomData<V>,
-}
-
-impl<'a, C: BatchQuery, V: Visibility<'a>> Kernel for Batch<'a, '_, C, V> {
-    type Output = ();
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Self { settings, rays, results, .. } = self;
-        with_stack(
-            #[inline(always)]
-            |stack| {
-                for (number, (ray, result)) in rays.iter().zip(results).enumerate() {
-                    let before = C::after(ray, result);
-                    let visibility = V::of(&settings, number);
-                    let at = (ray, settings.time_of(number));
-                    *result = continued(simd, settings.bvh, at, before, (visibility, ()), stack).result();
-                }
-            },
-        );
+    for (number, (ray, result)) in rays.iter().zip(results).enumerate() {
+        let (before, visibility) = (C::after(ray, result), V::of(settings, number));
+        let at = (ray, settings.time_of(number));
+        *result = continued(simd, settings.bvh, at, before, (visibility, ()), stack).result();
     }
 }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Affine, Point, moment};
+use lookfrom_bvh::{Affine, Point};
 
 use super::{AreaLight, LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
@@ -63,9 +63,7 @@ pub(crate) struct LightPlace {
 impl AreaLight {
     /// The place of a light that moves, at a time of the shutter (0 … 1); `None` for one that stands still.
     pub(crate) fn place_at(&self, time: f32) -> Option<LightPlace> {
-        let maps = &self.motion.as_ref()?.maps;
-        let (earlier, fraction) = moment(maps.len(), time);
-        let now = maps[earlier].between(&maps[earlier + 1], fraction.into());
+        let now = Affine::at_time(&self.motion.as_ref()?.maps, time);
         let back = now.inverse()?;
         Some(LightPlace { now, back })
     }
