@@ -18,5 +18,6 @@ pub mod sampler;
 pub mod spectrum;
 #[cfg(test)]
 pub(crate) mod statistics;
+pub mod times;
 pub mod vector;
 pub mod warp;

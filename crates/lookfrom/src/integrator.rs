@@ -27,6 +27,7 @@ use crate::aov::FirstSurfaces;
 use crate::core::hash;
 use crate::core::sampler::PixelSampler;
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 use crate::medium::Way;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
@@ -252,8 +253,8 @@ pub struct Queues {
     pub radiance: Vec<Spectrum>,
     /// The spectral mode, by slot.
     pub modes: SpectralModes,
-    /// The times of the samples while the shutter is open, by slot; empty where nothing moves.
-    pub(crate) times: Vec<f32>,
+    /// The times of the samples while the shutter is open, by slot.
+    pub(crate) times: Times,
     /// Alpha over the view's own background, by slot.
     pub alpha: Vec<Alpha>,
     /// Shadow rays.
@@ -283,12 +284,6 @@ impl Queues {
         self.layers.clear();
         self.first_surfaces.start(count);
         self.last_scatterings.clear();
-    }
-
-    /// The time of a slot while the shutter is open, from 0 to 1; 0 where nothing moves.
-    #[inline]
-    pub fn time(&self, slot: u32) -> f32 {
-        self.times.get(slot as usize).copied().unwrap_or(0.0)
     }
 
     #[cold]
@@ -370,7 +365,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// The time of a path while the shutter is open, from 0 to 1; 0 where nothing moves.
     #[inline]
     pub fn time(&self, path: &Path<S>) -> f32 {
-        self.queues.time(path.slot)
+        self.queues.times.of(path.slot as usize)
     }
 
     /// Adds light to a path's sample.

@@ -31,6 +31,7 @@ use crate::core::color::{Sensor, Wavelengths};
 use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 pub use crate::film::SampleId;
 use crate::film::{FEATURE_SAMPLES, FilmTile, SampleSums};
 use crate::integrator::{
@@ -138,8 +139,8 @@ struct Batch {
     /// Paths under way, and those that are next.
     paths: Scratch,
     rays: Vec<Ray>,
-    /// The times of `rays`; empty where nothing moves.
-    times: Vec<f32>,
+    /// The times of the rays that are traced.
+    times: Times,
     origin_primitives: Vec<OriginPrimitive>,
     hits: Vec<Hit>,
     /// The samples' light in RGB, by slot.
@@ -351,8 +352,6 @@ impl Renderer {
         output.paths = starting;
 
         let streams = BatchStreams { sampler: &self.sampler, ids };
-        let moves = !start.times.is_empty();
-        times.clear();
         let mut are_from_camera = true;
         while !output.paths.is_empty() {
             // Hit: the nearest surface for every ray of the batch.
@@ -360,17 +359,15 @@ impl Renderer {
             output.paths.clear();
             // All are replaced.
             hits.resize(under_way.len(), Hit::MISS);
+            times.gather(&output.queues.times, under_way.iter().map(|path| path.slot));
+            let query = self.world.bvh.query().times(times.as_slice());
             if are_from_camera && under_way.len() == ids.len() {
-                self.world.bvh.query().times(&start.times).closest_hits(&start.rays, hits);
+                query.closest_hits(&start.rays, hits);
                 output.queues.first_surfaces.note_outermost(hits);
             } else if are_from_camera {
                 rays.clear();
                 rays.extend(under_way.iter().map(|path| path.ray));
-                if moves {
-                    times.clear();
-                    times.extend(under_way.iter().map(|path| output.time(path)));
-                }
-                self.world.bvh.query().times(times).closest_hits(rays, hits);
+                query.closest_hits(rays, hits);
                 let slots = under_way.iter().map(|path| path.slot);
                 output.queues.first_surfaces.note_outermost_of(slots, hits, ids.len());
             } else {
@@ -378,12 +375,7 @@ impl Renderer {
                 rays.extend(under_way.iter().map(|path| path.ray));
                 origin_primitives.clear();
                 origin_primitives.extend(under_way.iter().map(|path| path.origin_primitive));
-                if moves {
-                    times.clear();
-                    times.extend(under_way.iter().map(|path| output.time(path)));
-                }
-                let query = self.world.bvh.query().origins(origin_primitives).times(times);
-                query.closest_hits(rays, hits);
+                query.origins(origin_primitives).closest_hits(rays, hits);
                 output.queues.first_surfaces.note_behind(straight(&under_way, hits));
             }
             are_from_camera = false;

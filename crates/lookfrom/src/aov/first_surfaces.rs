@@ -12,6 +12,7 @@ use lookfrom_simd::LaneMask;
 
 use super::{AovColumns, Aovs, CameraSpace, FirstSurfaceColumns};
 use crate::core::lanes::LANES;
+use crate::core::times::Times;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
@@ -128,7 +129,7 @@ impl FirstSurfaces {
 
     /// The AOVs by slot, at the end of a batch of camera rays with their times, where they are wanted. Of few hits no step has left a surface, as of those
     /// that light may pass as if they were not there.
-    pub(crate) fn aovs(&mut self, world: &World, (rays, times): (&[Ray], &[f32])) -> Option<&[AovColumns]> {
+    pub(crate) fn aovs(&mut self, world: &World, (rays, times): (&[Ray], &Times)) -> Option<&[AovColumns]> {
         let space = self.space?;
         // Of the hits of a slot, the last one counts.
         self.behind.sort_by_key(|&(slot, _)| slot);
@@ -136,8 +137,7 @@ impl FirstSurfaces {
             let left = !self.aovs[block].hits & ((1 << hits.len()) - 1);
             for lane in LaneMask(left).filter(|lane| hits[*lane].is_hit() || fills_space(&space)) {
                 let slot = block * LANES + lane;
-                if let Some(aovs) = self.found_again(world, &space, slot, (rays[slot], time_of(times, slot)))
-                {
+                if let Some(aovs) = self.found_again(world, &space, slot, (rays[slot], times.of(slot))) {
                     self.aovs[block].set(lane, &aovs);
                 }
             }
@@ -163,11 +163,6 @@ impl FirstSurfaces {
             hit.is_hit().then(|| space.aovs(world, &world.surface_at(&ray, &hit, time), None))
         })
     }
-}
-
-/// The time of a slot; 0 where nothing moves.
-pub(crate) fn time_of(times: &[f32], slot: usize) -> f32 {
-    times.get(slot).copied().unwrap_or(0.0)
 }
 
 /// Whether rays from the camera are in a medium without an end, which is seen where they hit nothing.

@@ -13,6 +13,7 @@ use lookfrom_bvh::{Hit, NONE, OriginPrimitive, Point, Ray};
 
 use crate::core::points::Points;
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 use crate::integrator::{Event, Path, PathState, Probe, Queues, StepOutput, Term};
 use crate::light::{LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
@@ -164,22 +165,15 @@ pub(crate) fn resolve<P: Probe, S: PathState>(
     traced
 }
 
-/// The times of rays by their slots; none where nothing moves.
-pub(super) fn times_of(times: &[f32], slots: impl Iterator<Item = u32>) -> Vec<f32> {
-    match times.is_empty() {
-        true => Vec::new(),
-        false => slots.map(|slot| times[slot as usize]).collect(),
-    }
-}
-
 /// Traces shadow rays that any hit blocks completely.
 fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
     let Queues { shadows, modes, times, blocked, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     // All are replaced.
     blocked.resize(rays.len(), false);
-    let at = times_of(times, lights.iter().map(|light| light.slot));
-    world.bvh.query().origins(origin_primitives).times(&at).occluded_many(rays, blocked);
+    let mut at = Times::default();
+    at.gather(times, lights.iter().map(|light| light.slot));
+    world.bvh.query().origins(origin_primitives).times(at.as_slice()).occluded_many(rays, blocked);
     let through_media = Transmittances::estimate(world, modes, rays.len(), |index| {
         (!blocked[index]).then(|| (&rays[index], &lights[index], rays[index].t_max))
     });
@@ -193,8 +187,8 @@ fn block<P: Probe>(world: &World, queues: &mut Queues, probe: &mut P) -> u64 {
         // The picture needs only occlusion, a probe the closest hit.
         probe.notice(|| {
             let shadow = light.of(rays[index], origin_primitives[index]);
-            let query = world.bvh.query().origin(shadow.origin_primitive);
-            let hit = query.time(at.get(index).copied().unwrap_or(0.0)).closest_hit(&shadow.ray);
+            let query = world.bvh.query().origin(shadow.origin_primitive).time(at.of(index));
+            let hit = query.closest_hit(&shadow.ray);
             Event::Shadow { shadow, hit, passed }
         });
         light.contribution *= passed;

@@ -34,7 +34,7 @@ impl Renderer {
         self.start(ids, &mut start);
         let query = |(slot, ray)| {
             let mut cost = Cost::default();
-            self.world.bvh().query().time(start.time(slot)).observer(&mut cost).closest_hit(ray);
+            self.world.bvh().query().time(start.times.of(slot)).observer(&mut cost).closest_hit(ray);
             cost
         };
         let mut costs: Vec<Cost> = start.rays.iter().enumerate().map(query).collect();

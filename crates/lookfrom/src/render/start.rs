@@ -8,6 +8,7 @@ use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, pr
 use super::{Renderer, SampleId};
 use crate::core::lanes::{LANES, by_lane, filled, scatter};
 use crate::core::sampler::{self, lanes::PixelSamplers};
+use crate::core::times::Times;
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
 use crate::view::camera::{Camera, CameraRay, StartingRay};
@@ -24,8 +25,8 @@ const TIME_DIMENSION: u32 = 3;
 pub(super) struct Start {
     /// Random numbers, empty where they are not needed.
     wavelengths: Vec<[f32; 2]>,
-    /// Random numbers, which are the times of samples while the shutter is open; empty where nothing moves.
-    pub(super) times: Vec<f32>,
+    /// Random numbers: the times of samples while the shutter is open.
+    pub(super) times: Times,
     /// Points of the image, in pixels, y up; empty where the camera has an image plane.
     points: Vec<[f64; 2]>,
     /// The rays of the kernel.
@@ -41,11 +42,6 @@ impl Start {
     pub(super) fn modes(&self) -> impl Iterator<Item = SpectralMode> {
         let rgb = self.wavelengths.is_empty().then_some(SpectralMode::Rgb);
         rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
-    }
-
-    /// The time of a slot; 0 where nothing moves.
-    pub(super) fn time(&self, slot: usize) -> f32 {
-        self.times.get(slot).copied().unwrap_or(0.0)
     }
 
     /// Whether there may be rays that a lens system blocks.
@@ -133,10 +129,8 @@ impl Renderer {
         weights.clear();
         filter_weights.clear();
         rays.clear();
-        times.clear();
-        if self.moves() {
-            times.extend(ids.iter().map(|id| self.time(*id)));
-        }
+        let moving = if self.moves() { ids } else { &[] };
+        times.replace(moving.iter().map(|id| self.time(*id)));
         if camera.is_flat() {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
         } else {
@@ -144,7 +138,7 @@ impl Renderer {
             rays.extend(points.iter().map(|point| self.kernel_ray(&camera.ray(*point, [0.5; 2]))));
         }
         if let Some(motion) = &camera.motion {
-            for (ray, time) in rays.iter_mut().zip(times) {
+            for (ray, time) in rays.iter_mut().zip(times.as_slice()) {
                 *ray = self.moved(&motion.at((*time).into()), ray);
             }
         }

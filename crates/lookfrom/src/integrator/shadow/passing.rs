@@ -5,9 +5,10 @@ use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 
 use super::lanes::Crossings;
 use super::media::Transmittances;
-use super::{ShadowLight, ShadowTransparency, Shadows, rest, times_of};
+use super::{ShadowLight, ShadowTransparency, Shadows, rest};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 use crate::integrator::wavefront::{Behind, Interfaces};
 use crate::integrator::{Event, Probe, Queues};
 use crate::shading::interaction::SurfaceInteraction;
@@ -29,6 +30,7 @@ pub(super) fn let_through<P: Probe>(
     let Queues { shadows, modes, times, hits, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     let mut traced = 0;
+    let mut at = Times::default();
     // The lights of the rays that are left.
     let mut left: Vec<u32> = (0..lights.len() as u32).collect();
     let mut crossings = Crossings::new(P::LISTENS);
@@ -38,8 +40,8 @@ pub(super) fn let_through<P: Probe>(
     for round in 0.. {
         hits.clear();
         hits.resize(rays.len(), Hit::MISS);
-        let at = times_of(times, left.iter().map(|&light| lights[light as usize].slot));
-        world.bvh.query().origins(origin_primitives).times(&at).closest_hits(rays, hits);
+        at.gather(times, left.iter().map(|&light| lights[light as usize].slot));
+        world.bvh.query().origins(origin_primitives).times(at.as_slice()).closest_hits(rays, hits);
         traced += rays.len() as u64;
 
         let is_blocked = |hit: &Hit| {
@@ -66,7 +68,7 @@ pub(super) fn let_through<P: Probe>(
                 let mode = &modes[light.slot as usize];
                 let interface = Interfaces::kind(world, &hit).filter(|_| !is_blocked);
                 let surface = (hit.is_hit() && !is_blocked && interface.is_none())
-                    .then(|| world.surface_at(&ray, &hit, at.get(place).copied().unwrap_or(0.0)));
+                    .then(|| world.surface_at(&ray, &hit, at.of(place)));
                 let through_surface = match &surface {
                     Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
                     None if is_blocked => Spectrum::BLACK,

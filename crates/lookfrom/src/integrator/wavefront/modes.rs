@@ -4,6 +4,7 @@ use lookfrom_simd::{Simd, f32x8, prelude::*};
 
 use crate::core::lanes::{LANES, by_lane, splat_spectrum};
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 use crate::integrator::{Path, SpectralModes};
 use crate::light::EmissionSpectrum;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
@@ -23,11 +24,11 @@ impl<'a> Modes<'a> {
     pub(in crate::integrator) fn of<S>(
         paths: &[&Path<S>; LANES],
         modes: &'a SpectralModes,
-        times: &[f32],
+        times: &Times,
     ) -> Self {
         let times = match times.is_empty() {
             true => [0.0; LANES],
-            false => by_lane!(lane => times[paths[lane].slot as usize]),
+            false => by_lane!(lane => times.of(paths[lane].slot as usize)),
         };
         let first = &modes[paths[0].slot as usize];
         if matches!(first, SpectralMode::Rgb) {

@@ -10,6 +10,7 @@ use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::{One, Width};
 use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together};
 use crate::core::spectrum::Spectrum;
+use crate::core::times::Times;
 use crate::core::vector::Vector;
 use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::wavefront::{BareHits, Eight, HitBatch, LightSamples, Modes, Receivers, Surfaces};
@@ -228,8 +229,8 @@ pub(super) struct BareKernel<'a> {
     pub(super) streams: &'a BatchStreams<'a>,
     /// By slot.
     pub(super) modes: &'a SpectralModes,
-    /// By slot; empty where nothing moves.
-    pub(super) times: &'a [f32],
+    /// By slot.
+    pub(super) times: &'a Times,
     pub(super) wanted: Wanted<'a>,
     pub(super) shaded: &'a mut Shaded,
     /// Receives the surfaces for AOVs, with the albedo of Whitted's coefficients.

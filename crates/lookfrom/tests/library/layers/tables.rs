@@ -24,6 +24,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("math", "elementary optics"),
     ("spectrum", ""),
     ("statistics", ""),
+    ("times", ""),
     ("lanes", "spectrum vector"),
     ("fixed_point", ""),
     ("accumulator", "lanes"),
@@ -58,7 +59,10 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "bsdf distribution footprint interior_stack light material math medium points primitive spectrum \
          interaction texture warp",
     ),
-    ("aov", "accumulator fixed_point interaction interior_stack lanes material medium sampler vector world"),
+    (
+        "aov",
+        "accumulator fixed_point interaction interior_stack lanes material medium sampler times vector world",
+    ),
     ("film", "accumulator aov fixed_point hash lanes parallel sampler spectrum"),
     ("denoise", "film parallel"),
     ("develop", "film"),
@@ -67,12 +71,12 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     (
         "integrator",
         "aov bsdf bssrdf elementary footprint hash interior_stack lanes light material math medium optics points sampler \
-         primitive spectrum interaction texture vector warp world",
+         primitive spectrum interaction texture times vector warp world",
     ),
     (
         "render",
         "aov interior_stack camera clock color film filter footprint integrator lanes lens_system light material math \
-         parallel sampler spectrum interaction texture vector view warp world",
+         parallel sampler spectrum interaction texture times vector view warp world",
     ),
     (
         "inspect",
