@@ -158,7 +158,7 @@ struct Reader<'s, 'f> {
     models: BTreeMap<PathBuf, Model>,
     /// Meshes to be displaced, whose models are read later.
     displaced: Vec<Displaced>,
-    /// What the lengths of edges of displaced meshes are multiplied by.
+    /// Factor of the edge lengths of displaced meshes, pbrt's `displacementedgescale`.
     displacement_edge_scale: f32,
     /// Warnings that have been given already.
     warned: BTreeSet<String>,

@@ -204,7 +204,7 @@ pub struct Mesh {
     /// Tangents along u, for bump mapping and anisotropy; w is the direction of v relative to normal × tangent (1 or −1):
     /// none, or one per vertex.
     pub tangents: Vec<Vec4>,
-    /// What vertices are moved by along their normals ([`Mesh::mean_normals`] where there are none), before any transform.
+    /// Displacement of the vertices along their normals ([`Mesh::mean_normals`] where there are none), before any transform.
     pub displacement: Option<Scalar>,
     /// Whether it is the surface of a solid, or a part of it: what is left out opens the solid.
     pub is_of_solid: bool,

@@ -12,7 +12,7 @@ use crate::error::{Location, Result};
 use crate::files::{ImportOptions, LoadContext};
 use crate::motion::Motion;
 use crate::scene::{Instance, Object, ObjectId, Scene};
-use crate::shape::{Geometry, Mesh, MeshPose, Shape};
+use crate::shape::{Geometry, MeshPose, Shape};
 
 /// Parts of a frame between two times at which a scene is read.
 const PARTS_OF_A_FRAME: f64 = 2.0;
@@ -33,10 +33,11 @@ pub(crate) fn open(
 ) -> Result<()> {
     let parts = ((frames * PARTS_OF_A_FRAME).ceil() as usize).clamp(2, MOST_PARTS).next_power_of_two();
     let start = context.import.at.unwrap_or(0.0);
-    let mut poses = vec![Pose::of(scene)];
+    let first = Pose::of(scene);
+    let mut later = Vec::new();
     for part in 1..=parts {
         let at = Some(start + frames / context.variables.fps * part as f64 / parts as f64);
-        let mut later = LoadContext {
+        let mut context = LoadContext {
             files: context.files,
             limits: context.limits,
             budget: context.budget.clone(),
@@ -45,15 +46,16 @@ pub(crate) fn open(
             import: ImportOptions { at, ..context.import.clone() },
             variables: context.variables.clone(),
         };
-        poses.push(Pose::taken(read(&mut later)?));
+        later.push(Pose::with_meshes(read(&mut context)?));
     }
-    if poses.iter().any(|pose| !pose.is_like(&poses[0])) {
+    if later.iter().any(|pose| !pose.is_of(scene)) {
         let message = "not blurred: while the shutter is open the number of its shapes or vertices changes";
         context.warn(&Location::file(path), message);
         return Ok(());
     }
-    let room = move_meshes(scene, &poses);
+    let room = move_meshes(scene, &mut later);
     context.keep(room, "what moves", &Location::file(path))?;
+    let poses: Vec<Pose> = std::iter::once(first).chain(later).collect();
     move_instances(scene, &poses);
     move_shapes(scene, &poses);
     if let Some(camera) = &mut scene.camera {
@@ -74,24 +76,18 @@ struct Pose {
     /// Maps of shapes outside of objects, and their geometry where that is no mesh.
     shapes: Vec<(DMat4, Option<Geometry>)>,
     instances: Vec<DMat4>,
+    /// Of a scene that is read again; none of the first, which has its own.
     meshes: Vec<MeshPose>,
 }
 
 impl Pose {
-    fn of(scene: &Scene) -> Self {
-        let pose =
-            |mesh: &Mesh| MeshPose { positions: mesh.positions.clone(), normals: mesh.normals.clone() };
-        Self { meshes: scene.meshes.iter().map(pose).collect(), ..Self::without_meshes(scene) }
-    }
-
-    fn taken(mut scene: Scene) -> Self {
-        let pose = Self::without_meshes(&scene);
+    fn with_meshes(mut scene: Scene) -> Self {
         let meshes = std::mem::take(&mut scene.meshes).into_iter();
         let meshes = meshes.map(|mesh| MeshPose { positions: mesh.positions, normals: mesh.normals });
-        Self { meshes: meshes.collect(), ..pose }
+        Self { meshes: meshes.collect(), ..Self::of(&scene) }
     }
 
-    fn without_meshes(scene: &Scene) -> Self {
+    fn of(scene: &Scene) -> Self {
         let shape = |shape: &Shape| {
             let is_single =
                 matches!(shape.geometry, Geometry::Sphere(_) | Geometry::Disk { .. } | Geometry::Quad { .. });
@@ -105,12 +101,12 @@ impl Pose {
         }
     }
 
-    /// Whether there are as many parts as in another pose.
-    fn is_like(&self, other: &Self) -> bool {
-        let counts = |pose: &Self| (pose.shapes.len(), pose.instances.len(), pose.meshes.len());
-        let vertices = |mesh: &MeshPose| (mesh.positions.len(), mesh.normals.len());
-        counts(self) == counts(other)
-            && self.meshes.iter().map(vertices).eq(other.meshes.iter().map(vertices))
+    /// Whether there are as many parts as in a scene.
+    fn is_of(&self, scene: &Scene) -> bool {
+        let vertices = self.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.normals.len()));
+        self.shapes.len() == scene.shapes.len()
+            && self.instances.len() == scene.instances.len()
+            && vertices.eq(scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.normals.len())))
     }
 
     /// The map of a shape from its space in `first` to the world at this time.
@@ -157,12 +153,12 @@ fn frame_of_camera(camera: &Camera) -> Option<DMat4> {
     (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
 }
 
-/// Gives meshes whose vertices move their poses. Returns the bytes of these.
-fn move_meshes(scene: &mut Scene, poses: &[Pose]) -> u64 {
+/// Gives meshes whose vertices move their later poses. Returns the bytes of these.
+fn move_meshes(scene: &mut Scene, later: &mut [Pose]) -> u64 {
     let mut bytes = 0;
     for (index, mesh) in scene.meshes.iter_mut().enumerate() {
-        if poses.iter().any(|pose| pose.meshes[index].positions != mesh.positions) {
-            mesh.later = poses[1..].iter().map(|pose| pose.meshes[index].clone()).collect();
+        if later.iter().any(|pose| pose.meshes[index].positions != mesh.positions) {
+            mesh.later = later.iter_mut().map(|pose| std::mem::take(&mut pose.meshes[index])).collect();
             bytes += mesh.later.iter().map(MeshPose::bytes).sum::<u64>();
         }
     }

@@ -1,4 +1,4 @@
-//! What a window answers to the questions of its page.
+//! Answers of a window to the questions of its page.
 
 use lookfrom::inspect;
 use lookfrom::session::{Format, Session};

@@ -1,4 +1,4 @@
-//! What the worker's script calls: functions of numbers, and a buffer in each direction.
+//! Exports to the worker's script: functions of numbers, and a buffer in each direction.
 //!
 //! The script writes into the memory at `input`, calls, and reads `output`. The only file with `unsafe`, which is in the names: an
 //! exported name must be the only one of its kind, and the imported clock must have the type that is declared here. No

@@ -1,4 +1,4 @@
-//! What a worker of the page holds: the files of its scene, and the window that shows it.
+//! State of a worker of the page: the files of its scene, and the window that shows it.
 
 use std::cell::RefCell;
 use std::path::PathBuf;

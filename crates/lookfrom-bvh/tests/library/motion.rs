@@ -1,4 +1,4 @@
-//! What moves: at any time it is hit as a tree that is built for that time is.
+//! Motion: at any time a tree is hit as one that is built for that time is.
 
 use std::sync::Arc;
 

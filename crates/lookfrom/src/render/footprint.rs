@@ -52,7 +52,7 @@ mod tests {
         of_pixels(&Camera::new(&Written { view, projection, ..Written::default() }, 200, 100).unwrap())
     }
 
-    /// Where a ray of a camera meets a plane, from the origin of the world.
+    /// Intersection of a ray of a camera with a plane, from the origin of the world.
     fn meets(camera: &Camera, pixel: [f64; 2], (p, n): (DVec3, DVec3)) -> DVec3 {
         let ray = camera.ray(pixel, [0.5; 2]);
         let origin = camera.lookfrom() + ray.a_from_eye;

@@ -47,7 +47,7 @@ pub(super) fn coordinates(mapping: &Mapping, at: &TexturePoint) -> DVec3 {
     p.to_array().map(bounded).into()
 }
 
-/// How far [`coordinates`] move from one pixel to the next, in x and in y: always finite. `None` without a footprint, and of
+/// Change of [`coordinates`] from one pixel to the next, in x and in y: always finite. `None` without a footprint, and of
 /// further sets of texture coordinates.
 pub(super) fn changes(mapping: &Mapping, at: &TexturePoint) -> Option<[DVec3; 2]> {
     let footprint = at.footprint?;
