@@ -36,6 +36,8 @@ class Scene:
         self.meshes = []
         self.spheres = []
         self.sky = None
+        # Of a thin lens: its radius, and the distance of what is sharp.
+        self.lens = None
 
     def mesh(self, points, triangles, material, radiance=None):
         self.meshes.append((np.asarray(points, np.float32), np.asarray(triangles, np.int32), material, radiance))
@@ -94,6 +96,32 @@ def dragon(size, mesh):
     return mesh_on_floor(size, mesh, diffuse(0.6, 0.5, 0.25))[0]
 
 
+def through_lens(scene, radius):
+    """The scene by a thin lens that is focused on the camera's target."""
+    distance = float(np.linalg.norm(np.subtract(scene.target, scene.eye)))
+    scene.lens = radius * distance, distance
+    return scene
+
+
+def balls(size):
+    """Balls in four rows on a floor, matte, metal and glass, under a square light and a sky."""
+    kinds = [
+        diffuse(0.7, 0.2, 0.1),
+        {"kind": "conductor", "reflectance": (0.9, 0.7, 0.35), "alpha": 0.1},
+        diffuse(0.2, 0.5, 0.3),
+        {"kind": "dielectric", "eta": 1.5, "alpha": 0.0},
+    ]
+    scene = Scene([-3.4, 1.9, 6.2], [0.3, 0.45, 0], 30, size)
+    scene.parallelogram([-20, 0, 20], [40, 0, 0], [0, 0, -40], diffuse(0.5, 0.45, 0.4))
+    scene.parallelogram([-3, 5, 1], [2, 0, 0], [0, 0, 2], diffuse(0, 0, 0), radiance=(17, 15, 12))
+    for row in range(4):
+        for column in range(4):
+            centre = [1.3 * column - 1.9, 0.5, 3 - 2.2 * row]
+            scene.spheres.append((centre, 0.5, kinds[(row + column) % 4]))
+    scene.sky = (0.25, 0.35, 0.5)
+    return scene
+
+
 def materials(size, mesh):
     """The mesh of rough metal, two spheres of glass and rough glass, a sky of one colour besides the light."""
     metal = {"kind": "conductor", "reflectance": (0.9, 0.7, 0.35), "alpha": 0.2}
@@ -133,10 +161,11 @@ def pbrt_material(material):
 
 def write_pbrt(scene, folder, name):
     """In pbrt's language, where the camera is left-handed."""
+    lens = f' "float lensradius" {scene.lens[0]} "float focaldistance" {scene.lens[1]}' if scene.lens else ""
     lines = [
         "Scale -1 1 1",
         f"LookAt {numbers(scene.eye)}  {numbers(scene.target)}  0 1 0",
-        f'Camera "perspective" "float fov" {scene.fov}',
+        f'Camera "perspective" "float fov" {scene.fov}{lens}',
         f'Film "rgb" "integer xresolution" {scene.size} "integer yresolution" {scene.size}',
         'PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5',
         f'Integrator "path" "integer maxdepth" {DEPTH}',
@@ -243,6 +272,9 @@ def mitsuba_scene(mi, scene, folder, name, sampler, rectangles):
             "sampler": {"type": sampler, "sample_count": 16},
         },
     }
+    if scene.lens:
+        radius, distance = scene.lens
+        description["sensor"].update(type="thinlens", aperture_radius=radius, focus_distance=distance)
     if scene.sky:
         description["sky"] = {"type": "constant", "radiance": rgb(scene.sky)}
     for index, (points, triangles, material, radiance) in enumerate(scene.meshes):
@@ -408,8 +440,10 @@ def print_table(scene, rows, threads, samples, pixels):
 
 
 def scenes_of(args):
-    scenes = {"cornell": cornell_box(args.size)}
+    scenes = {"cornell": cornell_box(args.size), "balls": balls(args.size)}
+    scenes["balls-lens"] = through_lens(balls(args.size), 0.02)
     if args.mesh:
+        scenes["mesh-lens"] = through_lens(dragon(args.size, args.mesh), 0.02)
         scenes["mesh"] = dragon(args.size, args.mesh)
         scenes["materials"] = materials(args.size, args.mesh)
     return scenes
@@ -419,7 +453,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lookfrom", help="the binary")
     parser.add_argument("--mesh", help="a mesh of about 100,000 triangles, .bin")
-    parser.add_argument("--scene", action="append", help="cornell, mesh or materials; all by default")
+    parser.add_argument("--scene", action="append", help="cornell, balls, balls-lens, mesh, mesh-lens or materials; all by default")
     parser.add_argument("--threads", type=int, action="append", help="how many; 2 and then 1 by default")
     parser.add_argument("--size", type=int, default=256, help="rows and columns")
     parser.add_argument("--samples", type=int, default=64, help="samples a pixel where time is taken")

@@ -405,7 +405,7 @@ pub(crate) struct Overrides {
     pub(crate) light_sampler: Option<LightSampler>,
 
     /// AOVs of an EXR besides the picture: geometry is albedo, normals, position, depth, uv and variance
-    #[arg(long, value_name = "NAME", value_parser = values::word(values::LAYERS))]
+    #[arg(long, value_name = "NAME", value_parser = values::word(Layers::WORDS))]
     pub(crate) layers: Option<Layers>,
 
     /// A layer of an EXR with the light that came on certain ways: a name and a light-path expression; may be repeated

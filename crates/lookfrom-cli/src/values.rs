@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
-use lookfrom_scene::settings::{Background, Filter, Layers, LightPathLayer, PixelBounds, Sensor};
+use lookfrom_scene::settings::{Background, Filter, LightPathLayer, PixelBounds, Sensor};
 use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::studio::Viewpoint;
 
@@ -17,9 +17,6 @@ use lookfrom::session::{Exposure, Fireflies, MOST_SAMPLES};
 
 /// Views by name.
 pub(crate) type Views = Vec<(&'static str, Viewpoint)>;
-
-/// AOVs of an EXR.
-pub(crate) const LAYERS: &[(&str, Layers)] = &[("none", Layers::None), ("geometry", Layers::Geometry)];
 
 /// Switches.
 pub(crate) const ON_OFF: &[(&str, bool)] = &[("on", true), ("off", false)];

@@ -120,6 +120,14 @@ pub enum Layers {
     None,
     /// Albedo, normals, position, depth, uv and variance of the first visible surface.
     Geometry,
+    /// As [`Layers::Geometry`], and how far the surface moves in the picture while the shutter is open.
+    Motion,
+}
+
+impl Layers {
+    /// The words for them.
+    pub const WORDS: &[(&str, Self)] =
+        &[("none", Self::None), ("geometry", Self::Geometry), ("motion", Self::Motion)];
 }
 
 /// A layer with the light that came on certain ways.

@@ -16,6 +16,7 @@ mod first_hits;
 mod layout;
 mod ledger;
 mod light_paths;
+mod motion;
 mod noise;
 mod pixel;
 mod plane;
@@ -27,6 +28,7 @@ pub use self::fireflies::Firefly;
 pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
 use self::light_paths::LightPathSums;
+use self::motion::MotionSums;
 use self::pixel::{Pixel, unbiased_variance};
 use self::plane::Plane;
 pub(crate) use self::stored::StoredRows;
@@ -62,6 +64,7 @@ pub struct Film {
     /// Variances in the sensor's channels, where they are not X, Y and Z: for the AOVs, as in pbrt-v4's `gbuffer` film.
     channels: Plane<Pixel>,
     features: Plane<AovSums>,
+    motions: Plane<MotionSums>,
     /// For each layer of light-path expressions.
     light_paths: Vec<Plane<LightPathSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴.
@@ -155,6 +158,7 @@ impl Film {
             layers: plane(layout.aovs, size)?,
             channels: plane(layout.sensor, size)?,
             features: plane(layout.features, size)?,
+            motions: plane(layout.motion, size)?,
             light_paths: (0..layout.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
             alphas: plane(layout.alpha, size)?,
             alpha_squares: plane(layout.alpha_squares(), size)?,
@@ -346,6 +350,17 @@ impl Film {
         self.light_paths
             .iter()
             .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
+    }
+
+    /// How far what is seen in a pixel moves in the picture while the shutter is open, in pixels to the right and upwards: the mean over the
+    /// samples with a hit, 0 without any. `None` where the film has no memory for it, and outside of [`Film::area`].
+    pub fn motion(&self, x: u32, y: u32) -> Option<[f32; 2]> {
+        self.sums_of(&self.motions, x, y).map(|sums| sums.mean())
+    }
+
+    /// Whether the film has motion vectors.
+    pub fn has_motion(&self) -> bool {
+        !self.motions.is_empty()
     }
 
     /// Whether the film has AOVs.

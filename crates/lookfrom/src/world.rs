@@ -197,6 +197,39 @@ impl World {
         }
     }
 
+    /// Where the point of a surface that `ray` met at `hit` at a time of the shutter is at other times, in render space.
+    pub(crate) fn point_at<const N: usize>(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        time: f32,
+        times: [f32; N],
+    ) -> [DVec3; N] {
+        let (primitives, instance) = self.primitives(hit, time);
+        let still = || {
+            let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+            let (origin, direction) =
+                instance.map_or((origin, direction), |instance| instance.in_object(origin, direction));
+            DVec3::from_array(primitives.point(hit, [origin, direction], time).point.position)
+        };
+        let in_object = match primitives {
+            Primitives::Mesh(mesh) => {
+                let weights = [1.0 - hit.u - hit.v, hit.u, hit.v].map(f64::from);
+                times.map(|time| {
+                    let corners = mesh.corners_at(hit.primitive as usize, time);
+                    (0..3).map(|k| weights[k] * Vec3::from_array(corners[k]).as_dvec3()).sum()
+                })
+            }
+            _ => [still(); N],
+        };
+        std::array::from_fn(|k| match instance {
+            None => in_object[k],
+            Some(_) => {
+                self.instance(hit.instance, times[k]).render_from_object().transform_point3(in_object[k])
+            }
+        })
+    }
+
     /// The inputs of texture evaluation at a surface.
     pub fn texture_point(&self, surface: &SurfaceInteraction) -> TexturePoint<'_> {
         let world = self.origin + DVec3::from_array(surface.point.position);

@@ -39,17 +39,18 @@ impl Field<'_> {
     }
 }
 
+/// Whether a file begins as those of tensors.
+pub(super) fn is_tensor_file(bytes: &[u8]) -> bool {
+    bytes.starts_with(MAGIC)
+}
+
 impl<'a> Tensors<'a> {
-    /// The fields of a file.
+    /// The fields of a file for which [`is_tensor_file`].
     ///
     /// # Errors
-    /// `Syntax` for another kind of file, or one that is cut off; `Unsupported` for another version.
+    /// `Syntax` for one that is cut off; `Unsupported` for another version.
     pub(super) fn new(bytes: &'a [u8], at: &'a Location) -> Result<Self> {
         let mut header = Header { bytes, place: 0, at };
-        if bytes.get(..MAGIC.len()) != Some(MAGIC) {
-            return Err(Error::new(ErrorKind::Syntax, at, "not a file of measured tables")
-                .hint("it begins with \"tensor_file\", as the .bsdf files of the RGL material database do"));
-        }
         header.place = MAGIC.len();
         let version = header.take::<2>()?;
         if version != [1, 0] {

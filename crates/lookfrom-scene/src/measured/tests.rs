@@ -44,11 +44,43 @@ fn read(bytes: &[u8]) -> Result<Measured> {
 #[test]
 fn tables_have_their_sizes() {
     let measured = read(&file(&fields())).expect("a file");
-    assert!(measured.is_isotropic());
-    assert_eq!((measured.ndf.size, measured.sigma.size), ([2, 3], [3, 2]));
-    assert_eq!((measured.vndf.size, measured.vndf.values.len()), ([4, 2], 16));
-    assert_eq!((measured.spectra.size, measured.spectra.area()), ([2, 3], 6));
-    assert_eq!(measured.wavelengths, [400.0, 500.0, 600.0]);
+    assert!(measured.is_isotropic() && measured.is_consistent());
+    let Tables::Adaptive(tables) = measured.tables else { panic!("other tables") };
+    assert_eq!((tables.ndf.size, tables.sigma.size), ([2, 3], [3, 2]));
+    assert_eq!((tables.vndf.size, tables.vndf.values.len()), ([4, 2], 16));
+    assert_eq!((tables.spectra.size, tables.spectra.area()), ([2, 3], 6));
+    assert_eq!(tables.wavelengths, [400.0, 500.0, 600.0]);
+}
+
+/// A file of MERL's kind of 2 × 1 × 2 cells.
+fn half_angle_file() -> Vec<u8> {
+    let mut bytes: Vec<u8> = [2_u32, 1, 2].iter().flat_map(|count| count.to_le_bytes()).collect();
+    let numbers: [f64; 12] = [150.0, 300.0, 450.0, -1.0, 1500.0, 0.0, 0.0, 3000.0, 0.0, 1500.0, 0.0, 0.0];
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn merl_s_numbers_are_scaled_and_cells_without_one_are_black() {
+    let measured = read(&half_angle_file()).expect("a file");
+    assert!(measured.is_isotropic() && measured.is_consistent());
+    let Tables::HalfAngle(tables) = measured.tables else { panic!("other tables") };
+    assert_eq!(tables.counts, [2, 1, 2]);
+    assert_eq!(tables.values, [[0.1, 1.15, 0.0], [0.2, 0.0, 1.66], [0.3, 0.0, 0.0], [0.0, 2.3, 0.0]]);
+}
+
+#[test]
+fn damaged_files_of_merl_s_are_told() {
+    let cut = |bytes: Vec<u8>| read(&bytes).expect_err("damaged").to_string();
+    let mut own = half_angle_file();
+    own[..12].copy_from_slice(&[90_u32, 90, 180].map(u32::to_le_bytes).concat());
+    assert!(cut(own).contains("108 bytes for 90 × 90 × 180 cells"));
+    let mut endless = half_angle_file();
+    endless[12..20].copy_from_slice(&f64::INFINITY.to_le_bytes());
+    assert!(cut(endless).contains("not finite"));
+    let mut huge = half_angle_file();
+    huge[..12].fill(0xFF);
+    assert!(cut(huge).contains("not a file of measured tables"));
 }
 
 #[test]

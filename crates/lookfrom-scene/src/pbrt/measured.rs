@@ -13,7 +13,7 @@ impl Reader<'_, '_> {
     pub(super) fn measured(&mut self, p: &Parameters) -> Result<MaterialKind> {
         let Some(file) = p.string("filename")?.filter(|file| !file.is_empty()) else {
             let error = p.place.invalid("the material has no \"filename\"");
-            return Err(error.hint("give \"string filename\" the name of a .bsdf file"));
+            return Err(error.hint("give \"string filename\" the name of a .bsdf or .binary file"));
         };
         let path = self.resolve(file);
         if let Some(known) = self.measured.get(&path) {

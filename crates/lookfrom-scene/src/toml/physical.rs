@@ -82,7 +82,7 @@ impl Reader<'_, '_> {
 
     /// The tables of a file.
     fn measured(&mut self, value: Value<'_>) -> Result<Arc<Measured>> {
-        let path = self.resolve(value, "the name of a .bsdf file")?;
+        let path = self.resolve(value, "the name of a .bsdf or .binary file")?;
         Measured::read(&path, self.context).map(Arc::new).map_err(|error| value.blame(error))
     }
 

@@ -73,12 +73,19 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
             white_balance: table.or("white_balance", None, |value| kelvin(value).map(Some)),
             max_component: table.or("max_component", default.sensor.max_component, above_zero),
         },
-        layers: table.or("layers", default.layers, |value| {
-            Ok(if value.boolean()? { Layers::Geometry } else { Layers::None })
-        }),
+        layers: table.or("layers", default.layers, layers),
         light_paths: table.or("light_paths", Vec::new(), light_paths),
         background: default.background,
         denoise: table.or("denoise", default.denoise, Value::boolean),
+    }
+}
+
+/// AOVs by a word; `true` is for those of the geometry.
+fn layers(value: Value<'_>) -> Result<Layers> {
+    match value.boolean() {
+        Ok(true) => Ok(Layers::Geometry),
+        Ok(false) => Ok(Layers::None),
+        Err(_) => value.choice(Layers::WORDS),
     }
 }
 

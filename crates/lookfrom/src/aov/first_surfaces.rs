@@ -145,6 +145,13 @@ impl FirstSurfaces {
         Some(&self.aovs)
     }
 
+    /// The hit of a slot that counts, after [`Self::aovs`]: behind what its ray from the camera passes as if it were not there.
+    pub(crate) fn seen(&self, slot: usize, ray: Ray) -> RayHit {
+        let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
+        let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
+        behind.map_or(RayHit { ray, hit: self.outermost[slot] }, |(_, seen)| *seen)
+    }
+
     /// The AOVs of a slot by its noted hits; `None` for a miss.
     pub(crate) fn found_again(
         &self,
@@ -154,12 +161,10 @@ impl FirstSurfaces {
         (ray, time): (Ray, f32),
     ) -> Option<Aovs> {
         let outermost = RayHit { ray, hit: self.outermost[slot] };
-        let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
-        let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
         let is_blended = world.has_gaps || space.in_media.is_some();
         let blended = if is_blended { space.blended_aovs(world, outermost, time) } else { None };
         blended.or_else(|| {
-            let RayHit { ray, hit } = behind.map_or(outermost, |(_, seen)| *seen);
+            let RayHit { ray, hit } = self.seen(slot, ray);
             hit.is_hit().then(|| space.aovs(world, &world.surface_at(&ray, &hit, time), None))
         })
     }

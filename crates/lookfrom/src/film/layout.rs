@@ -5,6 +5,7 @@ use std::fmt;
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
 
 use super::light_paths::LightPathSums;
+use super::motion::MotionSums;
 use super::pixel::Pixel;
 use super::stored::{Stored, Sums, channels_of};
 use crate::aov::{AovSums, LayerSums};
@@ -14,6 +15,8 @@ use crate::aov::{AovSums, LayerSums};
 pub(crate) struct Layout {
     pub(super) alpha: bool,
     pub(super) aovs: bool,
+    /// How far first hits move.
+    pub(super) motion: bool,
     /// Variances in the channels of a sensor that does not measure X, Y and Z.
     pub(super) sensor: bool,
     /// Denoiser features.
@@ -27,6 +30,7 @@ const ALPHA: &str = "film.alpha";
 const AOVS: &str = "film.aov";
 const SENSOR: &str = "film.sensor";
 const FEATURES: &str = "film.feature";
+const MOTION: &str = "film.motion";
 
 fn light_path(index: usize) -> String {
     format!("film.light_path.{index}")
@@ -42,8 +46,9 @@ fn sensor_channels() -> Vec<String> {
 impl Layout {
     /// The layout for these settings.
     pub(super) fn of_image(image: &ImageSettings) -> Self {
-        let aovs = image.layers == Layers::Geometry;
+        let aovs = image.layers != Layers::None;
         Self {
+            motion: image.layers == Layers::Motion,
             alpha: image.background != Background::Environment,
             aovs,
             sensor: aovs && !image.sensor.measures_xyz(),
@@ -62,6 +67,7 @@ impl Layout {
             aovs: has(AOVS),
             sensor: has(SENSOR),
             features: has(FEATURES),
+            motion: has(MOTION),
             light_paths: (0..).take_while(|&index| has(&light_path(index))).count(),
         }
     }
@@ -80,6 +86,7 @@ impl Layout {
         add(self.sensor, sensor_channels());
         add(self.aovs, LayerSums::channels(AOVS));
         add(self.features, AovSums::channels(FEATURES));
+        add(self.motion, MotionSums::channels(MOTION));
         (0..self.light_paths).for_each(|index| add(true, LightPathSums::channels(&light_path(index))));
         names
     }
@@ -93,6 +100,7 @@ impl Layout {
         const FEATURES: u64 = 65;
         const DENOISER: u64 = 10;
         const ALPHA: u64 = 20;
+        const MOTION: u64 = 25;
         const LIGHT_PATHS: u64 = 30;
         /// Bytes of a pixel of the picture, in which a crop has its place.
         const DEVELOPED: u64 = 30;
@@ -101,6 +109,7 @@ impl Layout {
             + u64::from(self.aovs) * AOVS
             + u64::from(self.features) * (FEATURES + DENOISER)
             + u64::from(self.alpha) * ALPHA
+            + u64::from(self.motion) * MOTION
             + self.light_paths as u64 * LIGHT_PATHS;
         let developed = DEVELOPED + u64::from(self.alpha) * OPACITY;
         let PixelBounds { x0, y0, x1, y1 } = area;
@@ -117,6 +126,7 @@ impl fmt::Display for Layout {
             ("AOVs", self.aovs),
             ("variances in the sensor's channels", self.sensor),
             ("denoiser features", self.features),
+            ("motion vectors", self.motion),
         ];
         formatter.write_str("light")?;
         for (kind, _) in kinds.iter().filter(|(_, has)| *has) {
@@ -136,10 +146,11 @@ mod tests {
 
     #[test]
     fn channels_tell_the_layout() {
-        for bits in 0..48 {
+        for bits in 0..96 {
             let has = |bit: u32| bits >> bit & 1 != 0;
-            let [alpha, aovs, sensor, features] = [0, 1, 2, 3].map(has);
-            let layout = Layout { alpha, aovs, sensor, features, light_paths: bits as usize / 16 };
+            let [alpha, aovs, sensor, features, motion] = [0, 1, 2, 3, 4].map(has);
+            let light_paths = bits as usize / 32;
+            let layout = Layout { alpha, aovs, motion, sensor, features, light_paths };
             let channels = layout.channels();
             let mut names: Vec<&str> = channels.iter().map(String::as_str).collect();
             names.sort_unstable();

@@ -181,6 +181,7 @@ macro_rules! for_each_plane {
         { $(let $plane = $($borrow)+ $film.channels;)+ $body }
         { $(let $plane = $($borrow)+ $film.layers;)+ $body }
         { $(let $plane = $($borrow)+ $film.features;)+ $body }
+        { $(let $plane = $($borrow)+ $film.motions;)+ $body }
         for index in 0..[$($film.light_paths.len()),+].into_iter().min().unwrap_or(0) {
             $(let $plane = $($borrow)+ $film.light_paths[index];)+
             $body

@@ -8,6 +8,7 @@ use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 use super::layout::Layout;
 use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
+use super::motion::MotionSums;
 use super::pixel::Pixel;
 use super::{BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
 use crate::aov::{AovSums, Aovs, LayerSums};
@@ -25,6 +26,8 @@ pub struct FilmTile {
     pub(super) channels: Vec<Pixel>,
     /// One per pixel, or none.
     pub(super) features: Vec<AovSums>,
+    /// One per pixel, or none.
+    pub(super) motions: Vec<MotionSums>,
     /// For each layer of light-path expressions, one per pixel.
     pub(super) light_paths: Vec<Vec<LightPathSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴: one per pixel, or none.
@@ -67,6 +70,7 @@ impl FilmTile {
             layers: empty(of(layout.aovs))?,
             channels: empty(of(layout.sensor))?,
             features: empty(of(layout.features))?,
+            motions: empty(of(layout.motion))?,
             light_paths: (0..layout.light_paths).map(|_| empty(count)).collect::<Result<_>>()?,
             alphas: empty(of(layout.alpha))?,
             alpha_squares: empty(of(layout.alpha_squares()))?,
@@ -162,6 +166,21 @@ impl FilmTile {
         self.layers.get_mut(index).into_iter().for_each(|layer| layer.merge(sums));
         let features = self.features.get_mut(index).filter(|_| are_features);
         features.into_iter().for_each(|features| features.merge(&sums.shared));
+    }
+
+    /// Whether motion vectors are needed: whether [`FilmTile::add_motion`] does anything.
+    pub fn has_motion(&self) -> bool {
+        !self.motions.is_empty()
+    }
+
+    /// Adds how far the first hit of one sample moves in the picture while the shutter is open, where there is memory for it: in pixels, to
+    /// the right and upwards.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile.
+    pub fn add_motion(&mut self, x: u32, y: u32, motion: [f32; 2]) {
+        let index = self.index_inside(x, y);
+        self.motions.get_mut(index).into_iter().for_each(|sums| sums.add(motion));
     }
 
     /// Adds the sensor's channels of one sample, where there is memory for them and all are finite.

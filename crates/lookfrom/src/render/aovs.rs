@@ -1,7 +1,10 @@
 //! AOVs of a picture: those of a batch, for the film.
 
+use glam::{DMat4, DVec3};
+
 use super::{Batch, Renderer, SampleId};
-use crate::aov::CameraSpace;
+use crate::aov::{CameraSpace, RayHit};
+use crate::core::lanes::LANES;
 use crate::film::FilmTile;
 
 impl Renderer {
@@ -17,9 +20,36 @@ impl Renderer {
     /// Adds the AOVs of a sample of each pixel to a tile or to its sums, where they are wanted.
     pub(super) fn add_aovs(&self, ids: &[SampleId], batch: &mut Batch, tile: &mut FilmTile) {
         let Batch { aov_sums, queues, start, .. } = batch;
-        if let Some(aovs) = queues.first_surfaces.aovs(&self.world, (&start.rays, &start.times)) {
-            tile.add_first_hits(ids, aovs, aov_sums);
+        let Some(aovs) = queues.first_surfaces.aovs(&self.world, (&start.rays, &start.times)) else { return };
+        tile.add_first_hits(ids, aovs, aov_sums);
+        if tile.has_motion() {
+            let hits: Vec<u32> = aovs.iter().map(|eight| eight.hits).collect();
+            for (slot, id) in
+                ids.iter().enumerate().filter(|(slot, _)| hits[slot / LANES] >> (slot % LANES) & 1 != 0)
+            {
+                let seen = queues.first_surfaces.seen(slot, start.rays[slot]);
+                if let Some(motion) = self.motion_of(seen, start.times.of(slot)) {
+                    tile.add_motion(id.pixel[0], id.pixel[1], motion);
+                }
+            }
         }
+    }
+
+    /// How far what a ray has hit at a time moves in the picture while the shutter is open: pixels to the right and upwards. `None` for
+    /// cameras without an image plane, and for what is behind the camera at the opening or the closing.
+    fn motion_of(&self, RayHit { ray, hit }: RayHit, time: f32) -> Option<[f32; 2]> {
+        if !self.moves() || !hit.is_hit() {
+            return Some([0.0; 2]);
+        }
+        let camera = &self.view.camera;
+        let [opening, closing] = self.world.point_at(&ray, &hit, time, [0.0, 1.0]);
+        let image_at = |point: DVec3, time: f64| {
+            let motion = camera.motion.as_ref().map_or(DMat4::IDENTITY, |motion| motion.at(time));
+            let view_from_world = (motion * camera.world_from_view()).inverse();
+            camera.image_of(view_from_world.transform_point3(self.world.origin + point))
+        };
+        let ([x0, y0], [x1, y1]) = (image_at(opening, 0.0)?, image_at(closing, 1.0)?);
+        Some([(x1 - x0) as f32, (y1 - y0) as f32])
     }
 }
 

@@ -182,7 +182,7 @@ fn sensor(image: &ImageSettings) -> Vec<(&'static str, String)> {
     if max_component != default.max_component {
         texts.push(("max_component", max_component.to_string()));
     }
-    if image.layers == Layers::Geometry {
+    if image.layers != Layers::None {
         let channels = *color::Sensor::new(&image.sensor).variance_from_rgb();
         texts.push((CHANNELS_ATTRIBUTE, channels_text(&channels)));
     }

@@ -16,6 +16,9 @@ const AOVS: [&str; 15] = [
 /// red, green and blue. The header states which (`variance.from_rgb`).
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
 
+/// Names of the channels of motion vectors: pixels to the right, and upwards.
+const MOTION: [&str; 2] = ["motion.X", "motion.Y"];
+
 /// Names of the channels of the light before denoising.
 const NOISY: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
 
@@ -41,10 +44,11 @@ impl Layers<'_> {
             Self::Given(layers) => layers.iter().map(|(name, _)| name.clone()).collect(),
             Self::OfFilm { film, light_paths, noisy } => {
                 let aovs = AOVS.iter().chain(&VARIANCES).filter(|_| film.has_layers());
+                let motion = MOTION.iter().filter(|_| film.has_motion());
                 let noisy = NOISY.iter().filter(|_| noisy.is_some());
                 let of_light_paths =
                     light_paths.iter().flat_map(|name| ["R", "G", "B"].map(|c| format!("{name}.{c}")));
-                let names = aovs.map(|name| (*name).to_owned()).chain(of_light_paths);
+                let names = aovs.chain(motion).map(|name| (*name).to_owned()).chain(of_light_paths);
                 names.chain(noisy.map(|name| (*name).to_owned())).collect()
             }
         }
@@ -71,6 +75,9 @@ impl Layers<'_> {
                     };
                     if film.has_layers() {
                         aovs(film, x, row).into_iter().for_each(&mut put_next);
+                    }
+                    if film.has_motion() {
+                        film.motion(x, row).unwrap_or_default().into_iter().for_each(&mut put_next);
                     }
                     if !light_paths.is_empty() {
                         film.light_paths(x, row).flatten().for_each(&mut put_next);

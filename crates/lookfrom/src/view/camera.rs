@@ -302,6 +302,23 @@ impl Camera {
         }
     }
 
+    /// The point of the image, in pixels, `y` up, at which a point of view space is seen: by a camera with an image plane, through the
+    /// middle of its lens. `None` for other cameras, and behind the camera.
+    pub(crate) fn image_of(&self, point: DVec3) -> Option<[f64; 2]> {
+        let on_plane = match self.projection {
+            Projection::Orthographic { .. } => point,
+            _ => point * (self.distance / point.z),
+        };
+        let is_seen = self.is_flat() && (point.z > 0.0 || self.is_parallel());
+        let at = |plane: f64, pixel: f64, axis: f64| plane / pixel - axis;
+        is_seen.then(|| {
+            [
+                at(on_plane.x, self.s2.x_axis.x, self.t1.w_axis.x),
+                at(on_plane.y, self.s2.y_axis.y, self.t1.w_axis.y),
+            ]
+        })
+    }
+
     /// The point of the film of a lens system, in lens space, where the point `(x_k, y_k)` of the image is: upside down, left and right
     /// interchanged.
     pub(crate) fn film_point(&self, point: [f64; 2]) -> Option<[f64; 2]> {

@@ -146,3 +146,51 @@ fn samples_do_not_depend_on_others_and_are_told_as_they_are() {
         }
     }
 }
+
+/// The mean motion of what is seen in a pixel of a picture of 16 × 16 pixels, 4 units high, around the origin; what is `moving` is red.
+fn motion_seen(moving: &str, camera: &str, [x, y]: [u32; 2]) -> [f32; 2] {
+    let text = format!(
+        "[camera]\n{camera}\nprojection = \"orthographic\"\nheight = 4\n\
+         [image]\nwidth = 16\nheight = 16\nlayers = \"motion\"\n[render]\nsamples = 16\n\
+         [materials.red]\ndiffuse = [1, 0, 0]\n{moving}\n"
+    );
+    let name = PathBuf::from("moving.toml");
+    let files = Memory([(name.clone(), text.into_bytes())].into());
+    let mut context = LoadContext::new(&files);
+    (context.import.at, context.import.shutter, context.variables.fps) = (Some(0.0), Some(0.5), 1.0);
+    let scene = load::scene(&name, &mut context).unwrap_or_else(|error| panic!("{error}"));
+    let film = Compiled::new(scene).film();
+    assert!(film.has_motion() && film.has_layers());
+    film.motion(x, y).expect("motion vectors")
+}
+
+#[test]
+fn motion_vectors_tell_pixels_from_the_opening_to_the_closing() {
+    let still = "lookfrom = [0, 0, 5]\nlookat = [0, 0, 0]";
+    let near = |found: [f32; 2], expected: [f32; 2]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        assert!(off < 0.01, "{found:?}, expected {expected:?}");
+    };
+    // A ball that rises by two units in a second, for half of one: four of sixteen pixels.
+    let ball = "[[sphere]]\ncenter = [0, \"= 2 * t - 0.5\", 0]\nradius = 1\nmaterial = \"red\"";
+    near(motion_seen(ball, still, [8, 7]), [0.0, 4.0]);
+    // A quad that grows from two to three units: a point at a part of its width moves by as many units. In pixel 8 that is 1.125 / (2 + t).
+    let quad = "[[quad]]\ncorner = [-1, -1, 0]\nedge_u = [\"= 2 + 2 * t\", 0, 0]\nedge_v = [0, 2, 0]\nmaterial = \"red\"";
+    let [x, y] = motion_seen(quad, still, [8, 8]);
+    assert!((x - 4.5 * 1.5_f32.ln()).abs() < 0.1 && y.abs() < 1e-5, "{x} {y}");
+    // A camera that goes to the left by one unit in a second: all is two pixels further to the right.
+    let wall = "[[quad]]\ncorner = [-4, -4, 0]\nedge_u = [8, 0, 0]\nedge_v = [0, 8, 0]\nmaterial = \"red\"";
+    let camera = "lookfrom = [\"= -t\", 0, 5]\nlookat = [\"= -t\", 0, 0]";
+    near(motion_seen(wall, camera, [3, 12]), [2.0, 0.0]);
+    // What the camera follows stands still.
+    let followed = "[[sphere]]\ncenter = [\"= -t\", 0, 0]\nradius = 1\nmaterial = \"red\"";
+    near(motion_seen(followed, camera, [8, 8]), [0.0, 0.0]);
+    // Nothing is seen.
+    near(motion_seen(ball, still, [0, 15]), [0.0, 0.0]);
+    // A quad that turns by a quarter: chords of √2 times the distance 1.132 from the middle, in directions of 45° to both sides of the
+    // tangent there, which is 6.3° off the vertical.
+    let turning = "[[quad]]\ncorner = [-2, -2, 0]\nedge_u = [4, 0, 0]\nedge_v = [0, 4, 0]\nmaterial = \"red\"\n\
+                   transform = [{ rotate = { axis = [0, 0, 1], angle = \"= 180 * t\" } }]";
+    let [x, y] = motion_seen(turning, still, [12, 7]);
+    assert!((x + 0.63).abs() < 0.3 && (y - 5.73).abs() < 0.3, "{x} {y}");
+}

@@ -1,9 +1,11 @@
 //! Measured materials: Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material Acquisition and Rendering"; with the
 //! conventions of pbrt-v4.
 //!
-//! `f = s(u, λ) D(ω_m) / (4 σ(ω_o) cos θ_i)`, where u are the two numbers that choose ω_m as a visible normal. Directions are sampled by the
-//! luminance of s over u.
+//! Directions are sampled as in the paper: two numbers become others, u, by the luminance that tables have over them, and those choose a
+//! visible normal ω_m. RGL's tables have `f = s(u, λ) D(ω_m) / (4 σ(ω_o) cos θ_i)`; MERL's have f itself, and the densities are made of it
+//! (`half_angle`).
 
+mod half_angle;
 mod interpolant;
 
 use std::f32::consts::{FRAC_2_PI, PI};
@@ -12,7 +14,9 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 use lookfrom_scene::measured as written;
+use lookfrom_scene::measured::Tables;
 
+use self::half_angle::HalfAngleValues;
 use self::interpolant::{Between, Interpolant};
 use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, same_side};
 use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
@@ -21,14 +25,27 @@ use crate::core::spectrum::Spectrum;
 /// The tables of a measured material, compiled.
 pub struct MeasuredTables {
     is_isotropic: bool,
+    /// The density of visible normals.
+    vndf: Interpolant<2>,
+    /// The density of the numbers that choose one.
+    luminance: Interpolant<2>,
+    values: Values,
+    digest: String,
+}
+
+/// From directions to `f`.
+enum Values {
+    Adaptive(Box<Reflectances>),
+    HalfAngle(HalfAngleValues),
+}
+
+/// The reflectance s over the numbers that choose a normal, and what makes `f` of it.
+struct Reflectances {
     ndf: Interpolant<0>,
     sigma: Interpolant<0>,
-    vndf: Interpolant<2>,
-    luminance: Interpolant<2>,
     spectra: Interpolant<3>,
     /// Reflectances of red, green and blue, as wavelengths 0, 1 and 2 of a table.
     colors: Interpolant<3>,
-    digest: String,
 }
 
 impl fmt::Debug for MeasuredTables {
@@ -38,18 +55,33 @@ impl fmt::Debug for MeasuredTables {
 }
 
 impl MeasuredTables {
-    /// Compiles tables. For each wavelength there is the colour, in linear Rec. 709, of what is 1 there and 0 at its neighbours.
+    /// Compiles tables. For each wavelength of RGL's there is the colour, in linear Rec. 709, of what is 1 there and 0 at its neighbours.
     pub fn new(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> Self {
-        let written::Measured { phi, theta, wavelengths, .. } = written;
-        Self {
-            is_isotropic: written.is_isotropic(),
-            ndf: Interpolant::plain(&written.ndf, []),
-            sigma: Interpolant::plain(&written.sigma, []),
-            vndf: Interpolant::density(&written.vndf, [phi, theta]),
-            luminance: Interpolant::density(&written.luminance, [phi, theta]),
-            spectra: Interpolant::plain(&written.spectra, [phi, theta, wavelengths]),
-            colors: Interpolant::plain(&colors(written, of_wavelengths), [phi, theta, &[0.0, 1.0, 2.0]]),
-            digest: written.digest.clone(),
+        let (is_isotropic, digest) = (written.is_isotropic(), written.digest.clone());
+        match &written.tables {
+            Tables::Adaptive(tables) => {
+                let written::Adaptive { phi, theta, wavelengths, .. } = &**tables;
+                Self {
+                    is_isotropic,
+                    vndf: Interpolant::density(&tables.vndf, [phi, theta]),
+                    luminance: Interpolant::density(&tables.luminance, [phi, theta]),
+                    values: Values::Adaptive(Box::new(Reflectances {
+                        ndf: Interpolant::plain(&tables.ndf, []),
+                        sigma: Interpolant::plain(&tables.sigma, []),
+                        spectra: Interpolant::plain(&tables.spectra, [phi, theta, wavelengths]),
+                        colors: Interpolant::plain(
+                            &colors(tables, of_wavelengths),
+                            [phi, theta, &[0.0, 1.0, 2.0]],
+                        ),
+                    })),
+                    digest,
+                }
+            }
+            Tables::HalfAngle(tables) => {
+                let values = HalfAngleValues::new(tables);
+                let [vndf, luminance] = values.densities();
+                Self { is_isotropic, vndf, luminance, values: Values::HalfAngle(values), digest }
+            }
         }
     }
 
@@ -86,7 +118,7 @@ impl MeasuredTables {
 }
 
 /// Spectra as colours, in place of three wavelengths.
-fn colors(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> written::Table {
+fn colors(written: &written::Adaptive, of_wavelengths: &[[f32; 3]]) -> written::Table {
     let area = written.spectra.area();
     let count = written.wavelengths.len();
     let mut values = Vec::with_capacity(written.spectra.values.len() / count * 3);
@@ -143,31 +175,50 @@ impl Measured {
     }
 
     /// `f` for directions on the outside, by the numbers that choose their half vector, and its place.
-    fn value(&self, seen: &Seen, u: [f32; 2], normal: [f32; 2], wi: Vec3) -> Spectrum {
-        let tables = self.tables;
-        let reflected = match self.wavelengths {
+    fn value(&self, seen: &Seen, u: [f32; 2], normal: [f32; 2], [wo, wi]: [Vec3; 2]) -> Spectrum {
+        match &self.tables.values {
+            Values::Adaptive(values) => values.value(seen, u, normal, wi, self.wavelengths),
+            Values::HalfAngle(values) => values.value(wo, wi, self.wavelengths),
+        }
+    }
+}
+
+impl Reflectances {
+    fn value(
+        &self,
+        seen: &Seen,
+        u: [f32; 2],
+        normal: [f32; 2],
+        wi: Vec3,
+        wavelengths: Option<[f32; 4]>,
+    ) -> Spectrum {
+        let reflected = match wavelengths {
             Some(wavelengths) => {
-                let at = |nm| tables.spectra.value(u, &tables.spectra.between([seen.phi, seen.theta, nm]));
+                let at = |nm| self.spectra.value(u, &self.spectra.between([seen.phi, seen.theta, nm]));
                 Spectrum(wavelengths.map(|nm| at(nm).max(0.0)))
             }
             None => {
                 let at = |channel: f32| {
-                    tables.colors.value(u, &tables.colors.between([seen.phi, seen.theta, channel]))
+                    self.colors.value(u, &self.colors.between([seen.phi, seen.theta, channel]))
                 };
                 Spectrum::from_rgb([0.0, 1.0, 2.0].map(at))
             }
         };
-        let sigma = tables.sigma.value(place(seen.theta, seen.phi), &tables.sigma.between([]));
-        let ndf = tables.ndf.value(normal, &tables.ndf.between([]));
+        let sigma = self.sigma.value(place(seen.theta, seen.phi), &self.sigma.between([]));
+        let ndf = self.ndf.value(normal, &self.ndf.between([]));
         reflected * (ndf / (4.0 * sigma.max(f32::MIN_POSITIVE) * wi.z.abs()))
     }
 }
 
+/// The sine of a direction's angle to the normal.
+fn across(w: Vec3) -> f32 {
+    (w.x * w.x + w.y * w.y).sqrt()
+}
+
 /// The angles θ to the normal and φ around it, −π … π.
 fn angles(w: Vec3) -> (f32, f32) {
-    let across = (w.x * w.x + w.y * w.y).sqrt();
     let turns = |y, x| angle_in_turns::<f32>(y, x) * (2.0 * PI);
-    (turns(across, w.z), turns(w.y, w.x))
+    (turns(across(w), w.z), turns(w.y, w.x))
 }
 
 /// The place of a direction in tables.
@@ -175,10 +226,16 @@ fn place(theta: f32, phi: f32) -> [f32; 2] {
     [(theta * FRAC_2_PI).max(0.0).sqrt(), phi / (2.0 * PI) + 0.5]
 }
 
+/// The direction of a place in tables, turned by φ.
+fn normal_at([x, y]: [f32; 2], phi: f32) -> Vec3 {
+    let (sin_phi, cos_phi) = sin_cos_of_turns(y - 0.5 + phi / (2.0 * PI));
+    let (sin, cos) = sin_cos_of_turns(0.25 * x * x);
+    Vec3::new(sin * cos_phi, sin * sin_phi, cos)
+}
+
 /// What one density of normals in tables is over solid angle of incident directions.
 fn jacobian(wo: Vec3, wm: Vec3, [x, _]: [f32; 2]) -> f32 {
-    let sin = (wm.x * wm.x + wm.y * wm.y).sqrt();
-    4.0 * wo.dot(wm) * (2.0 * PI * PI * x * sin).max(1e-6)
+    4.0 * wo.dot(wm) * (2.0 * PI * PI * x * across(wm)).max(1e-6)
 }
 
 /// Both directions on the outside, and their half vector; `None` where light does not go.
@@ -197,7 +254,7 @@ impl ScatteringFunction for Measured {
         let seen = self.seen(wo);
         let normal = self.place_of_normal(&seen, wm);
         let (u, _) = self.tables.vndf.invert(normal, &seen.by_direction[0]);
-        self.value(&seen, u, normal, wi)
+        self.value(&seen, u, normal, [wo, wi])
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
@@ -216,17 +273,13 @@ impl ScatteringFunction for Measured {
         let (normal, of_normal) = self.tables.vndf.sample(u, &seen.by_direction[0])?;
 
         // The normal, and what it reflects.
-        let [x, y] = normal;
-        let around = if self.tables.is_isotropic { seen.phi } else { 0.0 };
-        let (sin_phi, cos_phi) = sin_cos_of_turns(y - 0.5 + around / (2.0 * PI));
-        let (sin, cos) = sin_cos_of_turns(0.25 * x * x);
-        let wm = Vec3::new(sin * cos_phi, sin * sin_phi, cos);
+        let wm = normal_at(normal, if self.tables.is_isotropic { seen.phi } else { 0.0 });
         let wi = wm * (2.0 * wo.dot(wm)) - wo;
         if !same_side(wo, wi) {
             return None;
         }
         let pdf = of_luminance * of_normal / jacobian(wo, wm, normal);
-        let f = self.value(&seen, u, normal, wi);
+        let f = self.value(&seen, u, normal, [wo, wi]);
         let wi = wi.normalize();
         Some(BsdfSample::new(if is_inside { -wi } else { wi }, f, pdf, self.lobes()))
     }

@@ -60,7 +60,7 @@ fn hair(h: f32, betas: [f32; 2]) -> Bsdf {
 
 /// A material of tables made here, seen from so many azimuths: facets of several slopes, most of them flat.
 fn measured(azimuths: usize) -> Bsdf {
-    use lookfrom_scene::measured::{Measured, Table};
+    use lookfrom_scene::measured::{Adaptive, Measured, Table, Tables};
     let theta = vec![0.0, 0.7, 1.5];
     let phi: Vec<f32> =
         (0..azimuths).map(|k| -PI + TAU as f32 * k as f32 / (azimuths.max(2) - 1) as f32).collect();
@@ -75,7 +75,7 @@ fn measured(azimuths: usize) -> Bsdf {
     let seed = azimuths as u64;
     // The last azimuth is the first.
     let around = |k: u64| k % (count as u64 - if azimuths > 1 { 3 } else { 0 }).max(1);
-    let written = Measured {
+    let tables = Adaptive {
         ndf: table([9, 4], 1, &|_, x, _| 0.4 - 0.04 * x as f32),
         sigma: table([5, 2], 1, &|_, x, _| 1.0 - 0.2 * x as f32),
         vndf: table([7, 6], count, &|k, x, y| {
@@ -91,11 +91,29 @@ fn measured(azimuths: usize) -> Bsdf {
         phi,
         theta,
         wavelengths: vec![400.0, 700.0],
+    };
+    let written = Measured {
+        tables: Tables::Adaptive(Box::new(tables)),
         digest: format!("made for tests, {azimuths}"),
     };
     assert!(written.is_consistent());
     let tables = measured::MeasuredTables::kept(&written, &[[0.2, 0.3, 0.9], [0.8, 0.7, 0.1]]);
     Bsdf::Measured(measured::Measured::new(tables, None))
+}
+
+/// A material by half vectors: gloss with a colour on a matte ground, without light beside its horizon.
+fn merl() -> Bsdf {
+    use lookfrom_scene::measured::{HalfAngle, Measured, Tables};
+    let counts = [12, 9, 10];
+    let value = |cell: usize| {
+        let (h, d, phi) = (cell / 90, cell / 10 % 9, cell % 10);
+        let gloss = 0.3 * (-(h as f32).powi(2) / 18.0).exp() * (1.0 + 0.1 * d as f32);
+        [0.1 + gloss, 0.1 + 0.7 * gloss, if h > 9 { 0.0 } else { 0.05 + 0.01 * phi as f32 }]
+    };
+    let values = (0..counts.iter().product()).map(value).collect();
+    let tables = Tables::HalfAngle(HalfAngle { counts, values });
+    let written = Measured { tables, digest: "made for tests, half vectors".into() };
+    Bsdf::Measured(measured::Measured::new(measured::MeasuredTables::kept(&written, &[]), None))
 }
 
 fn whitted() -> WhittedBsdf {
@@ -132,6 +150,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("hair rough", hair(-0.8, [0.6, 0.8])),
         ("measured", measured(1)),
         ("measured grain", measured(5)),
+        ("half vectors", merl()),
         ("whitted", Bsdf::Whitted(whitted())),
         ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
     ];

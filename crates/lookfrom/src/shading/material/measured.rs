@@ -1,6 +1,6 @@
 //! Measured materials: their spectra as colours, and their BSDF for a sample.
 
-use lookfrom_scene::measured as written;
+use lookfrom_scene::measured::{Measured as Written, Tables};
 
 use super::Evaluator;
 use crate::core::color::{DenselySampledSpectrum, standard_illuminant};
@@ -11,8 +11,11 @@ use crate::shading::texture::SpectralMode;
 const SHORTEST: f32 = 360.0;
 
 /// The compiled tables of a material.
-pub(super) fn tables(written: &written::Measured) -> &'static MeasuredTables {
-    let wavelengths = &written.wavelengths;
+pub(super) fn tables(written: &Written) -> &'static MeasuredTables {
+    let wavelengths: &[f32] = match &written.tables {
+        Tables::Adaptive(tables) => &tables.wavelengths,
+        Tables::HalfAngle(_) => &[],
+    };
     let of_wavelengths: Vec<_> = (0..wavelengths.len()).map(|index| color(wavelengths, index)).collect();
     MeasuredTables::kept(written, &of_wavelengths)
 }
