@@ -11,6 +11,7 @@
 //! enabled. The film keeps them packed, in `plane`: in about half of that.
 
 pub mod allocation;
+mod buckets;
 mod fireflies;
 mod first_hits;
 mod layout;
@@ -23,6 +24,7 @@ mod stored;
 mod sums;
 mod tile;
 
+use self::buckets::BucketSums;
 pub use self::fireflies::Firefly;
 pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
@@ -64,6 +66,8 @@ pub struct Film {
     features: Plane<AovSums>,
     /// For each layer of light-path expressions.
     light_paths: Vec<Plane<LightPathSums>>,
+    /// For each bucket of a spectral film.
+    buckets: Vec<Plane<BucketSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴.
     alphas: Plane<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸.
@@ -156,6 +160,7 @@ impl Film {
             channels: plane(layout.sensor, size)?,
             features: plane(layout.features, size)?,
             light_paths: (0..layout.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
+            buckets: (0..layout.buckets).map(|_| plane(true, size)).collect::<Result<_>>()?,
             alphas: plane(layout.alpha, size)?,
             alpha_squares: plane(layout.alpha_squares(), size)?,
             dropped: 0,
@@ -346,6 +351,18 @@ impl Film {
         self.light_paths
             .iter()
             .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
+    }
+
+    /// The mean spectral radiance of a pixel in each bucket of a spectral film, by wavelength: over the wavelengths that its samples had
+    /// in the bucket, 0 where there were none and outside of [`Film::area`]. The light of D65 of luminance 1 has the mean 1 over all
+    /// wavelengths, weighted by the luminous efficiency.
+    pub fn spectrum(&self, x: u32, y: u32) -> impl Iterator<Item = f32> {
+        self.buckets.iter().map(move |bucket| self.sums_of(bucket, x, y).map_or(0.0, |sums| sums.mean()))
+    }
+
+    /// The number of buckets of a spectral film; 0 of another one.
+    pub fn buckets(&self) -> usize {
+        self.buckets.len()
     }
 
     /// Whether the film has AOVs.

@@ -22,12 +22,13 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
-    ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
+    ColorMode, ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
+    SpectralFilm,
 };
-use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
+use lookfrom_scene::{Error, ErrorKind, Location, Remedy, Result, Scene, Warning};
 
 use crate::aov::{AovAccumulator, RayHit};
-use crate::core::color::{Sensor, Wavelengths};
+use crate::core::color::Sensor;
 use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
@@ -168,6 +169,7 @@ impl Renderer {
                 image.width, image.height
             ));
         }
+        check_spectral_film(image, &settings)?;
         let world = match world.needs_footprint() {
             true => world.seen_by(footprint::of_pixels(&view.camera)),
             false => world,
@@ -441,6 +443,9 @@ impl Renderer {
                         let layers = self.light_by_paths(batch, slot, &traced);
                         tile.add_light_paths(x, y, traced.rgb, layers);
                     }
+                    if tile.has_buckets() {
+                        tile.add_spectrum(x, y, traced.rgb, self.light_by_buckets(batch, slot, &traced));
+                    }
                     if tile.has_channels() {
                         tile.add_channels(x, y, self.sensor.channels(traced.rgb));
                     }
@@ -484,9 +489,29 @@ fn light_paths(world: &World, layers: &[LightPathLayer]) -> Result<Option<LightP
     LightPaths::new(layers, lights.map(|(index, name)| (name.as_str(), is_environment(index)))).map(Some)
 }
 
-/// The wavelengths of a sample, chosen by its random numbers.
-fn lanes_by([u, _]: [f32; 2]) -> SpectralMode {
-    SpectralMode::Spectral(Wavelengths::sample_visible(u))
+/// Refuses a spectral film that is out of range, or of light that has no wavelengths.
+fn check_spectral_film(image: &ImageSettings, settings: &RenderSettings) -> Result<()> {
+    let Some(film) = image.spectral_film else { return Ok(()) };
+    let invalid = |message: String| Error::new(ErrorKind::Invalid, &Location::default(), message);
+    if film.buckets > SpectralFilm::MOST_BUCKETS {
+        let most = SpectralFilm::MOST_BUCKETS;
+        return Err(invalid(format!("{} spectral buckets; expected at most {most}", film.buckets)));
+    }
+    if !SpectralFilm::is_range(film.range) {
+        let [shortest, longest] = film.range;
+        let expected = SpectralFilm::RANGE;
+        return Err(invalid(format!("the wavelengths {shortest} to {longest} nm; expected {expected}")));
+    }
+    let message = match (settings.color, settings.integrator) {
+        (ColorMode::Rgb, _) => {
+            "a spectral film needs light of wavelengths, and this is rendered in RGB".to_owned()
+        }
+        (ColorMode::Spectral, integrator) if film.buckets > 0 && !integrator.needs_light() => {
+            format!("a spectral film needs light, and the integrator {:?} shows none", integrator.word())
+        }
+        (ColorMode::Spectral, _) => return Ok(()),
+    };
+    Err(invalid(message).hint(Remedy::SpectralLight))
 }
 
 /// The pixels of disjoint areas by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.
