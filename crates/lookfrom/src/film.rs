@@ -353,18 +353,6 @@ impl Film {
             .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
     }
 
-    /// The mean spectral radiance of a pixel in each bucket of a spectral film, by wavelength: over the wavelengths that its samples had
-    /// in the bucket, 0 where there were none and outside of [`Film::area`]. The light of D65 of luminance 1 has the mean 1 over all
-    /// wavelengths, weighted by the luminous efficiency.
-    pub fn spectrum(&self, x: u32, y: u32) -> impl Iterator<Item = f32> {
-        self.buckets.iter().map(move |bucket| self.sums_of(bucket, x, y).map_or(0.0, |sums| sums.mean()))
-    }
-
-    /// The number of buckets of a spectral film; 0 of another one.
-    pub fn buckets(&self) -> usize {
-        self.buckets.len()
-    }
-
     /// Whether the film has AOVs.
     pub fn has_layers(&self) -> bool {
         !self.layers.is_empty()

@@ -13,6 +13,7 @@ mod interior;
 mod labels;
 mod progress;
 mod sensor;
+mod spectral_film;
 mod start;
 mod transport;
 
@@ -22,10 +23,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_scene::settings::{
-    ColorMode, ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
-    SpectralFilm,
+    ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
 };
-use lookfrom_scene::{Error, ErrorKind, Location, Remedy, Result, Scene, Warning};
+use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::aov::{AovAccumulator, RayHit};
 use crate::core::color::Sensor;
@@ -169,7 +169,7 @@ impl Renderer {
                 image.width, image.height
             ));
         }
-        check_spectral_film(image, &settings)?;
+        spectral_film::check(image, &settings)?;
         let world = match world.needs_footprint() {
             true => world.seen_by(footprint::of_pixels(&view.camera)),
             false => world,
@@ -487,31 +487,6 @@ fn light_paths(world: &World, layers: &[LightPathLayer]) -> Result<Option<LightP
     let is_environment = |index: usize| world.environments.contains(&(index as u32));
     let lights = world.names.lights.iter().enumerate();
     LightPaths::new(layers, lights.map(|(index, name)| (name.as_str(), is_environment(index)))).map(Some)
-}
-
-/// Refuses a spectral film that is out of range, or of light that has no wavelengths.
-fn check_spectral_film(image: &ImageSettings, settings: &RenderSettings) -> Result<()> {
-    let Some(film) = image.spectral_film else { return Ok(()) };
-    let invalid = |message: String| Error::new(ErrorKind::Invalid, &Location::default(), message);
-    if film.buckets > SpectralFilm::MOST_BUCKETS {
-        let most = SpectralFilm::MOST_BUCKETS;
-        return Err(invalid(format!("{} spectral buckets; expected at most {most}", film.buckets)));
-    }
-    if !SpectralFilm::is_range(film.range) {
-        let [shortest, longest] = film.range;
-        let expected = SpectralFilm::RANGE;
-        return Err(invalid(format!("the wavelengths {shortest} to {longest} nm; expected {expected}")));
-    }
-    let message = match (settings.color, settings.integrator) {
-        (ColorMode::Rgb, _) => {
-            "a spectral film needs light of wavelengths, and this is rendered in RGB".to_owned()
-        }
-        (ColorMode::Spectral, integrator) if film.buckets > 0 && !integrator.needs_light() => {
-            format!("a spectral film needs light, and the integrator {:?} shows none", integrator.word())
-        }
-        (ColorMode::Spectral, _) => return Ok(()),
-    };
-    Err(invalid(message).hint(Remedy::SpectralLight))
 }
 
 /// The pixels of disjoint areas by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.

@@ -4,6 +4,7 @@
 //! over the wavelengths that fell into it, as in pbrt-v4: where light does not depend on the wavelength it has no noise of its own.
 //! Fixed-point numbers as those of all light ([`super::Pixel`]); a pixel takes 32 bytes for each bucket.
 
+use super::Film;
 use super::stored::{Stored, Sums, channels_of, store_fields};
 use crate::core::fixed_point::{TWO_TO_64, fixed_point};
 
@@ -37,5 +38,19 @@ impl BucketSums {
             0 => 0.0,
             count => (self.sum as f64 / (count as f64 * TWO_TO_64)) as f32,
         }
+    }
+}
+
+impl Film {
+    /// The mean spectral radiance of a pixel in each bucket of a spectral film, by wavelength: over the wavelengths that its samples had
+    /// in the bucket, 0 where there were none and outside of [`Film::area`]. The light of D65 of luminance 1 has the mean 1 over all
+    /// wavelengths, weighted by the luminous efficiency.
+    pub fn spectrum(&self, x: u32, y: u32) -> impl Iterator<Item = f32> {
+        self.buckets.iter().map(move |bucket| self.sums_of(bucket, x, y).map_or(0.0, |sums| sums.mean()))
+    }
+
+    /// The number of buckets of a spectral film; 0 of another one.
+    pub fn buckets(&self) -> usize {
+        self.buckets.len()
     }
 }

@@ -56,33 +56,6 @@ impl Renderer {
         })
     }
 
-    /// A sample's spectral radiance for a spectral film, as the film of its light has it: weighted, and with the sample's limit of
-    /// brightness. For each wavelength its bucket, the radiance, and the number of wavelengths of uniform density that it counts for: after
-    /// dispersion the first for four.
-    pub(super) fn light_by_buckets(
-        &self,
-        batch: &Batch,
-        slot: usize,
-        traced: &Traced,
-    ) -> impl Iterator<Item = (usize, f32, u32)> {
-        let radiance = match batch.queues.alpha[slot] {
-            Alpha::Shadow(before) if self.image().background != Background::Environment => before,
-            _ => traced.radiance,
-        };
-        let light = radiance * traced.weight;
-        let light = light * self.limit(self.measured(light, &traced.mode));
-        let film = self.image().spectral_film.filter(|film| film.buckets > 0);
-        let wavelengths = match traced.mode {
-            SpectralMode::Spectral(wavelengths) => film.map(|film| (film, wavelengths)),
-            SpectralMode::Rgb => None,
-        };
-        wavelengths.into_iter().flat_map(move |(film, wavelengths)| {
-            let (lanes, count) = if wavelengths.secondary_terminated() { (1, 4) } else { (4, 1) };
-            let lambda = wavelengths.lambda();
-            (0..lanes).map(move |lane| (film.bucket_of(lambda[lane]), light.0[lane], count))
-        })
-    }
-
     /// Whether the lanes of samples are wavelengths.
     pub(super) fn is_spectral(&self) -> bool {
         self.settings.color == ColorMode::Spectral && self.integrator.is_light()
@@ -129,7 +102,7 @@ impl Renderer {
     }
 
     /// The factor of that scaling.
-    fn limit(&self, rgb: [f32; 3]) -> f32 {
+    pub(super) fn limit(&self, rgb: [f32; 3]) -> f32 {
         let most = self.image().sensor.max_component;
         if most == f32::INFINITY {
             return 1.0;
