@@ -49,14 +49,14 @@ pub(super) fn check(image: &ImageSettings, settings: &RenderSettings) -> Result<
         let expected = SpectralFilm::RANGE;
         return Err(invalid(format!("the wavelengths {shortest} to {longest} nm; expected {expected}")));
     }
-    let message = match (settings.color, settings.integrator) {
-        (ColorMode::Rgb, _) => {
-            "a spectral film needs light of wavelengths, and this is rendered in RGB".to_owned()
-        }
-        (ColorMode::Spectral, integrator) if film.buckets > 0 && !integrator.needs_light() => {
-            format!("a spectral film needs light, and the integrator {:?} shows none", integrator.word())
-        }
-        (ColorMode::Spectral, _) => return Ok(()),
-    };
-    Err(invalid(message).hint(Remedy::SpectralLight))
+    if settings.color == ColorMode::Rgb {
+        let message = "a spectral film needs light of wavelengths, and this is rendered in RGB";
+        return Err(invalid(message.to_owned()).hint(Remedy::SpectralLight));
+    }
+    if film.buckets > 0 && !settings.integrator.needs_light() {
+        let integrator = settings.integrator.word();
+        let message = format!("a spectral film needs light, and the integrator {integrator:?} shows none");
+        return Err(invalid(message).hint("a picture of it has no spectral buckets: `spectral_buckets` = 0"));
+    }
+    Ok(())
 }
