@@ -23,7 +23,7 @@ use glam::DVec3;
 use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{
     Allocation, ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler,
-    Sensor, Tonemap,
+    Sensor, SpectralFilm, Tonemap,
 };
 
 use crate::terminal::{Show, Way};
@@ -414,6 +414,18 @@ pub(crate) struct Overrides {
     /// of Open Shading Language; docs/guide/path-tracing.md explains it.
     #[arg(long, value_name = "NAME=EXPRESSION", value_parser = values::light_path)]
     pub(crate) light_path: Vec<LightPathLayer>,
+
+    /// Spectral film: the light of this number of buckets of wavelengths as layers of an EXR; 0 for colours alone. It needs spectral
+    /// light
+    ///
+    /// The channels S0.374,688nm ... are the mean spectral radiance of a bucket, by the wavelength in its middle, in the layout of
+    /// Fichet, Pacanowski & Wilkie (2021). Wavelengths are sampled uniformly.
+    #[arg(long, value_name = "N", value_parser = values::whole(0, SpectralFilm::MOST_BUCKETS))]
+    pub(crate) spectral_buckets: Option<u32>,
+
+    /// Range of wavelengths of a spectral film in nm, within 360,830: the picture shows only their light
+    #[arg(long, value_name = "FROM,TO", value_parser = values::wavelengths)]
+    pub(crate) wavelengths: Option<[f32; 2]>,
 
     /// Denoise the picture (alone: on) [default: the scene's setting; on for models]
     ///

@@ -36,7 +36,7 @@ const GROUPS: &[(&str, &[&str])] = &[
         "Light transport",
         &["integrator", "depth", "color", "light_sampler", "min_contribution", "sampler", "seed", "filter"],
     ),
-    ("Layers of an EXR", &["layers", "light_path"]),
+    ("Layers of an EXR", &["layers", "light_path", "spectral_buckets", "wavelengths"]),
     ("The call", &["watch", "quiet", "verbose", "json", "strict", "threads", "memory"]),
 ];
 

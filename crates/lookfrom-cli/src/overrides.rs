@@ -38,6 +38,8 @@ impl Overrides {
             light_sampler: self.light_sampler,
             layers: self.layers,
             light_paths: self.light_path.clone(),
+            spectral_buckets: self.spectral_buckets,
+            wavelengths: self.wavelengths,
             denoise: self.denoise,
             depth: self.depth,
             min_contribution: self.min_contribution,

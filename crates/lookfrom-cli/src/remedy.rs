@@ -21,7 +21,10 @@ pub(crate) fn in_flags(remedy: &Remedy) -> String {
         }
         Remedy::KeptFilm => "render it with --film",
         Remedy::SamePicture => {
-            "give --size, --crop, --layers, --light-path, --background and --denoise as when it was begun"
+            "give --size, --crop, --layers, --light-path, --spectral-buckets, --background and --denoise as when it was begun"
+        }
+        Remedy::SpectralLight => {
+            "with --color spectral light has wavelengths; --spectral-buckets 0 makes a picture of colours alone"
         }
     };
     words.to_owned()

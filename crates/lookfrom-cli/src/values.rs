@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
-use lookfrom_scene::settings::{Background, Filter, LightPathLayer, PixelBounds, Sensor};
+use lookfrom_scene::settings::{Background, Filter, LightPathLayer, PixelBounds, Sensor, SpectralFilm};
 use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::studio::Viewpoint;
 
@@ -123,6 +123,12 @@ pub(crate) fn crop(typed: &str) -> Result<PixelBounds, String> {
     } else {
         Err("expected X0 < X1 and Y0 < Y1: pixels are counted from the top left".to_owned())
     }
+}
+
+/// `FROM,TO`: a range of wavelengths in nm.
+pub(crate) fn wavelengths(typed: &str) -> Result<[f32; 2], String> {
+    let range = separated(typed, SpectralFilm::RANGE)?;
+    if SpectralFilm::is_range(range) { Ok(range) } else { Err(format!("expected {}", SpectralFilm::RANGE)) }
 }
 
 fn separated<T: FromStr + Copy + Default, const N: usize>(

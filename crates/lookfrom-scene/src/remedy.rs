@@ -24,6 +24,8 @@ pub enum Remedy {
     KeptFilm,
     /// The options that decide the pixels and sums of a film, as when it was begun.
     SamePicture,
+    /// Light of wavelengths by the option `color`, or no spectral film by `spectral_buckets`.
+    SpectralLight,
 }
 
 impl From<&str> for Remedy {
@@ -57,7 +59,10 @@ impl fmt::Display for Remedy {
             }
             Self::KeptFilm => "render it with the option `film`",
             Self::SamePicture => {
-                "the size, crop, layers, light paths, background and denoising must be as when it was begun"
+                "the size, crop, layers, light paths, spectral buckets, background and denoising must be as when it was begun"
+            }
+            Self::SpectralLight => {
+                "with the option `color` = spectral light has wavelengths; `spectral_buckets` = 0 makes a picture of colours alone"
             }
         })
     }

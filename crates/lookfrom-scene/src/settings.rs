@@ -1,5 +1,9 @@
 //! Settings of the image and of the integrator, with their defaults.
 
+mod spectral_film;
+
+pub use self::spectral_film::SpectralFilm;
+
 use crate::error::Location;
 use crate::image::srgb_from_linear;
 use crate::spectrum::CameraSensor;
@@ -28,6 +32,8 @@ pub struct ImageSettings {
     pub layers: Layers,
     /// Further layers of an EXR: parts of the light, by light-path expressions.
     pub light_paths: Vec<LightPathLayer>,
+    /// The spectral film; `None` for one of colours alone, whose wavelengths are sampled by the sensitivity of the eye.
+    pub spectral_film: Option<SpectralFilm>,
     /// The background of the image where the camera sees no surface.
     pub background: Background,
     /// Whether the image is denoised.
@@ -145,8 +151,14 @@ impl ImageSettings {
     /// A picture of another size with the light alone: whole, without AOVs, layers and denoising.
     #[must_use]
     pub fn of_light(&self, width: u32, height: u32) -> Self {
-        let plain = Self { crop: None, layers: Layers::None, denoise: false, ..self.clone() };
-        Self { width, height, light_paths: Vec::new(), ..plain }
+        Self { width, height, crop: None, denoise: false, ..self.clone() }.without_layers()
+    }
+
+    /// The same picture, with no layers of an EXR beside it.
+    #[must_use]
+    pub fn without_layers(self) -> Self {
+        let spectral_film = self.spectral_film.map(SpectralFilm::without_buckets);
+        Self { layers: Layers::None, light_paths: Vec::new(), spectral_film, ..self }
     }
 }
 
@@ -162,6 +174,7 @@ impl Default for ImageSettings {
             sensor: Sensor::default(),
             layers: Layers::None,
             light_paths: Vec::new(),
+            spectral_film: None,
             background: Background::default(),
             denoise: false,
         }

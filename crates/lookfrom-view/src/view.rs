@@ -4,7 +4,7 @@ use glam::DVec3;
 use lookfrom::session::{MOST_SAMPLES, Options, Session};
 use lookfrom_scene::camera::{Camera, Look, Projection};
 use lookfrom_scene::files::SharedFiles;
-use lookfrom_scene::settings::{ImageSettings, Integrator, Layers, Tonemap};
+use lookfrom_scene::settings::{ImageSettings, Integrator, Layers, SpectralFilm, Tonemap};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use crate::document::Loaded;
@@ -85,7 +85,13 @@ impl ViewRequest {
         }
         check_size([image.width, image.height])?;
         // Whatever may be asked for of this film is in it.
-        session.set_image(ImageSettings { layers: Layers::Geometry, denoise: true, ..image })?;
+        let spectral_film = image.spectral_film.map(SpectralFilm::without_buckets);
+        session.set_image(ImageSettings {
+            layers: Layers::Geometry,
+            denoise: true,
+            spectral_film,
+            ..image
+        })?;
         if let Some(request) = &self.camera {
             let camera = request.applied(session.camera(), session.info().bounds.center())?;
             session.set_camera(camera)?;

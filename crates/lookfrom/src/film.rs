@@ -11,6 +11,7 @@
 //! enabled. The film keeps them packed, in `plane`: in about half of that.
 
 pub mod allocation;
+mod buckets;
 mod fireflies;
 mod first_hits;
 mod layout;
@@ -24,6 +25,7 @@ mod stored;
 mod sums;
 mod tile;
 
+use self::buckets::BucketSums;
 pub use self::fireflies::Firefly;
 pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
@@ -67,6 +69,8 @@ pub struct Film {
     motions: Plane<MotionSums>,
     /// For each layer of light-path expressions.
     light_paths: Vec<Plane<LightPathSums>>,
+    /// For each bucket of a spectral film.
+    buckets: Vec<Plane<BucketSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴.
     alphas: Plane<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸.
@@ -160,6 +164,7 @@ impl Film {
             features: plane(layout.features, size)?,
             motions: plane(layout.motion, size)?,
             light_paths: (0..layout.light_paths).map(|_| plane(true, size)).collect::<Result<_>>()?,
+            buckets: (0..layout.buckets).map(|_| plane(true, size)).collect::<Result<_>>()?,
             alphas: plane(layout.alpha, size)?,
             alpha_squares: plane(layout.alpha_squares(), size)?,
             dropped: 0,

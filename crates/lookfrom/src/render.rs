@@ -13,6 +13,7 @@ mod interior;
 mod labels;
 mod progress;
 mod sensor;
+mod spectral_film;
 mod start;
 mod transport;
 
@@ -27,7 +28,7 @@ use lookfrom_scene::settings::{
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
 use crate::aov::{AovAccumulator, RayHit};
-use crate::core::color::{Sensor, Wavelengths};
+use crate::core::color::Sensor;
 use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
 use crate::core::spectrum::Spectrum;
@@ -168,6 +169,7 @@ impl Renderer {
                 image.width, image.height
             ));
         }
+        spectral_film::check(image, &settings)?;
         let world = match world.needs_footprint() {
             true => world.seen_by(footprint::of_pixels(&view.camera)),
             false => world,
@@ -441,6 +443,9 @@ impl Renderer {
                         let layers = self.light_by_paths(batch, slot, &traced);
                         tile.add_light_paths(x, y, traced.rgb, layers);
                     }
+                    if tile.has_buckets() {
+                        tile.add_spectrum(x, y, traced.rgb, self.light_by_buckets(batch, slot, &traced));
+                    }
                     if tile.has_channels() {
                         tile.add_channels(x, y, self.sensor.channels(traced.rgb));
                     }
@@ -482,11 +487,6 @@ fn light_paths(world: &World, layers: &[LightPathLayer]) -> Result<Option<LightP
     let is_environment = |index: usize| world.environments.contains(&(index as u32));
     let lights = world.names.lights.iter().enumerate();
     LightPaths::new(layers, lights.map(|(index, name)| (name.as_str(), is_environment(index)))).map(Some)
-}
-
-/// The wavelengths of a sample, chosen by its random numbers.
-fn lanes_by([u, _]: [f32; 2]) -> SpectralMode {
-    SpectralMode::Spectral(Wavelengths::sample_visible(u))
 }
 
 /// The pixels of disjoint areas by square blocks of 8 × 8, so that the rays of a packet of the kernel are coherent.

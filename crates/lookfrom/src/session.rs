@@ -32,6 +32,7 @@ mod save;
 mod series;
 mod shown;
 mod source;
+mod spectral;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,7 +46,7 @@ use lookfrom_scene::count::Counts;
 use lookfrom_scene::digest::Digested;
 use lookfrom_scene::files::SharedFiles;
 use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{Allocation, ImageSettings, Layers, RenderSettings};
+use lookfrom_scene::settings::{Allocation, ImageSettings, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{
     Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Remedy, Result, Scene, Warning, load,
@@ -250,8 +251,7 @@ impl Session {
         let Prepared { added, turntable, has_own_lights } =
             prepare::prepare(&mut scene, path, options, &mut warnings)?;
         if options.format.is_some_and(|format| !format.has_layers()) {
-            scene.image.layers = Layers::None;
-            scene.image.light_paths.clear();
+            scene.image = scene.image.without_layers();
         }
         let range = options.range(&scene.render)?;
         scene.render.samples = range.end;

@@ -34,6 +34,46 @@ fn layers_have_the_names_of_pbrts() {
     );
 }
 
+#[test]
+fn a_spectral_film_has_a_layer_for_each_bucket() {
+    let stage = Stage::new("spectral-film");
+    let said = |options: &str| {
+        let run = stage.run(&format!("render scene.toml -q -o no.exr {options}"));
+        assert_ne!(run.code, Some(0), "{options}");
+        run.stderr
+    };
+    let message = said("--spectral-buckets 3");
+    assert!(message.contains("rendered in RGB") && message.contains("--color spectral"), "{message}");
+    for typed in ["--spectral-buckets 1000000000", "--spectral-buckets 2.5", "--wavelengths 700,400"] {
+        let message = said(&format!("--color spectral {typed}"));
+        assert!(message.contains("expected"), "{message}");
+    }
+    let message = said("--color spectral --wavelengths NaN,NaN");
+    assert!(message.contains("two wavelengths from 360 to 830 nm"), "{message}");
+
+    let spectral = "--integrator path --color spectral --spectral-buckets 3 --wavelengths 400,700";
+    stage.done(&format!("render scene.toml -q -o whole.exr --film --samples 4 {spectral}"));
+    let buckets = ["S0.450,000nm", "S0.550,000nm", "S0.650,000nm"];
+    let found = names(&stage, "whole.exr");
+    assert!(buckets.iter().all(|name| found.iter().any(|of_file| of_file == name)), "{found:?}");
+    let info = &stage.json("info whole.exr --json")[0];
+    assert_eq!(info["header"]["spectralLayoutVersion"], "1.0");
+    // Parts are merged to the same film, and a picture without buckets is the same.
+    for part in ["1/2", "2/2"] {
+        let file = part.replace('/', "-");
+        stage
+            .done(&format!("render scene.toml -q -o {file}.exr --film --part {part} --samples 4 {spectral}"));
+    }
+    stage.done("merge 2-2.exr 1-2.exr -o merged.exr");
+    assert!(stage.bytes("merged.exr") == stage.bytes("whole.exr"));
+    stage.done(&format!("render scene.toml -q -o a.png --samples 4 {spectral}"));
+    stage.done("develop merged.exr -o b.png");
+    for pictures in ["a.png b.png", "merged.exr whole.exr"] {
+        let compared = &stage.json(&format!("compare {pictures} --json"))[0];
+        assert_eq!(compared["rmse"], 0.0, "{compared}");
+    }
+}
+
 /// Unit vectors of a layer, pixel by pixel; those of pixels in which nothing is are left out.
 fn normals(stage: &Stage, file: &str, layer: &str) -> Vec<[f32; 3]> {
     let found = image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();

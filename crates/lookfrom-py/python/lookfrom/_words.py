@@ -79,6 +79,8 @@ class Options(TypedDict, total=False):
     # Layers.
     layers: str
     light_path: Mapping[str, str]
+    spectral_buckets: int
+    wavelengths: tuple[float, float]
     # The call.
     threads: int
     memory: int | str

@@ -95,7 +95,10 @@ pub(super) fn worded(remedy: &Remedy) -> String {
         }
         Remedy::KeptFilm => "render it with film=True",
         Remedy::SamePicture => {
-            "give size, crop, layers, light_path, background and denoise as when it was begun"
+            "give size, crop, layers, light_path, spectral_buckets, background and denoise as when it was begun"
+        }
+        Remedy::SpectralLight => {
+            "with color=\"spectral\" light has wavelengths; spectral_buckets=0 makes a picture of colours alone"
         }
         other => return other.to_string(),
     };

@@ -5,7 +5,7 @@ use super::params::{ParameterType, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
 use crate::error::Result;
-use crate::settings::{Filter, FilterShape, Layers, PixelBounds, Sensor};
+use crate::settings::{Filter, FilterShape, Layers, PixelBounds, Sensor, SpectralFilm};
 use crate::spectrum::CameraSensor;
 
 /// Maximum width and height.
@@ -34,11 +34,7 @@ impl Reader<'_, '_> {
         match &**kind {
             "rgb" => {}
             "gbuffer" => image.layers = Layers::Geometry,
-            "spectral" => {
-                let message = "spectral films are not written yet: the film \"rgb\" is used instead";
-                self.context.warn(&parameters.place.location(), message);
-                parameters.ignore(&["nbuckets", "lambdamin", "lambdamax"]);
-            }
+            "spectral" => image.spectral_film = Some(spectral(parameters)?),
             _ => return Err(Self::unknown(&parameters.place, "film", kind, ["rgb", "gbuffer", "spectral"])),
         }
         parameters.ignore(&["filename", "savefp16", "coordinatesystem", "displayfile"]);
@@ -105,6 +101,27 @@ impl Reader<'_, '_> {
         self.scene.image.filter = Filter { shape, radius };
         Ok(())
     }
+}
+
+/// The buckets of a spectral film.
+fn spectral(parameters: &Parameters) -> Result<SpectralFilm> {
+    let default = SpectralFilm::default();
+    let most = SpectralFilm::MOST_BUCKETS as i32;
+    let buckets = parameters.integer("nbuckets", default.buckets as i32, 1, most)? as u32;
+    let [shortest, longest] = SpectralFilm::ALL;
+    let wavelength = |name, default| {
+        parameters.float_where(name, default, "a wavelength from 360 to 830 nm", |nm| {
+            (shortest..=longest).contains(&nm)
+        })
+    };
+    let range = [wavelength("lambdamin", shortest)?, wavelength("lambdamax", longest)?];
+    if SpectralFilm::is_range(range) {
+        return Ok(SpectralFilm { buckets, range });
+    }
+    Err(match parameters.has("lambdamax") {
+        true => parameters.refuse("lambdamax", "a wavelength at least 1 nm longer than \"lambdamin\""),
+        false => parameters.refuse("lambdamin", "a wavelength at least 1 nm shorter than \"lambdamax\""),
+    })
 }
 
 /// The crop window, from pixels or from fractions of the image.

@@ -5,7 +5,7 @@ use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::settings::{
     Allocation, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, Tonemap,
+    LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -23,6 +23,8 @@ pub(super) const IMAGE: &[&str] = &[
     "max_component",
     "layers",
     "light_paths",
+    "spectral_buckets",
+    "wavelengths",
     "denoise",
 ];
 /// The keys of `filter` as a table.
@@ -75,6 +77,7 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
         },
         layers: table.or("layers", default.layers, layers),
         light_paths: table.or("light_paths", Vec::new(), light_paths),
+        spectral_film: spectral_film(table),
         background: default.background,
         denoise: table.or("denoise", default.denoise, Value::boolean),
     }
@@ -86,6 +89,25 @@ fn layers(value: Value<'_>) -> Result<Layers> {
         Ok(true) => Ok(Layers::Geometry),
         Ok(false) => Ok(Layers::None),
         Err(_) => value.choice(Layers::WORDS),
+    }
+}
+
+/// The spectral film, if there are buckets or a range of wavelengths.
+fn spectral_film(table: &Table<'_>) -> Option<SpectralFilm> {
+    let most = SpectralFilm::MOST_BUCKETS.into();
+    let buckets = table.or("spectral_buckets", None, |value| value.integer(1, most).map(Some));
+    let range = table.or("wavelengths", None, |value| wavelengths(value).map(Some));
+    (buckets.is_some() || range.is_some()).then(|| SpectralFilm {
+        buckets: buckets.unwrap_or(0) as u32,
+        range: range.unwrap_or(SpectralFilm::ALL),
+    })
+}
+
+fn wavelengths(value: Value<'_>) -> Result<[f32; 2]> {
+    let range = value.singles(SpectralFilm::RANGE)?;
+    match SpectralFilm::is_range(range) {
+        true => Ok(range),
+        false => Err(value.error(format!("`wavelengths` is {range:?}; expected {}", SpectralFilm::RANGE))),
     }
 }
 

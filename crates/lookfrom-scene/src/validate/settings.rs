@@ -4,7 +4,9 @@
 use super::Part;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::scene::Scene;
-use crate::settings::{Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings};
+use crate::settings::{
+    Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
+};
 
 /// Maximum of a filter's radius in pixels.
 const WIDEST: f32 = 16.0;
@@ -35,7 +37,15 @@ fn check_image(part: &Part<'_>, image: &ImageSettings) -> Result<()> {
         part.positive("white_balance", kelvin.into())?;
     }
     let most = sensor.max_component;
-    part.number("max_component", most.into(), "a number greater than 0", most > 0.0)
+    part.number("max_component", most.into(), "a number greater than 0", most > 0.0)?;
+    image.spectral_film.map_or(Ok(()), |film| check_spectral_film(part, film))
+}
+
+fn check_spectral_film(part: &Part<'_>, SpectralFilm { buckets, range }: SpectralFilm) -> Result<()> {
+    let most = SpectralFilm::MOST_BUCKETS;
+    let expected = format!("a whole number from 0 to {most}");
+    part.number("spectral_buckets", buckets.into(), &expected, buckets <= most)?;
+    part.number("wavelengths", range[0].into(), SpectralFilm::RANGE, SpectralFilm::is_range(range))
 }
 
 fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {

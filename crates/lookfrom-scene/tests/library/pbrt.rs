@@ -11,7 +11,9 @@ use lookfrom_scene::material::{
 };
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
-use lookfrom_scene::settings::{ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
+use lookfrom_scene::settings::{
+    ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler, SpectralFilm,
+};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
@@ -143,6 +145,20 @@ fn films_have_sensors() {
     assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (1.5, Some(5000.0), 10.0));
     let observer = read("Film \"rgb\" \"string sensor\" \"cie1931\" WorldBegin").image.sensor;
     assert_eq!(observer, read("WorldBegin").image.sensor);
+}
+
+#[test]
+fn spectral_films_have_buckets() {
+    let scene = read("Film \"spectral\" WorldBegin");
+    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 16, range: [360.0, 830.0] }));
+    assert_eq!(scene.render.color, ColorMode::Spectral);
+    let scene = read(
+        "Film \"spectral\" \"integer nbuckets\" 31 \"float lambdamin\" 400 \"float lambdamax\" 710 \"float iso\" 300\n\
+         \"string filename\" \"a.exr\" \"bool savefp16\" false WorldBegin",
+    );
+    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 31, range: [400.0, 710.0] }));
+    assert_eq!(scene.image.sensor.imaging_ratio, 3.0);
+    assert_eq!(read("Film \"rgb\" WorldBegin").image.spectral_film, None);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use lookfrom_scene::material::{
 };
 use lookfrom_scene::medium::Density;
 use lookfrom_scene::scene::MediumId;
-use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler};
+use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler, SpectralFilm};
 use lookfrom_scene::shape::{Geometry, Profile};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
 use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
@@ -190,6 +190,8 @@ imaging_ratio = 2
 white_balance = 5000
 max_component = 10
 layers = true
+spectral_buckets = 20
+wavelengths = [400, 700.5]
 [camera]
 lookfrom = [0, 0, 5]
 lookat = [0, 0, 0]
@@ -204,6 +206,11 @@ window = { x = [-1, 2], y = [0, 1] }
     assert_eq!(sensor.camera.map(CameraSensor::name), Some("sony_ilce_9"));
     assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (2.0, Some(5000.0), 10.0));
     assert_eq!(scene.image.layers, Layers::Geometry);
+    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 20, range: [400.0, 700.5] }));
+    let film = |image: &str| read(&format!("[image]\n{image}")).image.spectral_film;
+    assert_eq!(film("spectral_buckets = 3"), Some(SpectralFilm { buckets: 3, range: [360.0, 830.0] }));
+    assert_eq!(film("wavelengths = [500, 600]"), Some(SpectralFilm { buckets: 0, range: [500.0, 600.0] }));
+    assert_eq!(film(""), None);
     let camera = scene.camera.expect("a camera");
     assert_eq!(camera.window, Some(Window { x: [-1.0, 2.0], y: [0.0, 1.0] }));
     for (word, projection) in

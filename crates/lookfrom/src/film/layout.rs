@@ -4,6 +4,7 @@ use std::fmt;
 
 use lookfrom_scene::settings::{Background, ImageSettings, Layers, PixelBounds};
 
+use super::buckets::BucketSums;
 use super::light_paths::LightPathSums;
 use super::motion::MotionSums;
 use super::pixel::Pixel;
@@ -23,6 +24,8 @@ pub(crate) struct Layout {
     pub(super) features: bool,
     /// Number of layers of light-path expressions.
     pub(super) light_paths: usize,
+    /// Number of buckets of a spectral film.
+    pub(super) buckets: usize,
 }
 
 /// Prefixes of the names of channels.
@@ -34,6 +37,10 @@ const MOTION: &str = "film.motion";
 
 fn light_path(index: usize) -> String {
     format!("film.light_path.{index}")
+}
+
+fn bucket(index: usize) -> String {
+    format!("film.bucket.{index}")
 }
 
 /// The names of the channels of the sensor's sums, a [`Pixel`] each.
@@ -54,6 +61,7 @@ impl Layout {
             sensor: aovs && !image.sensor.measures_xyz(),
             features: image.denoise,
             light_paths: image.light_paths.len(),
+            buckets: image.spectral_film.map_or(0, |film| film.buckets as usize),
         }
     }
 
@@ -69,6 +77,7 @@ impl Layout {
             features: has(FEATURES),
             motion: has(MOTION),
             light_paths: (0..).take_while(|&index| has(&light_path(index))).count(),
+            buckets: (0..).take_while(|&index| has(&bucket(index))).count(),
         }
     }
 
@@ -88,6 +97,7 @@ impl Layout {
         add(self.features, AovSums::channels(FEATURES));
         add(self.motion, MotionSums::channels(MOTION));
         (0..self.light_paths).for_each(|index| add(true, LightPathSums::channels(&light_path(index))));
+        (0..self.buckets).for_each(|index| add(true, BucketSums::channels(&bucket(index))));
         names
     }
 
@@ -102,6 +112,7 @@ impl Layout {
         const ALPHA: u64 = 20;
         const MOTION: u64 = 25;
         const LIGHT_PATHS: u64 = 30;
+        const BUCKET: u64 = 12;
         /// Bytes of a pixel of the picture, in which a crop has its place.
         const DEVELOPED: u64 = 30;
         const OPACITY: u64 = 6;
@@ -110,7 +121,8 @@ impl Layout {
             + u64::from(self.features) * (FEATURES + DENOISER)
             + u64::from(self.alpha) * ALPHA
             + u64::from(self.motion) * MOTION
-            + self.light_paths as u64 * LIGHT_PATHS;
+            + self.light_paths as u64 * LIGHT_PATHS
+            + self.buckets as u64 * BUCKET;
         let developed = DEVELOPED + u64::from(self.alpha) * OPACITY;
         let PixelBounds { x0, y0, x1, y1 } = area;
         let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
@@ -133,9 +145,14 @@ impl fmt::Display for Layout {
             write!(formatter, " and {kind}")?;
         }
         match self.light_paths {
+            0 => {}
+            1 => formatter.write_str(" and 1 layer of light paths")?,
+            count => write!(formatter, " and {count} layers of light paths")?,
+        }
+        match self.buckets {
             0 => Ok(()),
-            1 => formatter.write_str(" and 1 layer of light paths"),
-            count => write!(formatter, " and {count} layers of light paths"),
+            1 => formatter.write_str(" and 1 spectral bucket"),
+            count => write!(formatter, " and {count} spectral buckets"),
         }
     }
 }
@@ -146,11 +163,18 @@ mod tests {
 
     #[test]
     fn channels_tell_the_layout() {
-        for bits in 0..96 {
+        for bits in 0..192 {
             let has = |bit: u32| bits >> bit & 1 != 0;
             let [alpha, aovs, sensor, features, motion] = [0, 1, 2, 3, 4].map(has);
-            let light_paths = bits as usize / 32;
-            let layout = Layout { alpha, aovs, motion, sensor, features, light_paths };
+            let layout = Layout {
+                alpha,
+                aovs,
+                motion,
+                sensor,
+                features,
+                light_paths: bits as usize / 32 % 3,
+                buckets: bits as usize / 96 * 12,
+            };
             let channels = layout.channels();
             let mut names: Vec<&str> = channels.iter().map(String::as_str).collect();
             names.sort_unstable();

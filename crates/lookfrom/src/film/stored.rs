@@ -186,6 +186,10 @@ macro_rules! for_each_plane {
             $(let $plane = $($borrow)+ $film.light_paths[index];)+
             $body
         }
+        for index in 0..[$($film.buckets.len()),+].into_iter().min().unwrap_or(0) {
+            $(let $plane = $($borrow)+ $film.buckets[index];)+
+            $body
+        }
     }};
 }
 

@@ -19,7 +19,8 @@ pub(crate) type SampleSums = Accumulator<7>;
 impl FilmTile {
     /// Whether light is all that it sums: then [`FilmTile::add_samples`] is enough.
     pub(crate) fn is_of_light(&self) -> bool {
-        self.alphas.is_empty() && self.channels.is_empty() && self.light_paths.is_empty()
+        let Self { alphas, channels, light_paths, buckets, .. } = self;
+        alphas.is_empty() && channels.is_empty() && light_paths.is_empty() && buckets.is_empty()
     }
 
     /// Adds a sample of each pixel, to the tile or to `sums`; always the same pixels until [`FilmTile::add_sums`].

@@ -5,6 +5,7 @@ use std::ops::Range;
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
+use super::buckets::BucketSums;
 use super::layout::Layout;
 use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
@@ -30,6 +31,8 @@ pub struct FilmTile {
     pub(super) motions: Vec<MotionSums>,
     /// For each layer of light-path expressions, one per pixel.
     pub(super) light_paths: Vec<Vec<LightPathSums>>,
+    /// For each bucket of a spectral film, one per pixel.
+    pub(super) buckets: Vec<Vec<BucketSums>>,
     /// Sums of alpha, in multiples of 2⁻⁶⁴: one per pixel, or none.
     pub(super) alphas: Vec<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸: one per pixel, or none.
@@ -72,6 +75,7 @@ impl FilmTile {
             features: empty(of(layout.features))?,
             motions: empty(of(layout.motion))?,
             light_paths: (0..layout.light_paths).map(|_| empty(count)).collect::<Result<_>>()?,
+            buckets: (0..layout.buckets).map(|_| empty(count)).collect::<Result<_>>()?,
             alphas: empty(of(layout.alpha))?,
             alpha_squares: empty(of(layout.alpha_squares()))?,
             dropped: 0,
@@ -104,6 +108,31 @@ impl FilmTile {
         let index = self.index_inside(x, y);
         if rgb.iter().all(|light| light.is_finite()) {
             self.light_paths.iter_mut().zip(layers).for_each(|(layer, light)| layer[index].add(light));
+        }
+    }
+
+    /// Whether the tile has the buckets of a spectral film.
+    pub fn has_buckets(&self) -> bool {
+        !self.buckets.is_empty()
+    }
+
+    /// Adds the light of one sample to the buckets of a spectral film, unless the sample is dropped, as in
+    /// [`FilmTile::add_light_paths`]: for each of its wavelengths the number of its bucket, the radiance, and for how many wavelengths of
+    /// uniform density it counts.
+    ///
+    /// # Panics
+    /// If the pixel is outside of the tile, or there is no such bucket.
+    pub fn add_spectrum(
+        &mut self,
+        x: u32,
+        y: u32,
+        rgb: [f32; 3],
+        wavelengths: impl Iterator<Item = (usize, f32, u32)>,
+    ) {
+        let index = self.index_inside(x, y);
+        if rgb.iter().all(|light| light.is_finite()) {
+            wavelengths
+                .for_each(|(bucket, radiance, count)| self.buckets[bucket][index].add(radiance, count));
         }
     }
 

@@ -102,7 +102,7 @@ impl Renderer {
     }
 
     /// The factor of that scaling.
-    fn limit(&self, rgb: [f32; 3]) -> f32 {
+    pub(super) fn limit(&self, rgb: [f32; 3]) -> f32 {
         let most = self.image().sensor.max_component;
         if most == f32::INFINITY {
             return 1.0;

@@ -6,6 +6,7 @@ use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
 
 use super::{Renderer, SampleId};
+use crate::core::color::Wavelengths;
 use crate::core::lanes::{LANES, by_lane, filled, scatter};
 use crate::core::sampler::{self, lanes::PixelSamplers};
 use crate::core::times::Times;
@@ -25,6 +26,8 @@ const TIME_DIMENSION: u32 = 3;
 pub(super) struct Start {
     /// Random numbers, empty where they are not needed.
     wavelengths: Vec<[f32; 2]>,
+    /// The range of wavelengths of a spectral film.
+    range: Option<[f32; 2]>,
     /// Random numbers: the times of samples while the shutter is open.
     pub(super) times: Times,
     /// Points of the image, in pixels, y up; empty where the camera has an image plane.
@@ -41,7 +44,11 @@ impl Start {
     /// The spectral mode of each sample, or one for all in RGB.
     pub(super) fn modes(&self) -> impl Iterator<Item = SpectralMode> {
         let rgb = self.wavelengths.is_empty().then_some(SpectralMode::Rgb);
-        rgb.into_iter().chain(self.wavelengths.iter().map(|u| super::lanes_by(*u)))
+        let wavelengths = |[u, _]: &[f32; 2]| match self.range {
+            None => Wavelengths::sample_visible(*u),
+            Some(range) => Wavelengths::sample_uniform(*u, range),
+        };
+        rgb.into_iter().chain(self.wavelengths.iter().map(move |u| SpectralMode::Spectral(wavelengths(u))))
     }
 
     /// Whether there may be rays that a lens system blocks.
@@ -121,7 +128,8 @@ impl Renderer {
 
     /// Replaces `start` by the camera rays of the samples.
     pub(super) fn start(&self, ids: &[SampleId], start: &mut Start) {
-        let Start { wavelengths, times, points, rays, weights, filter_weights } = start;
+        let Start { wavelengths, range, times, points, rays, weights, filter_weights } = start;
+        *range = self.image().spectral_film.map(|film| film.range);
         let camera = &self.view.camera;
         let count = if self.is_spectral() { ids.len() } else { 0 };
         self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), WAVELENGTH_DIMENSION, wavelengths);

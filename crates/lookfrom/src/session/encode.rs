@@ -14,7 +14,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Remedy, Result};
 
 use super::layers::Layers;
 use super::options::unsuitable;
-use super::{Developed, Development, Finished, Shown, header};
+use super::{Developed, Development, Finished, Shown, header, spectral};
 use crate::film::{Film, Picture, composited};
 use crate::post::develop::{srgb8_before, srgb16_before, srgba8, srgba16};
 
@@ -156,8 +156,8 @@ impl Developed {
         write(format, &self.picture, &self.layers_with(film), &self.development, &self.header, out)
     }
 
-    /// The further channels that an EXR of the picture has, with the number of each pixel: AOVs, layers of light-path expressions and
-    /// the light before denoising, of its film.
+    /// The further channels that an EXR of the picture has, with the number of each pixel: AOVs, layers of light-path expressions, buckets
+    /// of a spectral film and the light before denoising, of its film.
     pub fn channels(&self, film: &Film) -> Vec<(String, Vec<f32>)> {
         let layers = self.layers_with(Some(film));
         let (width, height) = (self.picture.width, self.picture.height);
@@ -178,6 +178,7 @@ impl Developed {
             Some(film) => Layers::OfFilm {
                 film,
                 light_paths: header::light_paths(&self.header).collect(),
+                buckets: spectral::channels(&self.header),
                 noisy: self.denoised.then_some(self.development.background),
             },
         }
@@ -339,6 +340,7 @@ fn metadata(header: &[(String, String)], development: &Development) -> Metadata 
     let mut lines: Vec<String> = header
         .iter()
         .filter(|(name, _)| !["software", "exposure", "tonemap", CHANNELS_ATTRIBUTE].contains(&name.as_str()))
+        .filter(|(name, _)| !spectral::is_of_layout(name))
         .map(|(name, text)| format!("{name}: {text}"))
         .collect();
     lines.push(format!("exposure: {}", development.exposure));

@@ -18,7 +18,7 @@ use super::encode::{Light, Rows};
 use super::film_file::{self, Opened};
 use super::layers::Layers;
 use super::options::unsuitable;
-use super::{Developed, Development, FilmFile, Fireflies, Provenance, header};
+use super::{Developed, Development, FilmFile, Fireflies, Provenance, header, spectral};
 use crate::film::{Film, Picture, StoredRows};
 
 /// Number of rows that are read together.
@@ -26,6 +26,9 @@ const BAND: u32 = 32;
 
 /// Bytes of a pixel of a band while it is read and written: its sums in a tile and in the film, its numbers in the files.
 const OF_BAND: u64 = 1500;
+
+/// Those of each bucket of a spectral film.
+const OF_BUCKET: u64 = 80;
 
 /// Films of parts of a picture, of which only the headers are in memory.
 pub struct FilmParts<'a> {
@@ -167,6 +170,7 @@ impl<'a> FilmParts<'a> {
             parts: self,
             film: whole.film.clone(),
             light_paths: header::light_paths(&whole.provenance.header).map(str::to_owned).collect(),
+            buckets: spectral::channels(&whole.provenance.header),
             background: whole.provenance.development.background,
             open: Mutex::default(),
             first: 0,
@@ -179,7 +183,7 @@ impl<'a> FilmParts<'a> {
 
 /// What is reserved for the rows of a merged film that are in memory.
 fn band_bytes(film: &Film) -> u64 {
-    u64::from(film.width()) * u64::from(BAND) * OF_BAND
+    u64::from(film.width()) * u64::from(BAND) * (OF_BAND + film.buckets() as u64 * OF_BUCKET)
 }
 
 /// The merged film while it is written: of its sums, only those of some rows are in memory.
@@ -187,6 +191,7 @@ struct Bands<'a> {
     parts: &'a FilmParts<'a>,
     film: Film,
     light_paths: Vec<String>,
+    buckets: Vec<String>,
     background: Background,
     /// The files of parts of which some rows, but not all, have been read, by the number of the part.
     open: Mutex<Vec<(usize, ExrRowStream)>>,
@@ -201,7 +206,8 @@ impl Bands<'_> {
     fn with_rows(&self, use_rows: impl FnOnce(&Rows<'_>)) {
         let film = &self.film;
         let light_paths = self.light_paths.iter().map(String::as_str).collect();
-        let layers = &Layers::OfFilm { film, light_paths, noisy: None };
+        let buckets = self.buckets.clone();
+        let layers = &Layers::OfFilm { film, light_paths, buckets, noisy: None };
         use_rows(&Rows { light: Light::Film(film), layers, background: self.background });
     }
 

@@ -8,7 +8,7 @@ use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Sensor};
 
-use super::{Development, Fireflies, Session};
+use super::{Development, Fireflies, Session, spectral};
 use crate::core::color;
 use crate::film::Film;
 
@@ -78,6 +78,7 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             (format!("{LIGHT_PATH}{index:02}.{}", layer.name), layer.expression.clone())
         }),
     );
+    texts.extend(image.spectral_film.into_iter().flat_map(spectral::texts));
     texts.sort();
     texts
 }

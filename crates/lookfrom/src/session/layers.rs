@@ -1,5 +1,5 @@
-//! Further channels of a picture in an EXR: AOVs, with the names of pbrt's `gbuffer` film, light-path expressions, and the light
-//! before denoising. They are made row by row as they are written.
+//! Further channels of a picture in an EXR: AOVs, with the names of pbrt's `gbuffer` film, light-path expressions, the buckets of a
+//! spectral film, and the light before denoising. They are made row by row as they are written.
 
 use lookfrom_scene::settings::Background;
 
@@ -32,6 +32,8 @@ pub(super) enum Layers<'a> {
         film: &'a Film,
         /// The names of the layers of light-path expressions.
         light_paths: Vec<&'a str>,
+        /// The names of the channels of a spectral film.
+        buckets: Vec<String>,
         /// The background of the light before denoising, if the picture is denoised.
         noisy: Option<Background>,
     },
@@ -42,14 +44,15 @@ impl Layers<'_> {
     pub(super) fn names(&self) -> Vec<String> {
         match self {
             Self::Given(layers) => layers.iter().map(|(name, _)| name.clone()).collect(),
-            Self::OfFilm { film, light_paths, noisy } => {
+            Self::OfFilm { film, light_paths, buckets, noisy } => {
                 let aovs = AOVS.iter().chain(&VARIANCES).filter(|_| film.has_layers());
                 let motion = MOTION.iter().filter(|_| film.has_motion());
                 let noisy = NOISY.iter().filter(|_| noisy.is_some());
                 let of_light_paths =
                     light_paths.iter().flat_map(|name| ["R", "G", "B"].map(|c| format!("{name}.{c}")));
                 let names = aovs.chain(motion).map(|name| (*name).to_owned()).chain(of_light_paths);
-                names.chain(noisy.map(|name| (*name).to_owned())).collect()
+                let buckets = buckets.iter().take(film.buckets()).cloned();
+                names.chain(buckets).chain(noisy.map(|name| (*name).to_owned())).collect()
             }
         }
     }
@@ -66,7 +69,7 @@ impl Layers<'_> {
                     }
                 }
             }
-            Self::OfFilm { film, light_paths, noisy } => {
+            Self::OfFilm { film, light_paths, buckets, noisy } => {
                 for x in 0..width {
                     let mut channel = 0;
                     let mut put_next = |number: f32| {
@@ -82,6 +85,7 @@ impl Layers<'_> {
                     if !light_paths.is_empty() {
                         film.light_paths(x, row).flatten().for_each(&mut put_next);
                     }
+                    film.spectrum(x, row).take(buckets.len()).for_each(&mut put_next);
                     if let Some(background) = noisy {
                         film.mean_before(x, row, behind(*background)).into_iter().for_each(&mut put_next);
                     }

@@ -11,7 +11,7 @@ use lookfrom_scene::image::Image;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{
     Allocation, Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, RenderSettings, Sampler, Tonemap,
+    LightSampler, PixelBounds, RenderSettings, Sampler, SpectralFilm, Tonemap,
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
@@ -53,6 +53,10 @@ pub struct Options {
     pub layers: Option<Layers>,
     /// Layers of light-path expressions: those of the file's with the same names are replaced.
     pub light_paths: Vec<LightPathLayer>,
+    /// The number of buckets of a spectral film, for an EXR; 0 for a film of colours alone.
+    pub spectral_buckets: Option<u32>,
+    /// The range of the wavelengths of a spectral film, in nm ([`SpectralFilm::range`]).
+    pub wavelengths: Option<[f32; 2]>,
     /// Whether the picture is denoised.
     pub denoise: Option<bool>,
     /// Maximum path depth.
@@ -189,6 +193,7 @@ impl Options {
             image.light_paths.retain(|other| other.name != layer.name);
             image.light_paths.push(layer.clone());
         }
+        image.spectral_film = self.spectral_film(image.spectral_film);
         replace(&mut image.denoise, self.denoise);
         replace(&mut image.background, self.background);
         replace(&mut render.depth, self.depth);
@@ -196,6 +201,17 @@ impl Options {
         replace(&mut render.sampler, self.sampler);
         replace(&mut render.seed, self.seed);
         Ok(())
+    }
+
+    /// The spectral film, in place of that of the scene.
+    fn spectral_film(&self, of_scene: Option<SpectralFilm>) -> Option<SpectralFilm> {
+        let kept = of_scene.filter(|_| self.spectral_buckets != Some(0));
+        let none = SpectralFilm { buckets: 0, range: SpectralFilm::ALL };
+        let is_asked = self.spectral_buckets.is_some_and(|buckets| buckets > 0) || self.wavelengths.is_some();
+        let mut film = if is_asked { kept.unwrap_or(none) } else { kept? };
+        replace(&mut film.buckets, self.spectral_buckets);
+        replace(&mut film.range, self.wavelengths);
+        Some(film)
     }
 
     /// The samples to take, of a picture with these settings.

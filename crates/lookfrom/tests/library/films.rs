@@ -75,12 +75,14 @@ fn read(bytes: &[u8]) -> FilmFile {
 fn crops_are_merged_in_bands_of_rows_to_the_film_of_one_render() {
     const WIDTH: u32 = 23;
     const HEIGHT: u32 = 1500;
-    for layers in [Layers::None, Layers::Geometry] {
+    for (layers, spectral_buckets) in [(Layers::None, None), (Layers::Geometry, Some(3))] {
         let options = Options {
             width: Some(WIDTH),
             height: Some(HEIGHT),
             samples: Some(2),
             layers: Some(layers),
+            color: spectral_buckets.map(|_| ColorMode::Spectral),
+            spectral_buckets,
             background: Some(if layers == Layers::None {
                 Background::Environment
             } else {
@@ -144,6 +146,15 @@ fn kinds() -> Vec<(&'static str, Options)> {
         ("path", path.clone()),
         ("spectral", Options { color: Some(ColorMode::Spectral), ..path.clone() }),
         ("layers", Options { layers: Some(Layers::Geometry), ..path.clone() }),
+        (
+            "buckets",
+            Options {
+                color: Some(ColorMode::Spectral),
+                spectral_buckets: Some(5),
+                wavelengths: Some([400.0, 700.0]),
+                ..path.clone()
+            },
+        ),
         ("light paths", Options { light_paths: light_paths(), ..path.clone() }),
         ("alpha", Options { background: Some(Background::Transparent), ..path.clone() }),
         (
@@ -340,6 +351,8 @@ fn what_does_not_belong_together_is_told() {
         &["light and alpha", "light"],
     );
     refused(&Options { denoise: Some(true), ..later.clone() }, &["denoiser features"]);
+    let spectral = Options { color: Some(ColorMode::Spectral), ..later.clone() };
+    refused(&Options { spectral_buckets: Some(3), ..spectral }, &["color is spectral there, rgb here"]);
     refused(&Options { depth: Some(3), ..later.clone() }, &["depth is 3 there"]);
     refused(
         &Options { rotate_environment: Some(3.0), ..later.clone() },

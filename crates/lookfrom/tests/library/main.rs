@@ -44,6 +44,7 @@ mod session;
 mod shapes;
 mod sides;
 mod smooth_meshes;
+mod spectral_film;
 mod subsurface;
 mod support;
 mod surfaces;

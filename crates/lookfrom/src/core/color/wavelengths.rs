@@ -76,6 +76,16 @@ impl Wavelengths {
         Self::new(lanes.map(|(lambda, _)| lambda), lanes.map(|(_, pdf)| pdf))
     }
 
+    /// Samples wavelengths of a range in nm uniformly, as [`Wavelengths::sample_visible`] those of all.
+    pub fn sample_uniform(u: f32, [shortest, longest]: [f32; 2]) -> Self {
+        let width = longest - shortest;
+        let lane = |shift: f32| {
+            let u = u + shift;
+            shortest + (if u < 1.0 { u } else { u - 1.0 }) * width
+        };
+        Self::new([lane(0.0), lane(0.25), lane(0.5), lane(0.75)], [1.0 / width; 4])
+    }
+
     /// Terminates all wavelengths but the first, which gets four times the weight. Idempotent.
     pub fn terminate_secondary(&mut self) {
         if !self.secondary_terminated() {
