@@ -2,6 +2,7 @@
 
 mod hair;
 mod inputs;
+mod open_pbr;
 mod subsurface;
 
 use std::sync::Arc;
@@ -9,6 +10,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 pub use hair::{Hair, Pigment};
+pub use open_pbr::{OpenPbr, Tangent};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
 
 use crate::error::Location;
@@ -80,6 +82,11 @@ impl Material {
                 }
                 MaterialKind::Principled(look) => {
                     look.clearcoat_normal.is_some() || look.anisotropy.is_some()
+                }
+                MaterialKind::OpenPbr(look) => {
+                    look.geometry_coat_normal.is_some()
+                        || look.specular_roughness_anisotropy != Scalar::Value(0.0)
+                        || look.coat_roughness_anisotropy != Scalar::Value(0.0)
                 }
                 MaterialKind::Hair(_) => true,
                 MaterialKind::Measured(measured) => !measured.is_isotropic(),
@@ -185,6 +192,8 @@ pub enum MaterialKind {
     },
     /// glTF's metallic-roughness material and its extensions.
     Principled(Box<Principled>),
+    /// OpenPBR's surface.
+    OpenPbr(Box<OpenPbr>),
     /// A constant radiance, whatever the lighting; no light is reflected or transmitted (`KHR_materials_unlit`).
     Unlit {
         /// Its radiance.
@@ -232,6 +241,7 @@ impl MaterialKind {
             Self::Principled(look) => {
                 vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
             }
+            Self::OpenPbr(look) => look.colors().map(|(_, color)| color).into(),
             Self::Subsurface(below) => below.medium.colors().into(),
             Self::Hair(hair) => hair.pigment.colors(),
             Self::Unlit { color } => vec![*color],
@@ -277,6 +287,7 @@ impl MaterialKind {
                 ("sheen_color", look.sheen_color),
                 ("diffuse_transmission_color", look.diffuse_transmission_color),
             ],
+            Self::OpenPbr(look) => look.colors().into(),
             Self::Subsurface(below) => match below.medium {
                 SubsurfaceMedium::Reflectance { reflectance, .. } => vec![("reflectance", reflectance)],
                 SubsurfaceMedium::Coefficients { .. } => Vec::new(),

@@ -26,6 +26,7 @@ mod medium;
 mod mesh;
 mod model;
 mod object;
+mod open_pbr;
 mod physical;
 mod principled;
 mod quadric;
@@ -67,7 +68,7 @@ use crate::files::{ImportOptions, LoadContext};
 use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
-use crate::material::MaterialKind;
+use crate::material::{MaterialKind, Scalar};
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
 use crate::settings::Integrator;
 use crate::shape::Emission;
@@ -104,6 +105,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         models: Vec::new(),
         in_object: false,
         glows: BTreeMap::new(),
+        opacities: BTreeMap::new(),
         unwritten_default: None,
         black: None,
         open: Vec::new(),
@@ -160,6 +162,8 @@ struct Reader<'s, 'f> {
     models: Vec<((PathBuf, ImportOptions), Model)>,
     /// Emission of materials that have any.
     glows: BTreeMap<MaterialId, Emission>,
+    /// Opacity of materials that have any.
+    opacities: BTreeMap<MaterialId, Scalar>,
     /// The material "default", if it has been used but is not defined in a file (yet).
     unwritten_default: Option<MaterialId>,
     black: Option<MaterialId>,

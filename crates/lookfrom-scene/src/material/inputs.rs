@@ -21,6 +21,9 @@ impl Material {
             textures.extend(look.anisotropy.and_then(|grain| grain.texture));
             textures.extend(look.clearcoat_normal.as_ref().map(|map| map.texture));
         }
+        if let MaterialKind::OpenPbr(look) = &self.kind {
+            textures.extend(look.directions());
+        }
         textures.extend(scalars.into_iter().filter_map(|scalar| match scalar {
             Scalar::Texture(id) => Some(id),
             Scalar::Value(_) => None,
@@ -52,6 +55,7 @@ impl MaterialKind {
             }
             Self::Mix { amount, .. } => vec![*amount],
             Self::Principled(look) => look.scalars().into(),
+            Self::OpenPbr(look) => look.scalars().map(|(_, scalar)| scalar).into(),
             Self::Whitted(_)
             | Self::Diffuse { .. }
             | Self::DiffuseTransmission { .. }

@@ -4,7 +4,7 @@ use super::color::plain_color;
 use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, hair, principled, subsurface};
+use super::{Reader, hair, open_pbr, principled, subsurface};
 use crate::chain;
 use crate::error::{Location, Result};
 use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
@@ -59,6 +59,7 @@ pub(super) const KEYS: Kinds = &[
     ("hair", hair::KEYS),
     ("measured", &["file", "normal_map", "bump"]),
     ("principled", principled::KEYS),
+    ("openpbr", open_pbr::KEYS),
     ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),
     ("interface", &[]),
@@ -106,13 +107,17 @@ impl Reader<'_, '_> {
 
     fn read_material(&mut self, table: &Table<'_>, id: MaterialId) {
         let Some(word) = table.kind(KEYS, Some("whitted"), |_| COMMON) else { return };
-        let kind = match word {
-            "whitted" => MaterialKind::Whitted(self.whitted(table)),
-            _ => self.physical(word, table),
+        let of = |kind| open_pbr::Read { kind, medium: None, normals: None };
+        let read = match word {
+            "whitted" => of(MaterialKind::Whitted(self.whitted(table))),
+            "openpbr" => self.open_pbr(table, id),
+            _ => of(self.physical(word, table)),
         };
-        self.scene.materials[id.index()].kind = kind;
-        self.scene.materials[id.index()].bump_mapping = self.bump_mapping(table);
-        self.scene.materials[id.index()].medium = table.maybe("medium", |value| self.medium_named(value));
+        self.scene.materials[id.index()].kind = read.kind;
+        self.scene.materials[id.index()].bump_mapping =
+            read.normals.unwrap_or_else(|| self.bump_mapping(table));
+        self.scene.materials[id.index()].medium =
+            table.maybe("medium", |value| self.medium_named(value)).or(read.medium);
         if let Some(glow) = self.emission(table) {
             self.glows.insert(id, glow);
         }
@@ -151,7 +156,7 @@ impl Reader<'_, '_> {
         self.context.warn(&at, format!("`{key}` has no effect without {without}"));
     }
 
-    fn bump_mapping(&mut self, table: &Table<'_>) -> BumpMapping {
+    pub(super) fn bump_mapping(&mut self, table: &Table<'_>) -> BumpMapping {
         table.one_of(&["normal_map", "bump"]);
         let normal_map = table.maybe("normal_map", |value| self.image_as(value, None, true));
         let bump = table.maybe("bump", |value| self.scalar_where(value, "a number", |_| true));

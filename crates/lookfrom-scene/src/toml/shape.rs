@@ -93,11 +93,13 @@ impl Reader<'_, '_> {
                 Some(medium) => self.filled(part.material, medium),
                 None => part.material.unwrap_or_else(|| self.default_material()),
             };
-            let glow = || self.glows.get(&material).copied().filter(|_| part.material.is_none());
+            let is_default = part.material.is_none();
+            let glow = || self.glows.get(&material).copied().filter(|_| is_default);
+            let opacity = || self.opacities.get(&material).copied().filter(|_| is_default);
             shapes.push(Shape {
                 name: part.name,
                 emission: part.emission.or_else(glow),
-                alpha: part.alpha,
+                alpha: part.alpha.or_else(opacity),
                 reverse_orientation,
                 single_sided: part.single_sided,
                 world_from_object: part.world_from_object,
@@ -148,7 +150,8 @@ impl Reader<'_, '_> {
             // Emission of the shape has priority over that of its material, and that over that of its file.
             let glow = attributes.material.and_then(|material| self.glows.get(&material).copied());
             part.emission = attributes.emission.or(glow).or(part.emission);
-            part.alpha = attributes.alpha.or(part.alpha);
+            let opacity = attributes.material.and_then(|material| self.opacities.get(&material).copied());
+            part.alpha = attributes.alpha.or(opacity).or(part.alpha);
         }
     }
 

@@ -3,8 +3,8 @@
 use super::Part;
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, Hair, Ior, MaterialKind, NormalTexture, Pigment, Principled, Roughness, Subsurface,
-    Whitted,
+    BumpMapping, Coat, Hair, Ior, MaterialKind, NormalTexture, OpenPbr, Pigment, Principled, Roughness,
+    Subsurface, Tangent, Whitted,
 };
 use crate::scene::Scene;
 
@@ -41,6 +41,7 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
             part.scalar("amount", *amount)
         }
         MaterialKind::Principled(look) => check_principled(part, look),
+        MaterialKind::OpenPbr(look) => check_open_pbr(part, look),
         MaterialKind::Subsurface(below) => check_subsurface(part, below),
         MaterialKind::Hair(hair) => check_hair(part, hair),
         MaterialKind::Measured(measured) => match measured.is_consistent() {
@@ -137,4 +138,24 @@ fn check_principled(part: &Part<'_>, look: &Principled) -> Result<()> {
         anisotropy.texture.map_or(Ok(()), |texture| part.texture(texture))?;
     }
     look.clearcoat_normal.map_or(Ok(()), |texture| check_normal_texture(part, texture))
+}
+
+fn check_open_pbr(part: &Part<'_>, look: &OpenPbr) -> Result<()> {
+    look.scalars().into_iter().try_for_each(|(name, scalar)| part.scalar(name, scalar))?;
+    let indices = [
+        ("specular_ior", look.specular_ior),
+        ("coat_ior", look.coat_ior),
+        ("thin_film_ior", look.thin_film_ior),
+    ];
+    indices.into_iter().try_for_each(|(name, index)| part.positive(name, index.into()))?;
+    part.at_least_zero("dispersion", look.dispersion.into())?;
+    let anisotropy = look.subsurface_scatter_anisotropy;
+    part.number("subsurface_scatter_anisotropy", anisotropy.into(), "-1 to 1", anisotropy.abs() <= 1.0)?;
+    for tangent in [look.geometry_tangent, look.geometry_coat_tangent] {
+        match tangent {
+            Tangent::Value(direction) => part.finite("tangent", &direction.map(f64::from))?,
+            Tangent::Texture(texture) => part.texture(texture)?,
+        }
+    }
+    look.geometry_coat_normal.map_or(Ok(()), |texture| check_normal_texture(part, texture))
 }

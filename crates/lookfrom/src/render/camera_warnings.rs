@@ -162,6 +162,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
         && match &world.materials[surface.material as usize].kind {
             MaterialKind::Whitted(whitted) => whitted.transmission.is_gray(0.0),
             MaterialKind::Principled(look) => look.transmission.is(0.0) && look.diffuse_transmission.is(0.0),
+            MaterialKind::OpenPbr(look) => look.transmission_weight.is(0.0) && look.subsurface_weight.is(0.0),
             MaterialKind::Diffuse { .. }
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }

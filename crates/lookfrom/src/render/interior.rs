@@ -49,6 +49,7 @@ fn is_transparent_body(material: &Material) -> bool {
     let is_transparent = match &material.kind {
         MaterialKind::Whitted(whitted) => !whitted.transmission.is_gray(0.0),
         MaterialKind::Principled(look) => look.is_solid,
+        MaterialKind::OpenPbr(look) => look.is_solid,
         _ => false,
     };
     is_transparent || material.medium.is_some()

@@ -24,6 +24,7 @@ pub mod measured;
 pub mod microfacet;
 pub mod normalized_fresnel;
 mod one;
+pub mod open_pbr;
 pub mod phase;
 pub mod principled;
 pub mod subsurface;

@@ -12,6 +12,7 @@ mod hair;
 mod interior;
 mod kind;
 mod measured;
+mod open_pbr;
 mod pictures;
 mod principled;
 mod rows;
@@ -47,6 +48,7 @@ pub use kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
     Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
+pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::MaterialRow;
 pub use whitted::{Branches, Coefficients};
 
@@ -155,7 +157,7 @@ impl Shading {
     fn agrees(&self, wo: Vec3, wi: Vec3) -> bool {
         let on_one_side = |n: Vec3| wo.dot(n) * wi.dot(n) > 0.0;
         let is_above = || self.lift.is_some_and(|lift| lift.is_above(wi.into()));
-        !matches!(self.bsdf, Bsdf::Principled(_))
+        !matches!(self.bsdf, Bsdf::Principled(_) | Bsdf::OpenPbr(_))
             || (on_one_side(self.ng) || is_above()) == on_one_side(self.frame.n)
     }
 
@@ -201,8 +203,7 @@ impl Material {
     pub fn is_stochastic(&self) -> bool {
         match &self.kind {
             MaterialKind::Mix { .. } => true,
-            MaterialKind::Principled(look) => principled::disperses(look),
-            _ => false,
+            kind => principled::Refraction::of(kind).is_some_and(principled::Refraction::disperses),
         }
     }
 
@@ -227,6 +228,7 @@ impl Material {
         match &self.kind {
             MaterialKind::Whitted(_) => true,
             MaterialKind::Principled(look) if look.is_solid => true,
+            MaterialKind::OpenPbr(look) if look.is_solid => true,
             _ => self.medium.is_some(),
         }
     }
@@ -259,6 +261,11 @@ pub fn shading(
         let frame = material.frame(relief, &geometry, point);
         let (bsdf, frame) = at.principled(look, index, &geometry, frame);
         return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng, lift: surface.lift() });
+    }
+    if let MaterialKind::OpenPbr(look) = &material.kind {
+        let frame = material.frame(relief, &geometry, point);
+        let (bsdf, frame) = at.open_pbr(look, index, &geometry, frame);
+        return Some(Shading { bsdf: Bsdf::OpenPbr(bsdf), frame, ng, lift: surface.lift() });
     }
     let bsdf = at.bsdf(index)?;
     Some(Shading { bsdf, frame: material.frame(relief, &geometry, point), ng, lift: surface.lift() })
@@ -348,10 +355,11 @@ impl Evaluator<'_> {
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
             // Its emission is all that is visible: see [`unlit`].
             MaterialKind::Unlit { .. } => Bsdf::diffuse(Spectrum::BLACK),
-            // Mixtures are resolved above, glTF's material needs the surface, and shadow catchers are shaded by the
+            // Mixtures are resolved above, materials of layers need the surface, and shadow catchers are shaded by the
             // world.
             MaterialKind::Mix { .. }
             | MaterialKind::Principled(_)
+            | MaterialKind::OpenPbr(_)
             | MaterialKind::ShadowCatcher { .. }
             | MaterialKind::Interface => return None,
         })

@@ -138,6 +138,9 @@ impl Compiler<'_> {
         let is_body = matches!(
             self.scene.materials.get(material as usize).map(|material| &material.kind),
             Some(MaterialKind::Principled(principled)) if principled.is_solid
+        ) || matches!(
+            self.scene.materials.get(material as usize).map(|material| &material.kind),
+            Some(MaterialKind::OpenPbr(look)) if look.is_body()
         );
         let single_sided = shape.single_sided && !is_body;
         let binding = MaterialBinding {

@@ -31,6 +31,7 @@ mod light_paths;
 mod media;
 mod motion;
 mod nested;
+mod openpbr;
 mod own_integrator;
 mod path;
 mod portal;

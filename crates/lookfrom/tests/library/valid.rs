@@ -242,6 +242,12 @@ impl<'a> Places<'a> {
                 self.scalar(&mut look.roughness);
                 self.single.extend([&mut look.ior, &mut look.dispersion, &mut look.absorption[2]]);
             }
+            MaterialKind::OpenPbr(look) => {
+                [&mut look.base_color, &mut look.coat_color].into_iter().for_each(|color| self.color(color));
+                self.scalar(&mut look.specular_roughness);
+                self.scalar(&mut look.coat_weight);
+                self.single.extend([&mut look.specular_ior, &mut look.coat_ior, &mut look.dispersion]);
+            }
             MaterialKind::Subsurface(below) => {
                 let (SubsurfaceMedium::Coefficients { absorption: first, scattering: second }
                 | SubsurfaceMedium::Reflectance { reflectance: first, mean_free_path: second }) =

@@ -10,6 +10,7 @@ use super::layered::Layered;
 use super::lobes::Lobes;
 use super::measured::Measured;
 use super::normalized_fresnel::NormalizedFresnel;
+use super::open_pbr::OpenPbrSurface;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
 use super::whitted::WhittedBsdf;
@@ -106,6 +107,8 @@ macro_rules! bsdf_classes {
                 CoatedConductor(Layered<Conductor>),
                 /// glTF's metallic-roughness material with its extensions.
                 Principled(Principled),
+                /// OpenPBR's surface.
+                OpenPbr(OpenPbrSurface),
                 /// A fibre of hair.
                 Hair(Hair),
             }

@@ -9,7 +9,9 @@ use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
 use super::microfacet::TrowbridgeReitz;
+use super::open_pbr::OpenPbrSurface;
 use super::principled::Principled;
+use super::principled::open_pbr::OpenPbr;
 use super::{DirectionSample, Mode, ScatteringFunction, Variant};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -200,6 +202,16 @@ impl RowBsdf for Principled {
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Principled::gather_rows(simd, rows)
+    }
+}
+
+impl RowBsdf for OpenPbrSurface {
+    type Lanes<S: Simd> = Principled<f32x8<S>, OpenPbr<f32x8<S>>>;
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        let layers = by_lane!(lane => rows[lane].layers());
+        Principled::gather_open_pbr(simd, &by_lane!(lane => &layers[lane]))
     }
 }
 

@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::lanes::{ClassTraits, LaneBsdf};
 use super::lobes::Lobes;
 use super::principled::LocalScattering;
+use super::principled::open_pbr::OpenPbr;
 use super::{Bsdf, BsdfSample, DirectionSample, Mode};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -13,8 +14,25 @@ use crate::core::warp;
 /// A BSDF seen from the outgoing direction ω_o.
 pub struct PreparedBsdf {
     wo: Vec3,
-    /// glTF's layers, prepared.
-    principled: Option<LocalScattering>,
+    layers: Layers,
+}
+
+/// The layers of a principled surface, prepared.
+enum Layers {
+    None,
+    Gltf(LocalScattering),
+    OpenPbr(LocalScattering<f32, OpenPbr>),
+}
+
+/// An expression of the prepared layers, or one without them.
+macro_rules! by_layers {
+    ($prepared:expr, $layers:ident => $with:expr, $without:expr) => {
+        match &$prepared.layers {
+            Layers::Gltf($layers) => $with,
+            Layers::OpenPbr($layers) => $with,
+            Layers::None => $without,
+        }
+    };
 }
 
 impl LaneBsdf<f32> for Bsdf {
@@ -24,47 +42,44 @@ impl LaneBsdf<f32> for Bsdf {
         match self {
             Self::CoatedDiffuse(bsdf) => bsdf.traits(),
             Self::CoatedConductor(bsdf) => bsdf.traits(),
-            Self::Principled(_) => ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN },
+            Self::Principled(_) | Self::OpenPbr(_) => {
+                ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN }
+            }
             _ => ClassTraits::PLAIN,
         }
     }
 
     fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf {
         let wo = wo.into();
-        let principled = match self {
-            Self::Principled(look) => Some(look.scattering(wo, Lobes::ALL)),
-            _ => None,
+        let layers = match self {
+            Self::Principled(look) => Layers::Gltf(look.scattering(wo, Lobes::ALL)),
+            Self::OpenPbr(look) => Layers::OpenPbr(look.layers().scattering(wo, Lobes::ALL)),
+            _ => Layers::None,
         };
-        PreparedBsdf { wo, principled }
+        PreparedBsdf { wo, layers }
     }
 
     fn f(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> Spectrum {
-        match &prepared.principled {
-            Some(principled) => principled.f(wi, Mode::Radiance),
-            None => self.f(prepared.wo, wi.into(), Mode::Radiance),
-        }
+        let without = || self.f(prepared.wo, wi.into(), Mode::Radiance);
+        by_layers!(prepared, layers => layers.f(wi, Mode::Radiance), without())
     }
 
     fn pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> f32 {
-        match &prepared.principled {
-            Some(principled) => principled.pdf(wi),
-            None => self.pdf(prepared.wo, wi.into(), Mode::Radiance, Lobes::ALL),
-        }
+        let without = || self.pdf(prepared.wo, wi.into(), Mode::Radiance, Lobes::ALL);
+        by_layers!(prepared, layers => layers.pdf(wi), without())
     }
 
     fn f_and_pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> (Spectrum, f32) {
-        if let Some(principled) = &prepared.principled {
-            return principled.f_and_pdf(wi, Mode::Radiance);
-        }
-        let f = LaneBsdf::f(self, prepared, wi);
-        (f, if f.is_black() { 0.0 } else { LaneBsdf::pdf(self, prepared, wi) })
+        let without = || {
+            let f = LaneBsdf::f(self, prepared, wi);
+            (f, if f.is_black() { 0.0 } else { LaneBsdf::pdf(self, prepared, wi) })
+        };
+        by_layers!(prepared, layers => layers.f_and_pdf(wi, Mode::Radiance), without())
     }
 
     fn sample(&self, prepared: &PreparedBsdf, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
-        match &prepared.principled {
-            Some(principled) => principled.sample(uc, u, Mode::Radiance),
-            None => self.sample(prepared.wo, uc, u, Mode::Radiance, Lobes::ALL).into(),
-        }
+        let without = || self.sample(prepared.wo, uc, u, Mode::Radiance, Lobes::ALL).into();
+        by_layers!(prepared, layers => layers.sample(uc, u, Mode::Radiance), without())
     }
 
     fn has_density(&self) -> bool {
@@ -72,10 +87,8 @@ impl LaneBsdf<f32> for Bsdf {
     }
 
     fn diffuse_share(&self, prepared: &PreparedBsdf, wi: Vector<f32>, f: Spectrum) -> Spectrum {
-        match &prepared.principled {
-            Some(principled) => principled.diffuse_f(wi).share_of(f),
-            None => self.class().diffuse_share(prepared.wo, wi.into(), f),
-        }
+        let without = || self.class().diffuse_share(prepared.wo, wi.into(), f);
+        by_layers!(prepared, layers => layers.diffuse_f(wi).share_of(f), without())
     }
 }
 

@@ -1,5 +1,5 @@
 //! glTF's metallic-roughness material with its extensions: a blend of metal, glass and diffuse bodies, under
-//! sheen and a clear coat.
+//! sheen and a clear coat. OpenPBR is the same with more parameters ([`open_pbr`]).
 //!
 //! The layers are those of glTF 2.0's appendix B and of the extensions' texts:
 //!
@@ -38,9 +38,13 @@ mod choice;
 mod facing;
 mod factors;
 pub mod film;
+mod fuzz;
 mod gather;
 mod layers;
+mod model;
+pub mod open_pbr;
 mod prepared;
+mod rough_diffuse;
 mod scattering;
 pub(super) mod sheen;
 mod surface;
@@ -56,11 +60,12 @@ use super::{
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use film::ThinFilm;
+pub use model::{Gltf, Model};
 pub use scattering::LocalScattering;
 
-/// glTF's surface. All weights and colours are within 0 … 1.
+/// A surface of layers, by glTF's model or another. All weights and colours are within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Principled<R: Real = f32> {
+pub struct Principled<R: Real = f32, M = Gltf> {
     /// The metal's reflectance at normal incidence; the albedo or tint of the rest.
     pub base_color: Spectrum<R>,
     /// Weight of the metal.
@@ -101,6 +106,8 @@ pub struct Principled<R: Real = f32> {
     pub film: ThinFilm<R>,
     /// Weights of the spectrum's lanes, of sum 1, by which lobes are chosen: positive wherever light matters.
     pub lane_weights: Spectrum<R>,
+    /// What the model adds.
+    pub model: M,
 }
 
 impl Default for Principled {
@@ -127,11 +134,12 @@ impl Default for Principled {
             iridescence: 0.0,
             film: ThinFilm { eta: 1.3, thickness: 400.0, wavelengths: None },
             lane_weights: Spectrum([0.25; 4]),
+            model: Gltf,
         }
     }
 }
 
-impl Principled {
+impl<M: Copy> Principled<f32, M> {
     /// The surface with every parameter clamped to its valid range; NaN counts as 0.
     #[must_use]
     pub fn clamped(&self) -> Self {
@@ -165,16 +173,19 @@ impl Principled {
                 wavelengths: self.film.wavelengths,
             },
             lane_weights: self.lane_weights.map(share),
+            model: self.model,
         }
     }
+}
 
+impl<M: Model<f32>> Principled<f32, M> {
     /// The surface for a fixed outgoing direction.
-    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering {
+    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering<f32, M> {
         LocalScattering::new(self, wo.into(), lobes)
     }
 }
 
-impl ScatteringFunction for Principled {
+impl<M: Model<f32>> ScatteringFunction for Principled<f32, M> {
     fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
         self.scattering(wo, Lobes::ALL).f(wi.into(), mode)
     }
@@ -234,9 +245,18 @@ impl ScatteringFunction for Principled {
 
     fn description(&self) -> Description {
         let p = self;
+        let (kind, does) = match p.model.open_pbr() {
+            None => (
+                "principled",
+                "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
+            ),
+            Some(_) => {
+                ("openpbr", "OpenPBR's layers: a mix of metal, glass and diffuse, under a coat and fuzz")
+            }
+        };
         Description {
-            kind: "principled",
-            does: "glTF's layers: a mix of metal, glass and diffuse, under sheen and a clear coat",
+            kind,
+            does,
             numbers: vec![
                 ("base color", p.base_color.into()),
                 ("metallic", p.metallic.into()),
@@ -256,31 +276,31 @@ impl ScatteringFunction for Principled {
     }
 }
 
-impl<R: Real> LaneBsdf<R> for Principled<R> {
-    type Prepared = LocalScattering<R>;
+impl<R: Real, M: Model<R>> LaneBsdf<R> for Principled<R, M> {
+    type Prepared = LocalScattering<R, M>;
 
     #[inline(always)]
     fn traits(&self) -> ClassTraits {
         ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN }
     }
     #[inline(always)]
-    fn prepare(&self, wo: Vector<R>) -> LocalScattering<R> {
+    fn prepare(&self, wo: Vector<R>) -> LocalScattering<R, M> {
         LocalScattering::new(self, wo, Lobes::ALL)
     }
     #[inline(always)]
-    fn f(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> Spectrum<R> {
+    fn f(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> Spectrum<R> {
         prepared.f(wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn pdf(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> R {
+    fn pdf(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> R {
         prepared.pdf(wi)
     }
     #[inline(always)]
-    fn f_and_pdf(&self, prepared: &LocalScattering<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+    fn f_and_pdf(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> (Spectrum<R>, R) {
         prepared.f_and_pdf(wi, Mode::Radiance)
     }
     #[inline(always)]
-    fn sample(&self, prepared: &LocalScattering<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+    fn sample(&self, prepared: &LocalScattering<R, M>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         prepared.sample(uc, u, Mode::Radiance)
     }
     #[inline(always)]
@@ -291,7 +311,7 @@ impl<R: Real> LaneBsdf<R> for Principled<R> {
         !self.roughness.is_smooth() | is_diffuse | has_coat | !self.sheen_color.is_black()
     }
     #[inline(always)]
-    fn diffuse_share(&self, prepared: &LocalScattering<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
+    fn diffuse_share(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
         prepared.diffuse_f(wi).share_of(f)
     }
 }

@@ -155,6 +155,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
     subjects.extend(principled::tests::subjects());
+    subjects.extend(open_pbr::tests::subjects());
     subjects
 }
 
@@ -234,7 +235,7 @@ fn samples_are_as_dense_as_they_say() {
     let mut faults = Vec::new();
     for (subject, (name, bsdf)) in subjects.iter().enumerate() {
         // BSDFs of many lobes are costly: fewer samples.
-        let is_costly = name.starts_with("principled") || name.starts_with("conserving");
+        let is_costly = ["principled", "openpbr", "conserving"].iter().any(|kind| name.starts_with(kind));
         // Refraction to the wrong side has a sharp ridge, of which quadrature misses a part.
         let missed = if name.starts_with("conserving") { 2e-4 } else { 1e-5 };
         let n: u64 = if is_costly { 300_000 } else { 1_000_000 };
@@ -318,14 +319,16 @@ fn samples_carry_the_values_of_f_and_pdf() {
 fn light_goes_both_ways() {
     let mut non_zero = 0;
     // Not reciprocal: tables of numbers, hair, Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
-    // and rough surfaces that conserve energy, as the glass of principled bodies does.
+    // OpenPBR's fuzz and the darkening by its coat, and rough surfaces that conserve energy, as the glass of principled bodies does.
     let is_not = |name: &str| {
         name.starts_with("whitted")
             || name.starts_with("conserving")
             || name.starts_with("hair")
             || name.starts_with("measured")
             || name.contains("tilted")
-            || ["principled body", "principled everything"].contains(&name)
+            || name.contains("fuzz")
+            || name.contains("darkened")
+            || ["principled body", "principled everything", "openpbr body"].contains(&name)
     };
     for (name, bsdf) in with_density().into_iter().filter(|(name, _)| !is_not(name)) {
         for index in 0..4000 {
@@ -743,6 +746,19 @@ fn numbers_of_any_size_never_become_nan() {
             },
             ..principled::Principled::default()
         };
+        let open_pbr = look.with_model(principled::open_pbr::OpenPbr {
+            specular_color: lanes(110),
+            specular_weight: share(111),
+            transmission_color: lanes(112),
+            diffuse_roughness: share(113),
+            coat_color: lanes(114),
+            coat_eta: size(115),
+            coat_f0: 0.0,
+            coat_f90: share(116),
+            coat_tangent: direction(117, trial).into(),
+            coat_darkening: share(118),
+            darkened: grey(1.0),
+        });
         let (wo, wi) = (direction(50, trial), direction(60, trial));
         let (uc, u) = numbers(70, trial);
         let u = if trial.is_multiple_of(5) { [0.0, u[1]] } else { u };
@@ -758,6 +774,7 @@ fn numbers_of_any_size_never_become_nan() {
             Bsdf::coated_conductor(lanes(73), lanes(74), roughness, &coat),
             Bsdf::Whitted(whitted),
             Bsdf::Principled(look.clamped()),
+            Bsdf::OpenPbr(open_pbr::OpenPbrSurface::new(&open_pbr)),
         ] {
             let good = |x: f32| x.is_finite() && x >= 0.0;
             for lobes in [Lobes::ALL, Lobes::REFLECTION, Lobes::TRANSMISSION] {

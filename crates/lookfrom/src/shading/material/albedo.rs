@@ -66,6 +66,12 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
         MaterialKind::Measured(_) => false,
         MaterialKind::Mix { .. } => true,
         MaterialKind::Principled(look) => look.base_color.varies(),
+        MaterialKind::OpenPbr(look) => {
+            look.base_color.varies()
+                || look.base_weight.varies()
+                || look.subsurface_weight.varies()
+                || look.subsurface_color.varies()
+        }
         MaterialKind::Unlit { albedo, .. } => albedo.varies(),
         MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }
@@ -111,6 +117,11 @@ fn of_kind(
             first * (1.0 - amount) + second * amount
         }
         MaterialKind::Principled(look) => color(&look.base_color),
+        MaterialKind::OpenPbr(look) => {
+            let part = textures.float(look.subsurface_weight, point).clamp(0.0, 1.0);
+            let base = color(&look.base_color) * textures.float(look.base_weight, point).clamp(0.0, 1.0);
+            base * (1.0 - part) + color(&look.subsurface_color) * part
+        }
         MaterialKind::Unlit { albedo, .. } => color(albedo),
         MaterialKind::Dielectric { .. }
         | MaterialKind::ThinDielectric { .. }

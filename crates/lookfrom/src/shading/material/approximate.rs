@@ -1,7 +1,8 @@
 //! The nearest equivalent of a physical material in Whitted's model; an approximation.
 
 use lookfrom_scene::material::{
-    Color, Ior, MaterialKind, Metal, Pigment, Principled, Roughness, Scalar, SubsurfaceMedium, Whitted,
+    Color, Ior, MaterialKind, Metal, OpenPbr, Pigment, Principled, Roughness, Scalar, SubsurfaceMedium,
+    Whitted,
 };
 
 use crate::core::spectrum::Spectrum;
@@ -61,6 +62,7 @@ pub(super) fn in_whitteds_model(
             before.get(greater.index()).cloned().unwrap_or_default()
         }
         MaterialKind::Principled(look) => principled(look, textures),
+        MaterialKind::OpenPbr(look) => principled(&as_principled(look), textures),
         // Its emission is all that is visible.
         MaterialKind::Unlit { .. } => plain,
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
@@ -73,6 +75,25 @@ fn coated(reflectance: Color, roughness: &Roughness) -> Whitted {
     let shininess = shininess(roughness);
     let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
     Whitted { diffuse: reflectance, specular: Color::gray(0.2), shininess, mirror, ..Whitted::default() }
+}
+
+/// The nearest material of glTF.
+fn as_principled(look: &OpenPbr) -> Principled {
+    Principled {
+        base_color: match look.transmission_weight {
+            Scalar::Value(weight) if weight > 0.5 => look.transmission_color,
+            _ => look.base_color,
+        },
+        metallic: look.base_metalness,
+        roughness: look.specular_roughness,
+        ior: look.specular_ior,
+        specular: look.specular_weight,
+        transmission: look.transmission_weight,
+        is_solid: look.is_body(),
+        clearcoat: look.coat_weight,
+        clearcoat_roughness: look.coat_roughness,
+        ..Principled::default()
+    }
 }
 
 /// Metal, glass or plastic, whichever has the largest weight; a texture is evaluated at its corner.

@@ -38,7 +38,7 @@ impl<'a> Compiler<'a> {
         let (kind, bump_mapping) = (self.kind(&material.kind), self.bump_mapping(&material.bump_mapping));
         let albedo = albedo::constant(&kind, self.textures);
         let whitted = approximate::in_whitteds_model(&material.kind, albedo, &self.whitted, self.textures);
-        let is_principled = matches!(kind, MaterialKind::Principled(_));
+        let is_principled = matches!(kind, MaterialKind::Principled(_) | MaterialKind::OpenPbr(_));
         let (pictures, varies) = pictures::of(&kind, &bump_mapping, self.textures);
         let compiled = Material {
             albedo,
@@ -101,6 +101,7 @@ impl<'a> Compiler<'a> {
             Written::Measured(measured) => MaterialKind::Measured(measured::tables(measured)),
             Written::Subsurface(below) => MaterialKind::Subsurface(Box::new(self.subsurface(below))),
             Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
+            Written::OpenPbr(look) => MaterialKind::OpenPbr(Box::new(self.open_pbr(look))),
             Written::Unlit { color } => MaterialKind::Unlit {
                 color: self.textures.spectrum_texture(*color, SpectrumType::Illuminant),
                 albedo: self.albedo(*color),
@@ -197,12 +198,12 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn normals(&self, map: &written::NormalTexture) -> NormalTexture {
+    pub(super) fn normals(&self, map: &written::NormalTexture) -> NormalTexture {
         NormalTexture { texture: self.directions(map.texture), scale: map.scale }
     }
 
     /// A texture of directions, evaluated as linear RGB.
-    fn directions(&self, texture: TextureId) -> SpectrumTexture {
+    pub(super) fn directions(&self, texture: TextureId) -> SpectrumTexture {
         self.unbounded(Color::Texture(texture))
     }
 

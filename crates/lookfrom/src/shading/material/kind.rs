@@ -7,6 +7,7 @@ use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
 use super::hair::HairMaterial;
+use super::open_pbr::OpenPbrMaterial;
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::measured::MeasuredTables;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -89,6 +90,8 @@ pub enum MaterialKind {
     },
     /// glTF's metallic-roughness material and its extensions.
     Principled(Box<PrincipledMaterial>),
+    /// OpenPBR's surface.
+    OpenPbr(Box<OpenPbrMaterial>),
     /// Visible in its colour whatever the light, which it neither reflects nor transmits.
     Unlit {
         /// Its radiance.

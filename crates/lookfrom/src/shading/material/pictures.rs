@@ -36,6 +36,14 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             // Other inputs of it are seldom pictures.
             walk.varies = true;
         }
+        MaterialKind::OpenPbr(look) => {
+            walk.color(&look.base_color);
+            walk.number(look.base_metalness);
+            walk.number(look.specular_roughness);
+            walk.number(look.coat_weight);
+            // As above.
+            walk.varies = true;
+        }
         _ => walk.varies = true,
     }
     match bump_mapping {

@@ -13,8 +13,8 @@ use super::kind::PrincipledMaterial;
 use super::{Evaluator, Frame, MaterialKind, ShadingContext, bump};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
-use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::principled::film::ThinFilm;
+use crate::shading::bsdf::principled::{Gltf, Principled};
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, TexturePoint, Textures};
@@ -28,14 +28,44 @@ fn straight(ior: f32) -> f32 {
     ratio * ratio
 }
 
-/// True if a body of this material disperses light.
-#[inline]
-pub(super) fn disperses(look: &PrincipledMaterial) -> bool {
-    look.dispersion > 0.0 && look.is_solid && look.ior > 1.0
+/// How a material bends light.
+#[derive(Clone, Copy)]
+pub(super) struct Refraction {
+    /// Index of refraction; 0 means infinite.
+    pub(super) ior: f32,
+    /// 20 over the Abbe number: 0 is none.
+    pub(super) dispersion: f32,
+    /// True if the surface bounds a body.
+    pub(super) is_solid: bool,
+}
+
+impl Refraction {
+    /// That of a material of layers.
+    #[inline]
+    pub(super) fn of(kind: &MaterialKind) -> Option<Self> {
+        match kind {
+            MaterialKind::Principled(look) => Some(look.refraction()),
+            MaterialKind::OpenPbr(look) => Some(look.refraction()),
+            _ => None,
+        }
+    }
+
+    /// True if a body disperses light.
+    #[inline]
+    pub(super) fn disperses(self) -> bool {
+        self.dispersion > 0.0 && self.is_solid && self.ior > 1.0
+    }
+}
+
+impl PrincipledMaterial {
+    #[inline]
+    pub(super) fn refraction(&self) -> Refraction {
+        Refraction { ior: self.ior, dispersion: self.dispersion, is_solid: self.is_solid }
+    }
 }
 
 /// The index of refraction for the one wavelength or colour that is kept; the nominal one where there are more.
-fn index_of(look: &PrincipledMaterial, mode: &SpectralMode, share: Spectrum) -> f32 {
+fn index_of(look: Refraction, mode: &SpectralMode, share: Spectrum) -> f32 {
     // Twenty times n_F − n_C.
     let spread = (look.ior - 1.0) * look.dispersion;
     match mode {
@@ -94,8 +124,8 @@ impl Evaluator<'_> {
         }
         let transmission = self.share(look.transmission);
         let metallic = self.share(look.metallic);
-        let ior = self.index(look, transmission * (1.0 - metallic));
-        let around = self.around(look, material, surface.front);
+        let ior = self.index(look.refraction(), transmission * (1.0 - metallic));
+        let around = self.around(look.is_solid, material, surface.front);
         let is_hidden = around.is_none();
         let eta = around.map_or(1.0, |around| ior / around);
 
@@ -169,6 +199,7 @@ impl Evaluator<'_> {
                 wavelengths: self.wavelengths(),
             },
             lane_weights: self.lane_weights(),
+            model: Gltf,
         };
         (bsdf.clamped(), frame)
     }
@@ -187,12 +218,12 @@ impl Evaluator<'_> {
     }
 
     /// A number of 0 … 1.
-    fn share(&self, number: FloatTexture) -> f32 {
+    pub(super) fn share(&self, number: FloatTexture) -> f32 {
         self.float(number).clamp(0.0, 1.0)
     }
 
     /// The wavelengths of the sample's lanes; `None` in RGB.
-    fn wavelengths(&self) -> Option<[f32; 4]> {
+    pub(super) fn wavelengths(&self) -> Option<[f32; 4]> {
         match &*self.mode {
             SpectralMode::Rgb => None,
             SpectralMode::Spectral(wavelengths) => Some(wavelengths.lambda),
@@ -201,7 +232,7 @@ impl Evaluator<'_> {
 
     /// The weights of the lanes in the choice of lobes: the path's throughput, so that a lobe whose colour can no longer
     /// matter is seldom chosen.
-    fn lane_weights(&self) -> Spectrum {
+    pub(super) fn lane_weights(&self) -> Spectrum {
         if let SpectralMode::Spectral(wavelengths) = &self.mode
             && wavelengths.secondary_terminated()
         {
@@ -213,8 +244,8 @@ impl Evaluator<'_> {
 
     /// The index of refraction. Where light is transmitted, one that varies with wavelength keeps only the first
     /// wavelength, one that varies with colour only one colour.
-    fn index(&mut self, look: &PrincipledMaterial, passing: f32) -> f32 {
-        if !disperses(look) || !(passing > 0.0) {
+    pub(super) fn index(&mut self, look: Refraction, passing: f32) -> f32 {
+        if !look.disperses() || !(passing > 0.0) {
             return look.ior;
         }
         match self.mode {
@@ -226,18 +257,19 @@ impl Evaluator<'_> {
 
     /// The index of refraction on the other side of a surface of a material; `None` where the surface is hidden
     /// because a body that was entered later is on both of its sides.
-    fn around(&self, look: &PrincipledMaterial, material: u32, front: bool) -> Option<f32> {
-        let leaves = look.is_solid && !front;
+    pub(super) fn around(&self, is_solid: bool, material: u32, front: bool) -> Option<f32> {
+        let leaves = is_solid && !front;
         if leaves && self.interior.hides(material) {
             return None;
         }
         let outside = if leaves { self.interior.left(material) } else { self.interior };
         let around = outside.material().map(|index| &self.materials[index as usize].kind);
         Some(match around {
-            Some(MaterialKind::Principled(body)) if body.ior > 0.0 => {
-                index_of(body, self.mode, *self.throughput)
-            }
-            _ => 1.0,
+            Some(kind) => match Refraction::of(kind) {
+                Some(body) if body.ior > 0.0 => index_of(body, self.mode, *self.throughput),
+                _ => 1.0,
+            },
+            None => 1.0,
         })
     }
 

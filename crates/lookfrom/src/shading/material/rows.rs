@@ -1,6 +1,5 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
-use super::principled::disperses;
 use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, Relief, ShadingContext, bump};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
@@ -9,6 +8,7 @@ use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
+use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{TexturePoint, Textures};
@@ -23,8 +23,9 @@ impl Material {
             MaterialKind::CoatedDiffuse { .. } => Some(BsdfClass::CoatedDiffuse),
             MaterialKind::CoatedConductor { .. } => Some(BsdfClass::CoatedConductor),
             MaterialKind::Principled(look) => {
-                (!look.is_solid && !disperses(look)).then_some(BsdfClass::Principled)
+                (!look.is_solid && !look.refraction().disperses()).then_some(BsdfClass::Principled)
             }
+            MaterialKind::OpenPbr(look) => (!look.is_solid).then_some(BsdfClass::OpenPbr),
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             _ => None,
         }
@@ -50,8 +51,11 @@ impl Material {
     /// Whether its frames are bent in lanes: with a normal map or none, and a BSDF that does not depend on the frame.
     #[inline]
     pub(crate) fn bends_in_lanes(&self) -> bool {
-        let depends_on_frame =
-            matches!(&self.kind, MaterialKind::Principled(look) if look.template.is_none());
+        let depends_on_frame = match &self.kind {
+            MaterialKind::Principled(look) => look.template.is_none(),
+            MaterialKind::OpenPbr(_) => true,
+            _ => false,
+        };
         self.reflects_outside
             && !depends_on_frame
             && matches!(self.bump_mapping, BumpMapping::None | BumpMapping::NormalTexture(_))
@@ -132,6 +136,26 @@ impl MaterialRow for Principled {
         let MaterialKind::Principled(look) = kind else { return None };
         // Which material it is matters only where light enters its body.
         let (bsdf, turned) = evaluator.principled(look, 0, geometry, *frame);
+        *frame = turned;
+        Some(bsdf)
+    }
+}
+
+impl MaterialRow for OpenPbrSurface {
+    #[inline]
+    fn at(_: &mut Evaluator<'_>, _: &MaterialKind) -> Option<Self> {
+        None
+    }
+
+    fn in_frame(
+        evaluator: &mut Evaluator<'_>,
+        kind: &MaterialKind,
+        geometry: &ShadingGeometry,
+        frame: &mut Frame,
+    ) -> Option<Self> {
+        let MaterialKind::OpenPbr(look) = kind else { return None };
+        // As above.
+        let (bsdf, turned) = evaluator.open_pbr(look, 0, geometry, *frame);
         *frame = turned;
         Some(bsdf)
     }

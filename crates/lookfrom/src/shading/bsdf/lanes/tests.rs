@@ -8,8 +8,10 @@ use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
-use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::principled::film::ThinFilm;
+use crate::shading::bsdf::principled::open_pbr::OpenPbr;
+use crate::shading::bsdf::principled::{Gltf, Principled};
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
@@ -184,7 +186,7 @@ fn share(seed: u64, index: u64) -> f32 {
 }
 
 /// Surfaces with any of the features of glTF's material.
-fn principled(index: u64) -> Bsdf {
+fn principled(index: u64) -> Principled {
     let has = |seed| hash::pair(seed, index).is_multiple_of(3);
     let greatest = |color: Spectrum| color.max_lane();
     let normal = direction(100, index);
@@ -194,40 +196,59 @@ fn principled(index: u64) -> Bsdf {
     // Eight are in one mode.
     let is_spectral = (index / 8).is_multiple_of(2);
     let lambda = std::array::from_fn(|k| 380.0 + 400.0 * unit(114 + k as u64, index));
-    Bsdf::Principled(
-        Principled {
-            base_color: spectrum(118, index),
-            metallic: share(122, index),
-            roughness: if has(123) { TrowbridgeReitz::SMOOTH } else { roughness(124, index) },
-            eta: [1.0, 0.0, any(126, index, 3), any(127, index, 1)][(index % 4) as usize],
-            f0,
-            f0_greatest: greatest(f0),
-            f90: share(128, index),
-            transmission: share(129, index),
-            is_solid: hash::pair(130, index).is_multiple_of(2),
-            diffuse_transmission: share(131, index),
-            diffuse_transmission_color: spectrum(132, index),
-            clearcoat: if has(136) { share(137, index) } else { 0.0 },
-            clearcoat_roughness: TrowbridgeReitz::new(alpha, alpha),
-            clearcoat_normal: if has(138) { Vec3::Z } else { normal.with_z(normal.z.abs()) }.into(),
-            sheen_color,
-            sheen_greatest: greatest(sheen_color),
-            sheen_roughness: share(139, index),
-            iridescence: if has(140) { share(141, index) } else { 0.0 },
-            film: ThinFilm {
-                eta: 1.0 + any(142, index, 3),
-                thickness: any(143, index, 11),
-                wavelengths: is_spectral.then_some(lambda),
-            },
-            lane_weights: spectrum(144, index),
-        }
-        .clamped(),
-    )
+    Principled {
+        base_color: spectrum(118, index),
+        metallic: share(122, index),
+        roughness: if has(123) { TrowbridgeReitz::SMOOTH } else { roughness(124, index) },
+        eta: [1.0, 0.0, any(126, index, 3), any(127, index, 1)][(index % 4) as usize],
+        f0,
+        f0_greatest: greatest(f0),
+        f90: share(128, index),
+        transmission: share(129, index),
+        is_solid: hash::pair(130, index).is_multiple_of(2),
+        diffuse_transmission: share(131, index),
+        diffuse_transmission_color: spectrum(132, index),
+        clearcoat: if has(136) { share(137, index) } else { 0.0 },
+        clearcoat_roughness: TrowbridgeReitz::new(alpha, alpha),
+        clearcoat_normal: if has(138) { Vec3::Z } else { normal.with_z(normal.z.abs()) }.into(),
+        sheen_color,
+        sheen_greatest: greatest(sheen_color),
+        sheen_roughness: share(139, index),
+        iridescence: if has(140) { share(141, index) } else { 0.0 },
+        film: ThinFilm {
+            eta: 1.0 + any(142, index, 3),
+            thickness: any(143, index, 11),
+            wavelengths: is_spectral.then_some(lambda),
+        },
+        lane_weights: spectrum(144, index),
+        model: Gltf,
+    }
+    .clamped()
 }
 
 #[test]
 fn principled_surfaces_in_lanes() {
-    compare::<Principled>(principled);
+    compare::<Principled>(|index| Bsdf::Principled(principled(index)));
+}
+
+#[test]
+fn openpbr_surfaces_in_lanes() {
+    compare::<OpenPbrSurface>(|index| {
+        let has = |seed| hash::pair(seed, index).is_multiple_of(3);
+        let layers = Principled { clearcoat_roughness: roughness(150, index), ..principled(index) };
+        Bsdf::OpenPbr(OpenPbrSurface::new(&layers.with_model(OpenPbr {
+            specular_color: if has(152) { spectrum(153, index) } else { Spectrum([1.0; 4]) },
+            specular_weight: share(157, index),
+            transmission_color: spectrum(158, index),
+            diffuse_roughness: if has(162) { share(163, index) } else { 0.0 },
+            coat_color: if has(164) { spectrum(165, index) } else { Spectrum([1.0; 4]) },
+            coat_eta: 1.0 + any(169, index, 2),
+            coat_f90: share(170, index),
+            coat_tangent: direction(171, index).into(),
+            coat_darkening: share(175, index),
+            ..OpenPbr::default()
+        })))
+    });
 }
 
 #[test]

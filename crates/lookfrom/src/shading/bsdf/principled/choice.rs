@@ -3,6 +3,7 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
+use super::Model;
 use super::prepared::PreparedSurface;
 use crate::shading::bsdf::Lobes;
 
@@ -20,7 +21,7 @@ pub(super) struct Choice<R: Real> {
 
 impl<R: Real> Choice<R> {
     #[inline(always)]
-    pub(super) fn new(prepared: &PreparedSurface<R>, lobes: Lobes) -> Self {
+    pub(super) fn new<M: Model<R>>(prepared: &PreparedSurface<R, M>, lobes: Lobes) -> Self {
         let surface = &prepared.surface;
         let (zero, one) = (prepared.wo.z.like(0.0), prepared.wo.z.like(1.0));
         let coat = match &prepared.coat {
@@ -45,7 +46,12 @@ impl<R: Real> Choice<R> {
         }
         let matte = prepared.weigh(prepared.matte_albedo(!through)) * below;
         let [matte, matte_through] = lobes.allowed([matte, matte_through]);
-        let [sheen, _] = lobes.allowed([of_sheen * (one - coat), zero]);
+        // glTF's sheen is below the coat, OpenPBR's fuzz above.
+        let (of_sheen, coat) = match surface.model.open_pbr() {
+            None => (of_sheen * (one - coat), coat),
+            Some(_) => (of_sheen, coat * (one - sheen)),
+        };
+        let [sheen, _] = lobes.allowed([of_sheen, zero]);
         let [coat, _] = lobes.allowed([coat, zero]);
         let facet = mirrored + passed;
         let sum = coat + sheen + facet + matte + matte_through;

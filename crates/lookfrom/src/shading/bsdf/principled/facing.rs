@@ -2,6 +2,7 @@
 
 use lookfrom_simd::{Mask, Real};
 
+use super::Model;
 use super::prepared::{PreparedSurface, is_below};
 use crate::core::vector::Vector;
 use crate::shading::bsdf::across;
@@ -24,7 +25,7 @@ pub(super) struct Facing<R: Real> {
 /// which then leaves mirrored at the surface. It is `None` where no surface is a rough body.
 pub(super) type Facings<R> = (Facing<R>, Option<Facing<R>>);
 
-impl<R: Real> PreparedSurface<R> {
+impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
     /// The facet that reflects `wo` to `wi`, or refracts it there (`through`).
     #[inline(always)]
     fn facet(&self, wi: Vector<R>, through: R::Mask) -> Facing<R> {

@@ -1,5 +1,6 @@
 //! The factors of a principled BSDF's microfacets, for the inspector, and its diffuse part.
 
+use super::Model;
 use super::facing::Facing;
 use super::prepared::is_below;
 use super::scattering::LocalScattering;
@@ -7,7 +8,7 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::{MicrofacetFactors, across, is_grazing};
 
-impl LocalScattering {
+impl<M: Model<f32>> LocalScattering<f32, M> {
     /// As [`crate::shading::bsdf::Bsdf::factors`].
     pub(in crate::shading::bsdf) fn factors(&self, wi: Vector<f32>) -> Vec<MicrofacetFactors> {
         let prepared = self.prepared();
@@ -19,6 +20,11 @@ impl LocalScattering {
         let wi = mirrored(wi);
         let through = is_below(wi);
         let (below_coat, below_sheen) = prepared.below(wi);
+        // OpenPBR's coat has a colour, and is below its fuzz.
+        let (weight, tint, of_coat) = match surface.model.open_pbr() {
+            None => (below_coat * below_sheen, Spectrum::splat(1.0), 1.0),
+            Some(_) => (1.0, prepared.below_all(wi), below_sheen),
+        };
         let is_rough_body = surface.is_rough_body();
         let (first, back) = prepared.facets(wi);
         let of_facet = |facing: &Facing<f32>, to: Vector<f32>| MicrofacetFactors {
@@ -33,7 +39,7 @@ impl LocalScattering {
             fresnel: Spectrum::BLACK,
             part: Spectrum::BLACK,
             eta: 1.0,
-            weight: below_coat * below_sheen,
+            weight,
             multiple_scattering: None,
         };
 
@@ -63,17 +69,19 @@ impl LocalScattering {
                     boundary: "glass",
                     refracts: through,
                     fresnel: pane.mirrored,
-                    part: if through { pane.passed * surface.base } else { pane.mirrored },
+                    part: if through { pane.passed * surface.tint() } else { pane.mirrored },
                     eta: if through { prepared.relative_eta() } else { 1.0 },
                     weight: plain.weight * surface.glass,
                     ..plain
                 });
             }
         }
+        all.iter_mut().for_each(|factors| factors.part *= tint);
         if let Some(coat) = prepared.coat.as_ref().filter(|_| !through)
-            && let Some(factors) = coat.factors(wi)
+            && let Some(factors) = coat.factors(&surface.model, wi)
         {
-            all.push(MicrofacetFactors { wm: mirrored(factors.wm.into()).into(), ..factors });
+            let weight = factors.weight * of_coat;
+            all.push(MicrofacetFactors { wm: mirrored(factors.wm.into()).into(), weight, ..factors });
         }
         all.retain(|factors| factors.weight > 0.0 && !factors.part.is_black());
         all

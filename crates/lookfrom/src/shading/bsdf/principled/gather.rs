@@ -2,8 +2,9 @@
 
 use lookfrom_simd::{Simd, f32x8, prelude::*};
 
-use super::Principled;
 use super::film::ThinFilm;
+use super::open_pbr::OpenPbr;
+use super::{Gltf, Principled};
 use crate::core::lanes::{LANES, by_lane, gather, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
@@ -12,6 +13,48 @@ impl<S: Simd> Principled<f32x8<S>> {
     /// One in each lane. Films are all of colours or all of wavelengths.
     #[inline(always)]
     pub(in crate::shading::bsdf) fn gather_rows(simd: S, rows: &[&Principled; LANES]) -> Self {
+        Self::gathered(simd, rows, Gltf)
+    }
+}
+
+impl<S: Simd> Principled<f32x8<S>, OpenPbr<f32x8<S>>> {
+    /// One of OpenPBR in each lane.
+    #[inline(always)]
+    pub(in crate::shading::bsdf) fn gather_open_pbr(
+        simd: S,
+        rows: &[&Principled<f32, OpenPbr>; LANES],
+    ) -> Self {
+        macro_rules! load {
+            ($($field:tt)*) => { f32x8::load_array(simd, by_lane!(lane => rows[lane].$($field)*)) };
+        }
+        macro_rules! spectrum {
+            ($field:ident) => { gather_spectrum(simd, &by_lane!(lane => rows[lane].model.$field)) };
+        }
+        let model = OpenPbr {
+            specular_color: spectrum!(specular_color),
+            specular_weight: load!(model.specular_weight),
+            transmission_color: spectrum!(transmission_color),
+            diffuse_roughness: load!(model.diffuse_roughness),
+            coat_color: spectrum!(coat_color),
+            coat_eta: load!(model.coat_eta),
+            coat_f0: load!(model.coat_f0),
+            coat_f90: load!(model.coat_f90),
+            coat_tangent: gather(simd, &by_lane!(lane => rows[lane].model.coat_tangent.into())),
+            coat_darkening: load!(model.coat_darkening),
+            darkened: spectrum!(darkened),
+        };
+        let clearcoat_roughness = TrowbridgeReitz {
+            alpha_x: load!(clearcoat_roughness.alpha_x),
+            alpha_y: load!(clearcoat_roughness.alpha_y),
+        };
+        Self { clearcoat_roughness, ..Self::gathered(simd, rows, model) }
+    }
+}
+
+impl<S: Simd, M> Principled<f32x8<S>, M> {
+    /// One in each lane, with the same roughness along both axes of the coat.
+    #[inline(always)]
+    fn gathered<N>(simd: S, rows: &[&Principled<f32, N>; LANES], model: M) -> Self {
         macro_rules! load {
             ($($field:tt)*) => { f32x8::load_array(simd, by_lane!(lane => rows[lane].$($field)*)) };
         }
@@ -44,6 +87,7 @@ impl<S: Simd> Principled<f32x8<S>> {
             iridescence: load!(iridescence),
             film: gather_films(simd, &by_lane!(lane => rows[lane].film)),
             lane_weights: spectrum!(lane_weights),
+            model,
         }
     }
 }

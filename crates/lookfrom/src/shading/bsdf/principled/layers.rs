@@ -1,9 +1,10 @@
-//! Sheen and clear coat over a principled surface, for one outgoing direction.
+//! Fibres and a coat over a principled surface, for one outgoing direction.
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::Principled;
-use super::sheen::Sheen;
+use super::fuzz::{self, Fuzz};
+use super::sheen::{self, Sheen};
+use super::{Model, Principled};
 use crate::core::math::schlick;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
@@ -18,9 +19,15 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 /// Reflectance of the coat, of index 1.5, at normal incidence.
 const COAT_F0: f32 = 0.04;
 
-/// The sheen on top of all layers.
+/// The fibres of a model, seen from a direction.
+enum Kind<R: Real> {
+    Sheen(Sheen<R>),
+    Fuzz(Fuzz<R>),
+}
+
+/// glTF's sheen below the coat, or OpenPBR's fuzz on top of all layers.
 pub(super) struct Fibres<R: Real> {
-    fibres: Sheen<R>,
+    fibres: Kind<R>,
     pub(super) color: Spectrum<R>,
     greatest: R,
     roughness: R,
@@ -30,16 +37,19 @@ pub(super) struct Fibres<R: Real> {
 }
 
 impl<R: Real> Fibres<R> {
-    /// `None` where no surface has a sheen.
+    /// `None` where no surface has any.
     #[inline(always)]
-    pub(super) fn new(look: &Principled<R>, cos: R) -> Option<Self> {
+    pub(super) fn new<M: Model<R>>(look: &Principled<R, M>, wo: Vector<R>, cos: R) -> Option<Self> {
         let exists = !look.sheen_color.is_black();
         if !exists.any() {
             return None;
         }
         let roughness = look.sheen_roughness;
         let mut fibres = Self {
-            fibres: Sheen::new(roughness),
+            fibres: match look.model.open_pbr() {
+                None => Kind::Sheen(Sheen::new(roughness)),
+                Some(_) => Kind::Fuzz(Fuzz::new(roughness, wo)),
+            },
             color: look.sheen_color,
             greatest: R::select(exists, look.sheen_greatest, cos.like(0.0)),
             roughness,
@@ -52,7 +62,10 @@ impl<R: Real> Fibres<R> {
 
     #[inline(always)]
     pub(super) fn albedo(&self, cos: R) -> R {
-        albedo::sheen(cos, self.roughness)
+        match self.fibres {
+            Kind::Sheen(_) => albedo::sheen(cos, self.roughness),
+            Kind::Fuzz(_) => fuzz::albedo(cos, self.roughness),
+        }
     }
 
     #[inline(always)]
@@ -63,20 +76,42 @@ impl<R: Real> Fibres<R> {
     /// Its BSDF for two directions above the surface.
     #[inline(always)]
     pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
-        let f = R::select(self.exists, self.fibres.f(wo, wi), wo.z.like(0.0));
+        let f = match &self.fibres {
+            Kind::Sheen(sheen) => sheen.f(wo, wi),
+            Kind::Fuzz(fuzz) => fuzz.f(wi),
+        };
+        let f = R::select(self.exists, f, wo.z.like(0.0));
         self.color * f
+    }
+
+    /// The density of the directions that are sampled, which are above the surface.
+    #[inline(always)]
+    pub(super) fn pdf(&self, wi: Vector<R>) -> R {
+        match &self.fibres {
+            Kind::Sheen(_) => wi.z.like(sheen::PDF),
+            Kind::Fuzz(fuzz) => fuzz.pdf(wi),
+        }
+    }
+
+    /// A direction above the surface.
+    #[inline(always)]
+    pub(super) fn sample(&self, u: [R; 2]) -> Vector<R> {
+        match &self.fibres {
+            Kind::Sheen(_) => warp::uniform_cone(u, u[0].like(1.0)),
+            Kind::Fuzz(fuzz) => fuzz.sample(u),
+        }
     }
 }
 
 /// A clear coat.
 pub(super) struct Coat<R: Real> {
-    amount: R,
+    pub(super) amount: R,
     roughness: TrowbridgeReitz<R>,
     alpha: R,
     /// The axes of the coat's frame; the last is its normal.
     frame: [Vector<R>; 3],
     /// ω_o in this frame.
-    wo: Vector<R>,
+    pub(super) wo: Vector<R>,
     /// Its albedo along `wo`, which attenuates the layers below; 0 where there is no coat.
     pub(super) taken: R,
 }
@@ -84,7 +119,7 @@ pub(super) struct Coat<R: Real> {
 impl<R: Real> Coat<R> {
     /// `None` where no surface has a coat.
     #[inline(always)]
-    pub(super) fn new(look: &Principled<R>, wo: Vector<R>) -> Option<Self> {
+    pub(super) fn new<M: Model<R>>(look: &Principled<R, M>, wo: Vector<R>) -> Option<Self> {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
         let amount = look.clearcoat;
         if !amount.gt(zero).any() {
@@ -92,12 +127,50 @@ impl<R: Real> Coat<R> {
         }
         let roughness = look.clearcoat_roughness;
         let n = look.clearcoat_normal;
-        let (s, t) = warp::basis_about(n);
-        let alpha = R::select(roughness.is_smooth(), zero, Float::min(roughness.alpha_x, one));
+        let ((s, t), alpha) = match look.model.open_pbr() {
+            None => {
+                let alpha = R::select(roughness.is_smooth(), zero, Float::min(roughness.alpha_x, one));
+                (warp::basis_about(n), alpha)
+            }
+            Some(open) => (Self::along(open.coat_tangent, n), albedo::even_alpha(roughness)),
+        };
         let mut coat = Self { amount, roughness, alpha, frame: [s, t, n], wo, taken: zero };
         coat.wo = coat.local(wo);
-        coat.taken = coat.taken(coat.wo.z);
+        coat.taken = coat.taken(&look.model, coat.wo);
         Some(coat)
+    }
+
+    /// The axes about a normal, of which the first is toward a direction.
+    #[inline(always)]
+    fn along(direction: Vector<R>, n: Vector<R>) -> (Vector<R>, Vector<R>) {
+        let (s, exists) = (direction - n * n.dot(direction)).try_normalize();
+        let (other, _) = warp::basis_about(n);
+        let s = Vector::select(exists, s, other);
+        (s, n.cross(s))
+    }
+
+    /// The cosine of a direction to the coat's normal.
+    #[inline(always)]
+    pub(super) fn cosine<M>(look: &Principled<R, M>, w: Vector<R>) -> R {
+        look.clearcoat_normal.dot(w)
+    }
+
+    /// Its reflectances at normal and at grazing incidence.
+    #[inline(always)]
+    fn fresnel<M: Model<R>>(model: &M, like: R) -> [R; 2] {
+        match model.open_pbr() {
+            None => [like.like(COAT_F0), like.like(1.0)],
+            Some(open) => [open.coat_f0, open.coat_f90],
+        }
+    }
+
+    /// Its reflectance at a cosine to a facet.
+    #[inline(always)]
+    fn reflectance<M: Model<R>>(model: &M, cos: R) -> R {
+        match model.open_pbr() {
+            None => schlick(cos) * (1.0 - COAT_F0) + COAT_F0,
+            Some(open) => open.coat_f0 + (open.coat_f90 - open.coat_f0) * schlick(cos),
+        }
     }
 
     #[inline(always)]
@@ -112,12 +185,20 @@ impl<R: Real> Coat<R> {
         Float::eq(self.alpha, self.alpha.like(0.0))
     }
 
-    /// Its albedo for light of the given cosine to its normal; 0 from behind.
+    /// Its albedo for light along a direction in its frame; 0 from behind.
     #[inline(always)]
-    pub(super) fn taken(&self, cos: R) -> R {
+    pub(super) fn taken<M: Model<R>>(&self, model: &M, local: Vector<R>) -> R {
+        let cos = local.z;
         let (zero, one) = (cos.like(0.0), cos.like(1.0));
-        let mirror = albedo::mirror(Float::min(cos, one), self.alpha);
-        R::select(cos.gt(zero), self.amount * mirror.of(cos.like(COAT_F0), one), zero)
+        let mirror = match model.open_pbr() {
+            None => albedo::mirror(Float::min(cos, one), self.alpha),
+            Some(_) => {
+                let up = Vector { z: Float::max(cos, zero), ..local };
+                albedo::reflector(up, self.roughness, self.alpha)
+            }
+        };
+        let [f0, f90] = Self::fresnel(model, cos);
+        R::select(cos.gt(zero), self.amount * mirror.of(f0, f90), zero)
     }
 
     /// `wi` in its frame, the half vector, and whether both directions are above it.
@@ -132,14 +213,14 @@ impl<R: Real> Coat<R> {
 
     /// Its BSDF per cosine to the normal of the surface below.
     #[inline(always)]
-    pub(super) fn f(&self, wi: Vector<R>) -> R {
+    pub(super) fn f<M: Model<R>>(&self, model: &M, wi: Vector<R>) -> R {
         let zero = wi.z.like(0.0);
         let (local, wm, is_lit) = self.facet(wi);
         let is_lit = is_lit & self.amount.gt(zero);
         if !is_lit.any() {
             return zero;
         }
-        let fresnel = schlick(self.wo.dot(wm)) * (1.0 - COAT_F0) + COAT_F0;
+        let fresnel = Self::reflectance(model, self.wo.dot(wm));
         let visible = self.roughness.d(wm) * self.roughness.g(self.wo, local);
         R::select(is_lit, self.amount * fresnel * visible / (self.wo.z * 4.0 * wi.z), zero)
     }
@@ -167,10 +248,10 @@ impl<R: Real> Coat<R> {
 
 impl Coat<f32> {
     /// The factors of its facets, with ω_m in the frame of the surface; `None` where it is smooth, or not lit.
-    pub(super) fn factors(&self, wi: Vector<f32>) -> Option<MicrofacetFactors> {
+    pub(super) fn factors<M: Model<f32>>(&self, model: &M, wi: Vector<f32>) -> Option<MicrofacetFactors> {
         let (local, wm, is_lit) = self.facet(wi);
         let cos_m = [self.wo.dot(wm), local.dot(wm)];
-        let fresnel = Spectrum::splat(schlick(cos_m[0]) * (1.0 - COAT_F0) + COAT_F0);
+        let fresnel = Spectrum::splat(Self::reflectance(model, cos_m[0]));
         let [s, t, n] = self.frame;
         is_lit.then(|| MicrofacetFactors {
             boundary: "clear coat",

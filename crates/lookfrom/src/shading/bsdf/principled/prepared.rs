@@ -6,10 +6,11 @@ use std::f32::consts::FRAC_1_PI;
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::Principled;
 use super::facing::{Facing, Facings};
 use super::layers::{Coat, Fibres};
+use super::rough_diffuse::{self, RoughDiffuse};
 use super::surface::{MEAN_COSINE, Surface};
+use super::{Model, Principled};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::albedo::{self, Split};
@@ -17,10 +18,10 @@ use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::{Mode, across};
 
 /// A surface with the terms that depend on `wo` alone.
-pub(super) struct PreparedSurface<R: Real> {
+pub(super) struct PreparedSurface<R: Real, M> {
     pub(super) wo: Vector<R>,
     pub(super) is_inside: R::Mask,
-    pub(super) surface: Surface<R>,
+    pub(super) surface: Surface<R, M>,
     /// The specular albedo along `wo`.
     pub(super) mirror: Split<R>,
     /// The fraction of light along `wo` that the specular layer leaves for the body below.
@@ -44,12 +45,13 @@ pub(super) fn is_below<R: Real>(wi: Vector<R>) -> R::Mask {
     wi.z.lt(wi.z.like(0.0))
 }
 
-impl<R: Real> PreparedSurface<R> {
+impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
     #[inline(always)]
-    pub(super) fn new(look: &Principled<R>, from: Vector<R>) -> Self {
+    pub(super) fn new(look: &Principled<R, M>, from: Vector<R>) -> Self {
         let is_inside = is_below(from);
         let wo = Vector::select(is_inside, across(from), from);
-        let surface = Surface::new(look);
+        let mut surface = Surface::new(look);
+        surface.model = M::seen(look, wo);
         let cos = Float::min(wo.z, wo.z.like(1.0));
         let mirror = surface.mirror(wo);
         let black = Spectrum::splat(cos.like(0.0));
@@ -60,7 +62,7 @@ impl<R: Real> PreparedSurface<R> {
             mirror,
             left,
             again: black,
-            sheen: Fibres::new(look, cos),
+            sheen: Fibres::new(look, wo, cos),
             coat: Coat::new(look, wo),
             lane_weights: look.lane_weights,
             surface,
@@ -86,10 +88,24 @@ impl<R: Real> PreparedSurface<R> {
             return sum;
         }
         if surface.metal.gt(zero).any() {
-            sum += self.again_by(surface.base, zero.like(1.0)) * surface.metal;
+            sum += match surface.model.open_pbr() {
+                None => self.again_by(surface.base, zero.like(1.0)) * surface.metal,
+                Some(open) => {
+                    let plain = open.mean_of_metal(surface.base);
+                    let reflected = surface.under_film(zero.like(MEAN_COSINE), surface.base, plain);
+                    self.again_of(reflected * open.specular_weight) * surface.metal
+                }
+            };
         }
         if surface.has_matte().any() {
-            sum += self.again_by(surface.f0, surface.f90) * surface.matte;
+            sum += match surface.model.open_pbr() {
+                None => self.again_by(surface.f0, surface.f90) * surface.matte,
+                Some(_) => {
+                    let plain = surface.gloss(zero.like(1.0 / 21.0));
+                    let reflected = surface.under_film(zero.like(MEAN_COSINE), surface.f0, plain);
+                    self.again_of(reflected) * surface.matte
+                }
+            };
         }
         let sheets = R::select(surface.is_solid, zero, surface.glass);
         if sheets.gt(zero).any() {
@@ -102,10 +118,16 @@ impl<R: Real> PreparedSurface<R> {
     /// Light scattered again between the facets of a reflector of which all is made.
     #[inline(always)]
     fn again_by(&self, f0: Spectrum<R>, f90: R) -> Spectrum<R> {
-        let mean = self.surface.mean.all();
         // Schlick's mean over the hemisphere is F0 + (F90 − F0) / 21; a film's is about its value at 45°.
         let plain = f0 + (Spectrum::splat(f90) - f0) / f90.like(21.0);
-        self.surface.under_film(f90.like(MEAN_COSINE), f0, plain).map(
+        self.again_of(self.surface.under_film(f90.like(MEAN_COSINE), f0, plain))
+    }
+
+    /// Light scattered again between facets of a mean reflectance.
+    #[inline(always)]
+    fn again_of(&self, reflectance: Spectrum<R>) -> Spectrum<R> {
+        let mean = self.surface.mean.all();
+        reflectance.map(
             #[inline(always)]
             |fresnel| albedo::multiple(fresnel, mean),
         )
@@ -122,7 +144,7 @@ impl<R: Real> PreparedSurface<R> {
             return black;
         }
         let pane = surface.pane(zero.like(MEAN_COSINE), self.is_inside.like(false));
-        Spectrum::select(scatters, pane.passed * surface.base * surface.glass, black)
+        Spectrum::select(scatters, pane.passed * surface.tint() * surface.glass, black)
     }
 
     /// [`Self::again`] on a side.
@@ -150,23 +172,29 @@ impl<R: Real> PreparedSurface<R> {
             sum = Spectrum::select(is_hidden, self.again_on(through) * both, black);
         }
         if surface.has_matte().any() {
-            sum += self.matte_body(cos, mirror, through);
+            sum += self.matte_body(up, mirror, through);
         }
         sum
     }
 
-    /// π f of the diffuse body on a side, where the other direction has this cosine and this albedo of a mirror.
+    /// π f of the diffuse body on a side, for the other direction (`up`) and the albedo of a mirror along it.
     #[inline(always)]
-    fn matte_body(&self, cos: R, mirror: Split<R>, through: R::Mask) -> Spectrum<R> {
+    fn matte_body(&self, up: Vector<R>, mirror: Split<R>, through: R::Mask) -> Spectrum<R> {
         let surface = &self.surface;
-        let zero = cos.like(0.0);
-        let left = surface.left(cos, mirror) * self.left;
+        let zero = up.z.like(0.0);
+        let left = surface.left(up.z, mirror) * self.left;
         let left = left.zip(
             surface.mean_left,
             #[inline(always)]
             |left, mean| R::select(mean.gt(zero), left / mean, zero),
         );
-        Spectrum::select(surface.has_matte(), left * self.body(through), Spectrum::splat(zero))
+        let body = match surface.model.open_pbr() {
+            Some(open) if rough_diffuse::is_any(open.diffuse_roughness) => {
+                self.rough_body(RoughDiffuse::new(open.diffuse_roughness), up, through)
+            }
+            _ => self.body(through),
+        };
+        Spectrum::select(surface.has_matte(), left * body, Spectrum::splat(zero))
     }
 
     /// The albedo of the diffuse body on a side.
@@ -176,6 +204,16 @@ impl<R: Real> PreparedSurface<R> {
         let one = surface.leaf.like(1.0);
         let reflected = surface.base * (surface.matte * (one - surface.leaf));
         Spectrum::select(through, surface.leaf_color * (surface.matte * surface.leaf), reflected)
+    }
+
+    /// π f of a rough diffuse body on a side, for the other direction.
+    #[inline(always)]
+    fn rough_body(&self, rough: RoughDiffuse<R>, up: Vector<R>, through: R::Mask) -> Spectrum<R> {
+        let surface = &self.surface;
+        let one = surface.leaf.like(1.0);
+        let color = Spectrum::select(through, surface.leaf_color, surface.base);
+        let share = R::select(through, surface.leaf, one - surface.leaf);
+        rough.pi_f(color, self.wo, up) * (surface.matte * share)
     }
 
     /// The albedo of [`Self::matte`].
@@ -195,16 +233,50 @@ impl<R: Real> PreparedSurface<R> {
             None => one,
             Some(coat) => {
                 // Transmitted light passes the coat once, outside.
-                let of_wi = coat.taken(coat.local(up).z);
+                let of_wi = coat.taken(&self.surface.model, coat.local(up));
                 let passing = R::select(self.is_inside, of_wi, coat.taken);
                 one - R::select(through, passing, Float::max(coat.taken, of_wi))
             }
         };
         let sheen = match &self.sheen {
             None => one,
-            Some(sheen) => one - Float::max(sheen.taken, sheen.taken(up.z)),
+            Some(sheen) => match self.surface.model.open_pbr() {
+                None => one - Float::max(sheen.taken, sheen.taken(up.z)),
+                // Transmitted light passes the fuzz outside.
+                Some(_) => one - R::select(through & self.is_inside, sheen.taken(up.z), sheen.taken),
+            },
         };
         (coat, sheen)
+    }
+
+    /// What the layers above leave of light from `wi` for the surface: the fractions that coat and fibres pass, and the
+    /// coat's colour.
+    #[inline(always)]
+    pub(super) fn below_all(&self, wi: Vector<R>) -> Spectrum<R> {
+        let (coat, sheen) = self.below(wi);
+        self.tinted_by_coat(wi, coat) * sheen
+    }
+
+    /// The fraction that the coat passes of light from `wi`, with its colour and its darkening.
+    #[inline(always)]
+    fn tinted_by_coat(&self, wi: Vector<R>, below: R) -> Spectrum<R> {
+        let (Some(open), Some(coat)) = (self.surface.model.open_pbr(), &self.coat) else {
+            return Spectrum::splat(below);
+        };
+        let one = below.like(1.0);
+        let through = is_below(wi);
+        let [of_wo, of_wi] = [coat.wo.z, coat.local(upward(wi)).z].map(
+            #[inline(always)]
+            |cos| Float::clamp(cos, 0.0, 1.0),
+        );
+        // Transmitted light passes the coat once, outside.
+        let first = R::select(through & self.is_inside, of_wi, of_wo);
+        let transmitted = open.coat_transmittance([first, of_wi], !through);
+        let bare = one - coat.amount;
+        let tint = transmitted * Float::max(below - bare, one.like(0.0)) + Spectrum::splat(bare);
+        // What passes does not return to the base.
+        let darkened = Spectrum::select(through, Spectrum::splat(one), open.darkened);
+        tint * darkened
     }
 
     /// The index beyond the surface over the one on the side of `wo`.
@@ -224,6 +296,9 @@ impl<R: Real> PreparedSurface<R> {
         let (below_coat, below_sheen) = self.below(wi);
         let mut f = self.matte(upward(wi), through) * zero.like(FRAC_1_PI);
         f += self.facets_f(wi, mode, facets);
+        if self.surface.model.open_pbr().is_some() {
+            return self.under_fuzz(f * self.tinted_by_coat(wi, below_coat), wi, below_sheen);
+        }
         f = f * below_sheen;
         if let Some(sheen) = &self.sheen
             && !through.all()
@@ -234,7 +309,27 @@ impl<R: Real> PreparedSurface<R> {
         if let Some(coat) = &self.coat
             && !through.all()
         {
-            f += Spectrum::splat(R::select(through, zero, coat.f(wi)));
+            f += Spectrum::splat(R::select(through, zero, coat.f(&self.surface.model, wi)));
+        }
+        f
+    }
+
+    /// The value with the coat's and the fuzz's own, from that of what is below the coat.
+    #[inline(always)]
+    fn under_fuzz(&self, below: Spectrum<R>, wi: Vector<R>, below_fuzz: R) -> Spectrum<R> {
+        let zero = wi.z.like(0.0);
+        let through = is_below(wi);
+        let mut f = below;
+        if let Some(coat) = &self.coat
+            && !through.all()
+        {
+            f += Spectrum::splat(R::select(through, zero, coat.f(&self.surface.model, wi)));
+        }
+        f = f * below_fuzz;
+        if let Some(fuzz) = &self.sheen
+            && !through.all()
+        {
+            f += Spectrum::select(through, Spectrum::splat(zero), fuzz.f(self.wo, wi));
         }
         f
     }
@@ -246,7 +341,15 @@ impl<R: Real> PreparedSurface<R> {
         let through = is_below(wi);
         let (below_coat, below_sheen) = self.below(wi);
         let mirror = self.surface.mirror(upward(wi));
-        let mut f = self.matte_body(cos, mirror, through) * (below_sheen * cos.like(FRAC_1_PI));
+        let body = self.matte_body(upward(wi), mirror, through);
+        if self.surface.model.open_pbr().is_some() {
+            let mut f = body * self.below_all(wi) * cos.like(FRAC_1_PI);
+            if let Some(fuzz) = &self.sheen {
+                f += Spectrum::select(through, Spectrum::splat(cos.like(0.0)), fuzz.f(self.wo, wi));
+            }
+            return f;
+        }
+        let mut f = body * (below_sheen * cos.like(FRAC_1_PI));
         if let Some(sheen) = &self.sheen {
             f += Spectrum::select(through, Spectrum::splat(cos.like(0.0)), sheen.f(self.wo, wi));
         }
@@ -291,7 +394,7 @@ impl<R: Real> PreparedSurface<R> {
             return;
         }
         let pane = surface.pane(facing.cos, self.is_inside);
-        let part = Spectrum::select(is_below(wi), pane.passed * surface.base, pane.mirrored);
+        let part = Spectrum::select(is_below(wi), pane.passed * surface.tint(), pane.mirrored);
         let value = surface.glass * radiance_scale(facing.density / Float::abs(wi.z), eta, mode);
         *sum += Spectrum::select(is_seen, part * value, Spectrum::splat(value.like(0.0)));
     }

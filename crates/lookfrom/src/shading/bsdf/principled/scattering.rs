@@ -2,12 +2,11 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::Principled;
 use super::choice::Choice;
 use super::facing::{Facing, Facings};
 use super::prepared::{PreparedSurface, is_below};
-use super::sheen;
 use super::surface::Facet;
+use super::{Gltf, Model, Principled};
 use crate::core::optics;
 use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::spectrum::Spectrum;
@@ -20,17 +19,17 @@ use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///
 /// Methods that are needed twice, or are long, are not inlined: compilers would take minutes.
-pub struct LocalScattering<R: Real = f32> {
-    prepared: PreparedSurface<R>,
+pub struct LocalScattering<R: Real = f32, M = Gltf> {
+    prepared: PreparedSurface<R, M>,
     choice: Choice<R>,
     lobes: Lobes,
     /// False for a grazing ω_o.
     is_usable: R::Mask,
 }
 
-impl<R: Real> LocalScattering<R> {
+impl<R: Real, M: Model<R>> LocalScattering<R, M> {
     #[inline(never)]
-    pub(in crate::shading::bsdf) fn new(look: &Principled<R>, wo: Vector<R>, lobes: Lobes) -> Self {
+    pub(in crate::shading::bsdf) fn new(look: &Principled<R, M>, wo: Vector<R>, lobes: Lobes) -> Self {
         wo.z.at_level(
             #[inline(always)]
             || {
@@ -136,7 +135,10 @@ impl<R: Real> LocalScattering<R> {
                 if let Some(coat) = &self.prepared.coat {
                     pdf = pdf + R::select(through, zero, choice.coat * coat.pdf(wi));
                 }
-                let pdf = pdf + R::select(through, zero, choice.sheen * sheen::PDF);
+                let pdf = match &self.prepared.sheen {
+                    Some(fibres) => pdf + R::select(through, zero, choice.sheen * fibres.pdf(wi)),
+                    None => pdf,
+                };
                 R::select(choice.exists, pdf, zero)
             },
         )
@@ -209,8 +211,8 @@ impl<R: Real> LocalScattering<R> {
             is_transmission: no,
             is_valid: choice.exists & self.is_usable,
         };
-        if is_sheen.any() {
-            sample.wi = Vector::select(is_sheen, warp::uniform_cone(u, one), sample.wi);
+        if let Some(fibres) = self.prepared.sheen.as_ref().filter(|_| is_sheen.any()) {
+            sample.wi = Vector::select(is_sheen, fibres.sample(u), sample.wi);
         }
         if is_coat.any() {
             self.sample_coat(&mut sample, u, is_coat);
@@ -239,7 +241,11 @@ impl<R: Real> LocalScattering<R> {
         let (wi, is_above) = coat.sample(u);
         let is_sharp = is_coat & coat.is_sharp();
         sample.wi = Vector::select(is_coat, wi, sample.wi);
-        sample.f = Spectrum::select(is_sharp, Spectrum::splat(coat.taken / wi.z), sample.f);
+        let taken = match (self.prepared.surface.model.open_pbr(), &self.prepared.sheen) {
+            (Some(_), Some(fuzz)) => coat.taken * (wi.z.like(1.0) - fuzz.taken),
+            _ => coat.taken,
+        };
+        sample.f = Spectrum::select(is_sharp, Spectrum::splat(taken / wi.z), sample.f);
         sample.pdf = R::select(is_sharp, self.choice.coat, sample.pdf);
         sample.is_specular = is_sharp;
         sample.is_valid = sample.is_valid & (!is_coat | is_above);
@@ -302,16 +308,20 @@ impl<R: Real> LocalScattering<R> {
         let one = wi.z.like(1.0);
         let through = is_below(wi);
         let facet = surface.facet(Float::min(wo.z, one), *is_inside);
-        let (coat, sheen) = self.prepared.below(wi);
         let part = Spectrum::select(through, facet.passed, facet.mirrored);
         let eta = R::select(through, self.prepared.relative_eta(), one);
+        if surface.model.open_pbr().is_some() {
+            let scale = radiance_scale(one / Float::abs(wi.z), eta, mode);
+            return (part * self.prepared.below_all(wi) * scale, eta);
+        }
+        let (coat, sheen) = self.prepared.below(wi);
         (part * radiance_scale(coat * sheen / Float::abs(wi.z), eta, mode), eta)
     }
 }
 
-impl LocalScattering {
+impl<M> LocalScattering<f32, M> {
     /// The part that depends on ω_o alone.
-    pub(super) fn prepared(&self) -> &PreparedSurface<f32> {
+    pub(super) fn prepared(&self) -> &PreparedSurface<f32, M> {
         &self.prepared
     }
 }

@@ -2,8 +2,8 @@
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::Principled;
 use super::film::ThinFilm;
+use super::{Model, Principled};
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -15,7 +15,8 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 pub(super) const MEAN_COSINE: f32 = 0.7;
 
 /// The base under coat and sheen.
-pub(super) struct Surface<R: Real> {
+pub(super) struct Surface<R: Real, M> {
+    pub(super) model: M,
     pub(super) base: Spectrum<R>,
     pub(super) f0: Spectrum<R>,
     f0_greatest: R,
@@ -54,15 +55,16 @@ fn toward<R: Real>(f0: Spectrum<R>, f90: R, s: R) -> Spectrum<R> {
     f0 + (Spectrum::splat(f90) - f0) * s
 }
 
-impl<R: Real> Surface<R> {
+impl<R: Real, M: Model<R>> Surface<R, M> {
     #[inline(always)]
-    pub(super) fn new(look: &Principled<R>) -> Self {
+    pub(super) fn new(look: &Principled<R, M>) -> Self {
         let roughness = look.roughness;
         let (zero, one) = (look.eta.like(0.0), look.eta.like(1.0));
         let black = Spectrum::splat(zero);
         let alpha = albedo::even_alpha(roughness);
         let body = one - look.metallic;
         let mut surface = Self {
+            model: look.model,
             base: look.base_color,
             f0: look.f0,
             f0_greatest: look.f0_greatest,
@@ -155,7 +157,7 @@ impl<R: Real> Surface<R> {
         let curve = (fresnel::dielectric(cos, eta) - straight) / Float::max(one - straight, one.like(1e-6));
         let s = R::select(Float::eq(eta, zero), schlick(cos), curve);
         let s = Float::clamp(s, 0.0, 1.0);
-        let plain = toward(self.f0, self.f90, s);
+        let plain = self.gloss(s);
         let left = one - (self.f0_greatest + (self.f90 - self.f0_greatest) * s);
         let (mirrored, passed) = match &self.film {
             None => (plain, Spectrum::splat(left)),
@@ -169,6 +171,25 @@ impl<R: Real> Surface<R> {
         Facet {
             mirrored: Spectrum::select(is_total, Spectrum::splat(one), mirrored),
             passed: Spectrum::select(is_total, Spectrum::splat(zero), passed),
+        }
+    }
+
+    /// The dielectric's reflectance without the film, by the weight of grazing incidence. glTF's colour is that at normal incidence,
+    /// OpenPBR's is of all.
+    #[inline(always)]
+    pub(super) fn gloss(&self, s: R) -> Spectrum<R> {
+        match self.model.open_pbr() {
+            None => toward(self.f0, self.f90, s),
+            Some(open) => open.specular_color * (self.f0_greatest + (self.f90 - self.f0_greatest) * s),
+        }
+    }
+
+    /// The colour of light that the transmissive body passes on.
+    #[inline(always)]
+    pub(super) fn tint(&self) -> Spectrum<R> {
+        match self.model.open_pbr() {
+            None => self.base,
+            Some(open) => open.transmission_color,
         }
     }
 
@@ -215,10 +236,17 @@ impl<R: Real> Surface<R> {
         let s = schlick(cos);
         let mut mirrored = Spectrum::splat(zero);
         if self.metal.gt(zero).any() {
-            mirrored += self.under_film(cos, self.base, toward(self.base, one, s)) * self.metal;
+            let plain = toward(self.base, one, s);
+            mirrored += match self.model.open_pbr() {
+                None => self.under_film(cos, self.base, plain) * self.metal,
+                Some(open) => {
+                    let tinted = open.tinted_metal(cos, self.base, plain);
+                    self.under_film(cos, self.base, tinted) * (self.metal * open.specular_weight)
+                }
+            };
         }
         if self.has_matte().any() {
-            mirrored += self.under_film(cos, self.f0, toward(self.f0, self.f90, s)) * self.matte;
+            mirrored += self.under_film(cos, self.f0, self.gloss(s)) * self.matte;
         }
         mirrored
     }
@@ -240,7 +268,7 @@ impl<R: Real> Surface<R> {
                 if glass.gt(cos.like(0.0)).any() {
                     let pane = self.pane(cos, is_inside);
                     mirrored += pane.mirrored * glass;
-                    passed = pane.passed * self.base * glass;
+                    passed = pane.passed * self.tint() * glass;
                 }
                 Facet { mirrored, passed }
             },

@@ -17,6 +17,58 @@ fn of(parameters: Principled) -> Bsdf {
     Bsdf::Principled(parameters.clamped())
 }
 
+impl Principled {
+    /// These layers with more of another model.
+    pub(in crate::shading::bsdf) fn with_model<M>(self, model: M) -> Principled<f32, M> {
+        let Self {
+            base_color,
+            metallic,
+            roughness,
+            eta,
+            f0,
+            f0_greatest,
+            f90,
+            transmission,
+            is_solid,
+            diffuse_transmission,
+            diffuse_transmission_color,
+            clearcoat,
+            clearcoat_roughness,
+            clearcoat_normal,
+            sheen_color,
+            sheen_greatest,
+            sheen_roughness,
+            iridescence,
+            film,
+            lane_weights,
+            model: Gltf,
+        } = self;
+        Principled {
+            base_color,
+            metallic,
+            roughness,
+            eta,
+            f0,
+            f0_greatest,
+            f90,
+            transmission,
+            is_solid,
+            diffuse_transmission,
+            diffuse_transmission_color,
+            clearcoat,
+            clearcoat_roughness,
+            clearcoat_normal,
+            sheen_color,
+            sheen_greatest,
+            sheen_roughness,
+            iridescence,
+            film,
+            lane_weights,
+            model,
+        }
+    }
+}
+
 /// BSDFs for the tests of densities: every lobe alone as far as possible, and mixtures.
 pub(in crate::shading::bsdf) fn subjects() -> Vec<(&'static str, Bsdf)> {
     let base = Principled { base_color: Spectrum([0.8, 0.5, 0.2, 0.3]), ..Principled::default() };
