@@ -1,7 +1,7 @@
 //! OpenPBR's surface as it is passed from vertex to vertex: small, since every BSDF takes as much memory as the largest.
 //!
 //! Colours and weights of 0 … 1 are kept in 16 bits, to 2⁻¹² of their value, with 0 and 1 exact.
-//! [`OpenPbrSurface::layers`] makes numbers of them.
+//! Numbers are made of them where a surface is prepared, or eight are gathered.
 
 use glam::Vec3;
 

@@ -1,10 +1,10 @@
 //! What OpenPBR 1.1 adds to the layers of principled surfaces.
 //!
 //! Portsmouth, Kutz & Hill et al. 2024, "OpenPBR Surface Specification" (Academy Software Foundation):
-//! - **metal** whose reflectance is tinted near grazing incidence ([`OpenPbr::tinted_metal`]);
-//! - a **diffuse base** that may be rough ([`super::rough_diffuse`]);
+//! - **metal** whose reflectance is tinted near grazing incidence;
+//! - a **diffuse base** that may be rough;
 //! - a **coat** with an index, a colour, and a darkening of its own;
-//! - **fuzz** on top of all ([`super::fuzz`]).
+//! - **fuzz** on top of all.
 
 use lookfrom_simd::{Float, Mask, Real};
 
