@@ -87,7 +87,8 @@ fn is_pbrt(bytes: &[u8]) -> bool {
 
 /// Whether a text is a scene of Mitsuba: its first element is a `scene`.
 fn is_mitsuba(bytes: &[u8]) -> bool {
-    let head = bytes[..bytes.len().min(1 << 16)].strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let head = head.strip_prefix("\u{feff}".as_bytes()).unwrap_or(head);
     let is_element = |tag: &[u8]| tag.first().is_some_and(u8::is_ascii_alphabetic);
     head.trim_ascii_start().starts_with(b"<")
         && head

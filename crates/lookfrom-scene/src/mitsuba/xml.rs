@@ -2,6 +2,7 @@
 //!
 //! Document type declarations are refused, and with them all entities of a file's own.
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -56,6 +57,10 @@ const DEEPEST: u32 = 64;
 const MOST_NODES: u32 = 1 << 22;
 /// Maximum number of included files.
 const MOST_FILES: u32 = 1 << 12;
+/// Maximum number of bytes of all files together.
+const MOST_BYTES: u64 = 1 << 30;
+/// Maximum number of bytes that parameters are replaced by.
+const MOST_EXPANDED: usize = 1 << 24;
 /// Maximum length of a value after its parameters are replaced, in bytes.
 const LONGEST_VALUE: usize = 1 << 16;
 
@@ -72,6 +77,9 @@ pub(super) struct Reading<'c, 'f> {
     known: BTreeSet<String>,
     files: u32,
     nodes: u32,
+    bytes: u64,
+    /// Bytes that parameters were replaced by.
+    expanded: usize,
     /// Whether the names of properties are those of versions before 2.
     is_old: bool,
 }
@@ -81,6 +89,8 @@ pub(super) struct Text {
     whole: Location,
     text: String,
     lines: Vec<usize>,
+    /// The line, offset and column that were counted last: a file may be one long line.
+    counted: Cell<(usize, usize, u32)>,
     /// The folder of the file.
     folder: PathBuf,
 }
@@ -94,14 +104,17 @@ impl Text {
         })?;
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(index, _)| index + 1)).collect();
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(Self { whole, text: text.to_owned(), lines, folder })
+        Ok(Self { whole, text: text.to_owned(), lines, counted: Cell::new((1, 0, 1)), folder })
     }
 
     /// The location of a byte.
     pub(super) fn at(&self, offset: usize) -> Location {
         let line = self.lines.partition_point(|&start| start <= offset);
-        let start = self.lines[line - 1];
-        let column = self.text.get(start..offset).map_or(0, |before| before.chars().count() as u32 + 1);
+        let (counted_line, from, column) = self.counted.get();
+        let (from, column) = if line == counted_line { (from, column) } else { (self.lines[line - 1], 1) };
+        let count = |from, to| self.text.get(from..to).map_or(0, |between| between.chars().count() as u32);
+        let column = if from <= offset { column + count(from, offset) } else { column - count(offset, from) };
+        self.counted.set((line, offset, column));
         self.whole.at(line as u32, column)
     }
 }
@@ -121,6 +134,8 @@ impl<'c, 'f> Reading<'c, 'f> {
             known: BTreeSet::new(),
             files: 0,
             nodes: 0,
+            bytes: 0,
+            expanded: 0,
             is_old: false,
             context,
         }
@@ -163,6 +178,11 @@ impl<'c, 'f> Reading<'c, 'f> {
         properties: &mut Vec<Property>,
     ) -> Result<Location> {
         let text = Text::new(path, bytes)?;
+        self.bytes += bytes.len() as u64;
+        if self.bytes > MOST_BYTES {
+            let message = format!("the files of the scene are longer than {MOST_BYTES} bytes");
+            return Err(Error::new(ErrorKind::Limit, &text.whole, message));
+        }
         let options = ParsingOptions { nodes_limit: MOST_NODES - self.nodes, ..ParsingOptions::default() };
         // A node takes about a hundred bytes, and has at least four of the text.
         let _memory =
@@ -445,8 +465,11 @@ impl<'c, 'f> Reading<'c, 'f> {
             self.known.insert(name.to_owned());
             expanded.push_str(meant);
             expanded.push_str(rest);
-            if expanded.len() > LONGEST_VALUE {
-                let message = format!("with its parameters this is longer than {LONGEST_VALUE} bytes");
+            self.expanded += meant.len();
+            if expanded.len() > LONGEST_VALUE || self.expanded > MOST_EXPANDED {
+                let message = format!(
+                    "parameters make this longer than {LONGEST_VALUE} bytes, or all values by {MOST_EXPANDED}"
+                );
                 return Err(Error::new(ErrorKind::Limit, at, message));
             }
         }

@@ -442,6 +442,13 @@ fn hostile_files_end_in_errors() {
     let doubled: String =
         (1..60).map(|k| format!("<default name=\"p{k}\" value=\"$p{}$p{}\"/>\n", k - 1, k - 1)).collect();
     assert_eq!(error(&format!("<default name=\"p0\" value=\"xx\"/>{doubled}")).kind, ErrorKind::Limit);
+    // Many long values, each within its limit.
+    let long = format!("<default name=\"p\" value=\"{}\"/>", "x".repeat(60_000));
+    let uses: String = (0..500).map(|k| format!("<string name=\"s{k}\" value=\"$p\"/>")).collect();
+    assert_eq!(error(&format!("{long}<shape type=\"cube\">{uses}</shape>")).kind, ErrorKind::Limit);
+    // Columns of one long line are not counted from its beginning each time.
+    let line = format!("{}<shape type=\"x\"/>", "<bsdf type=\"diffuse\"/>".repeat(100_000));
+    assert_eq!(error(&line).at.column, 22 * 100_000 + 14);
     let circle = "<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>\
                   <shape type=\"cube\"><ref id=\"a\"/></shape>";
     assert!(error(circle).message.ends_with("is a part of itself"));
