@@ -3,7 +3,7 @@
 use crate::camera::Projection;
 
 /// The items that [`ImportOptions`](crate::ImportOptions) selects from, in the order of their numbers, which only glTF files
-/// have, and the variables of scenes in our own format.
+/// have, and the variables of scenes in our own format and of Mitsuba.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contents {
     /// The names of the scenes.

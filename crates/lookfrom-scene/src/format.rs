@@ -10,6 +10,7 @@ use crate::{hair, packed, stl};
 pub(crate) enum Format {
     Toml,
     Pbrt,
+    Mitsuba,
     Gltf,
     Ply,
     Stl,
@@ -32,6 +33,7 @@ struct Row {
 const FORMATS: &[Row] = &[
     Row { format: Format::Toml, extensions: &["toml"], may_be_packed: false, sniff: |_| false },
     Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
+    Row { format: Format::Mitsuba, extensions: &["xml"], may_be_packed: false, sniff: is_mitsuba },
     Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: is_gltf },
     Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
     Row { format: Format::Hair, extensions: &["hair"], may_be_packed: true, sniff: hair::is_hair },
@@ -81,6 +83,18 @@ fn is_pbrt(bytes: &[u8]) -> bool {
         let word = line.split(|byte| byte.is_ascii_whitespace() || *byte == b'"').next().unwrap_or_default();
         matches!(word, b"WorldBegin" | b"LookAt" | b"Integrator" | b"PixelFilter" | b"AttributeBegin")
     })
+}
+
+/// Whether a text is a scene of Mitsuba: its first element is a `scene`.
+fn is_mitsuba(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let head = head.strip_prefix("\u{feff}".as_bytes()).unwrap_or(head);
+    let is_element = |tag: &[u8]| tag.first().is_some_and(u8::is_ascii_alphabetic);
+    head.trim_ascii_start().starts_with(b"<")
+        && head
+            .split(|&byte| byte == b'<')
+            .find(|tag| is_element(tag))
+            .is_some_and(|tag| tag.starts_with(b"scene"))
 }
 
 /// Whether a file's content is that of a glTF file: the signature of a GLB container, or JSON with an `asset`.

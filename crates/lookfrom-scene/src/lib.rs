@@ -4,7 +4,10 @@
 //! validated by itself, and is independent of rendering. Start reading at [`scene`].
 
 // What several readers share is there whichever of them are.
-#![cfg_attr(not(all(feature = "gltf", feature = "images", feature = "pbrt")), allow(dead_code))]
+#![cfg_attr(
+    not(all(feature = "gltf", feature = "images", feature = "mitsuba", feature = "pbrt")),
+    allow(dead_code)
+)]
 
 pub mod atmosphere;
 mod boolean;
@@ -35,6 +38,8 @@ pub mod load;
 pub mod material;
 pub mod measured;
 pub mod medium;
+#[cfg(feature = "mitsuba")]
+pub mod mitsuba;
 pub mod model;
 pub mod motion;
 pub mod nanovdb;

@@ -10,6 +10,8 @@ use crate::format::Format;
 use crate::gltf;
 use crate::light::Light;
 use crate::material::{Color, Material, MaterialKind};
+#[cfg(feature = "mitsuba")]
+use crate::mitsuba;
 #[cfg(feature = "pbrt")]
 use crate::pbrt;
 use crate::remedy::Remedy;
@@ -25,7 +27,7 @@ const CLAY: f32 = 0.8;
 /// The path that stands for a pipe, from which a file comes without a name.
 pub const PIPE: &str = "-";
 
-/// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`), a glTF file (`.gltf`, `.glb`), or a model file, whose
+/// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`) or Mitsuba 3 (`.xml`), a glTF file (`.gltf`, `.glb`), or a model file, whose
 /// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none.
 /// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`] or another pipe, what no other reader knows is our own format.
 ///
@@ -46,7 +48,7 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         // Our own format knows better what is missing.
         let message = format!("this file has no variables, and so no `{name}`");
         return Err(Error::new(ErrorKind::Request, &Location::default(), message)
-            .hint("variables are for scenes in our own format (.toml)"));
+            .hint("variables are for scenes in our own format (.toml) and of Mitsuba (.xml)"));
     }
     if context.import.camera == CameraChoice::None {
         scene.camera = None;
@@ -71,6 +73,10 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         Some(Format::Pbrt) => pbrt::from_bytes(source.bytes, path, context),
         #[cfg(not(feature = "pbrt"))]
         Some(Format::Pbrt) => Err(left_out(path, "scenes of pbrt", "pbrt")),
+        #[cfg(feature = "mitsuba")]
+        Some(Format::Mitsuba) => mitsuba::from_bytes(&source.bytes, path, context),
+        #[cfg(not(feature = "mitsuba"))]
+        Some(Format::Mitsuba) => Err(left_out(path, "scenes of Mitsuba", "mitsuba")),
         #[cfg(feature = "gltf")]
         Some(Format::Gltf) => {
             let scene = gltf::from_bytes(source.bytes, path, context)?;
@@ -134,9 +140,12 @@ pub(crate) struct Model {
 
 /// The parts of a model file; its materials are added to the scene.
 pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
-    let of_pbrt = || unsupported(path, "a scene of pbrt cannot be a part of another scene");
-    if Format::of_name(path) == Some(Format::Pbrt) {
-        return Err(of_pbrt());
+    let of_scene =
+        |program: &str| unsupported(path, &format!("a scene of {program} cannot be a part of another scene"));
+    match Format::of_name(path) {
+        Some(Format::Pbrt) => return Err(of_scene("pbrt")),
+        Some(Format::Mitsuba) => return Err(of_scene("Mitsuba")),
+        _ => {}
     }
     let source = Source::open(path, context)?;
     match source.format {
@@ -147,7 +156,8 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => {
             Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
         }
-        Some(Format::Pbrt) => Err(of_pbrt()),
+        Some(Format::Pbrt) => Err(of_scene("pbrt")),
+        Some(Format::Mitsuba) => Err(of_scene("Mitsuba")),
         Some(Format::Toml) | None => Err(unknown_format(path)),
     }
 }
@@ -158,11 +168,11 @@ fn unknown_format(path: &Path) -> Error {
 
 fn unsupported(path: &Path, message: &str) -> Error {
     Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint("scenes are .toml or .pbrt files, models .gltf, .glb, .obj, .ply, .stl or .hair")
+        .hint("scenes are .toml, .pbrt or .xml files, models .gltf, .glb, .obj, .ply, .stl or .hair")
 }
 
 /// The refusal of a format whose reader was not compiled.
-#[cfg(not(all(feature = "gltf", feature = "pbrt")))]
+#[cfg(not(all(feature = "gltf", feature = "mitsuba", feature = "pbrt")))]
 fn left_out(path: &Path, format: &str, feature: &str) -> Error {
     let message = format!("this build has no reader for {format}");
     Error::new(ErrorKind::Unsupported, &Location::file(path), message)

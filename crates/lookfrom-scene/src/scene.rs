@@ -94,7 +94,7 @@ pub struct Scene {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SourceFormat {
-    /// A scene in our own format or of pbrt, or no file.
+    /// A scene in our own format, of pbrt or of Mitsuba, or no file.
     #[default]
     Scene,
     /// A glTF file.

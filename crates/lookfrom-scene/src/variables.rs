@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Values for the variables of a scene, which replace those in its `[variables]`. The time of its animations is
+/// Values for the variables of a scene, which replace those in its `[variables]`, or those of the `default` elements of Mitsuba. The time of its animations is
 /// [`ImportOptions::at`](crate::ImportOptions::at).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variables {

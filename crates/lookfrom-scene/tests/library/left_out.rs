@@ -1,6 +1,6 @@
 //! Files in formats whose readers a build leaves out: what is said of them.
 
-#[cfg(not(all(feature = "gltf", feature = "images", feature = "pbrt")))]
+#[cfg(not(all(feature = "gltf", feature = "images", feature = "mitsuba", feature = "pbrt")))]
 fn refusal(name: &str, content: &[u8]) -> String {
     use lookfrom_scene::{LoadContext, Memory, load};
 
@@ -17,6 +17,13 @@ fn a_build_without_gltf_says_so() {
         assert!(error.contains("this build has no reader for glTF"), "{error}");
         assert!(error.contains("build with the feature `gltf`"), "{error}");
     }
+}
+
+#[cfg(not(feature = "mitsuba"))]
+#[test]
+fn a_build_without_mitsuba_says_so() {
+    let error = refusal("a.xml", b"<scene version=\"3.0.0\"/>");
+    assert!(error.contains("build with the feature `mitsuba`"), "{error}");
 }
 
 #[cfg(not(feature = "pbrt"))]

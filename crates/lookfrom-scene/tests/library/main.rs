@@ -15,6 +15,10 @@ mod image;
 mod image_exr;
 mod image_radiance;
 mod left_out;
+#[cfg(feature = "mitsuba")]
+mod mitsuba;
+#[cfg(feature = "mitsuba")]
+mod mitsuba_scenes;
 mod models_corpus;
 mod models_errors;
 mod models_formats;

@@ -136,7 +136,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "builder chain count duplicates model nanovdb shutter",
             "boolean hair ies npy stl subdivision tessellation validate",
             "obj ply",
-            "pbrt studio",
+            "mitsuba pbrt studio",
             "gltf",
             "format",
             "source",

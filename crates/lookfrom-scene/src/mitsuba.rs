@@ -1,0 +1,183 @@
+//! Reader for scenes of Mitsuba 3 (Jakob et al. 2022) in XML. Errors have the location of the invalid value.
+//!
+//! `xml` makes a tree of `plugin`s of the files (`value` and `transform` their values); the other files each handle a class of plugins. A
+//! plugin without a counterpart here is an error; one that is replaced by something similar, and a property without effect, a warning.
+//! Colours are those of Mitsuba's variants with the colour mode `rgb`.
+
+mod bsdf;
+mod emitter;
+mod medium;
+mod plugin;
+mod sensor;
+mod shape;
+mod texture;
+mod transform;
+mod value;
+mod xml;
+
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use self::bsdf::Surface;
+use self::plugin::{Ids, Plugin, Value};
+use crate::chain;
+use crate::error::{Error, ErrorKind, Location, Result};
+use crate::files::LoadContext;
+use crate::material::{Color, Material, MaterialKind};
+use crate::scene::{ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals};
+
+/// Reads a scene of Mitsuba with all its includes. Files are looked up in the folder of the scene and those of its `path` elements. The
+/// [variables](crate::Variables) are its parameters.
+///
+/// # Errors
+/// With line and column: `Syntax` for malformed files, `Invalid` for invalid values, `Unsupported` for plugins without a counterpart,
+/// `Limit` for excessive sizes and nesting, `Request` for values of parameters that it does not have, and the errors of the files that
+/// are named.
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let bytes = context.read(path)?;
+    from_bytes(&bytes, path, context)
+}
+
+/// As [`read`], of the content of the main file.
+pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
+    let mut reading = xml::Reading::new(path, context);
+    let root = reading.scene(bytes, path)?;
+    let variables = reading.variables();
+    let (ids, folders) = (std::mem::take(&mut reading.ids), std::mem::take(&mut reading.folders));
+    let mut scene = Scene { vertex_normals: VertexNormals::AsGiven, is_complete: true, ..Scene::default() };
+    scene.contents.variables = variables;
+    for (name, reflectance) in [("default", 0.5), ("black", 0.0)] {
+        let kind = MaterialKind::Diffuse { reflectance: Color::gray(reflectance) };
+        scene.materials.push(Material::new(name, Location::file(path), kind));
+    }
+    let mut reader = Reader {
+        context,
+        scene,
+        ids,
+        folders,
+        open: Vec::new(),
+        surfaces: HashMap::new(),
+        textures: HashMap::new(),
+        images: HashMap::new(),
+        media: HashMap::new(),
+        meshes: HashMap::new(),
+        own_normals: BTreeSet::new(),
+        groups: HashMap::new(),
+        warned: BTreeSet::new(),
+    };
+    reader.root(&root)?;
+    root.warn_unused(reader.context);
+    Ok(reader.scene)
+}
+
+/// The state of reading a scene.
+struct Reader<'s, 'f> {
+    context: &'s mut LoadContext<'f>,
+    scene: Scene,
+    ids: Ids,
+    /// Folders in which files are looked up.
+    folders: Vec<PathBuf>,
+    /// The plugins that are being read, each a part of the one before it.
+    open: Vec<*const Plugin>,
+    surfaces: HashMap<*const Plugin, Surface>,
+    textures: HashMap<*const Plugin, TextureId>,
+    /// Images by path and whether their values are raw.
+    images: HashMap<(PathBuf, bool), ImageId>,
+    media: HashMap<*const Plugin, MediumId>,
+    /// Meshes by path and whether their normals are those of faces.
+    meshes: HashMap<(PathBuf, bool), Vec<MeshId>>,
+    /// Meshes with the normals of their files.
+    own_normals: BTreeSet<MeshId>,
+    groups: HashMap<*const Plugin, ObjectId>,
+    /// Warnings that have been given already.
+    warned: BTreeSet<String>,
+}
+
+/// Maximum depth of plugins that are parts of others.
+const DEEPEST: usize = 64;
+
+impl Reader<'_, '_> {
+    /// What a shape without a BSDF has.
+    const DEFAULT: MaterialId = MaterialId(0);
+    /// What an emitting shape without a BSDF has.
+    const BLACK: MaterialId = MaterialId(1);
+
+    fn root(&mut self, root: &Plugin) -> Result<()> {
+        let integrator = root.part("integrator", &self.ids)?;
+        self.integrator(integrator.as_deref())?;
+        let sensors = root.parts("sensor", &self.ids)?;
+        for (order, (_, sensor)) in sensors.iter().enumerate() {
+            if order == 0 {
+                self.sensor(sensor)?;
+            } else {
+                self.context.warn(&sensor.at, "only the first sensor is rendered");
+            }
+        }
+        for (_, emitter) in root.parts("emitter", &self.ids)? {
+            self.emitter(&emitter)?;
+        }
+        for (_, shape) in root.parts("shape", &self.ids)? {
+            self.shape(&shape)?;
+        }
+        // They are for references.
+        for class in
+            ["bsdf", "texture", "medium", "phase", "volume", "spectrum", "film", "sampler", "rfilter"]
+        {
+            root.parts(class, &self.ids)?;
+        }
+        let textures = chain::check(&self.scene.textures, 0..self.scene.textures.len());
+        let materials = chain::check(&self.scene.materials, 0..self.scene.materials.len());
+        textures.into_iter().chain(materials).next().map_or(Ok(()), Err)
+    }
+
+    /// Reads a part of a plugin.
+    ///
+    /// # Errors
+    /// `Invalid` if it is a part of itself, `Limit` if it is too deep.
+    fn within<T>(&mut self, plugin: &Rc<Plugin>, read: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
+        let address = Rc::as_ptr(plugin);
+        if self.open.contains(&address) {
+            return Err(Error::invalid(&plugin.at, format!("the {} is a part of itself", plugin.title())));
+        }
+        if self.open.len() >= DEEPEST {
+            return Err(Error::new(ErrorKind::Limit, &plugin.at, format!("nested more than {DEEPEST} deep")));
+        }
+        self.open.push(address);
+        let result = read(self);
+        self.open.pop();
+        result
+    }
+
+    /// Warns once.
+    fn warn_once(&mut self, at: &Location, message: impl Into<String>) {
+        let message = message.into();
+        if self.warned.insert(message.clone()) {
+            self.context.warn(at, message);
+        }
+    }
+
+    /// A file that a plugin names.
+    fn file(&self, plugin: &Plugin) -> Result<(PathBuf, Location)> {
+        let Some(name) = plugin.string("filename")?.filter(|name| !name.is_empty()) else {
+            let error = Error::invalid(&plugin.at, format!("the {} has no `filename`", plugin.title()));
+            return Err(error.hint("write <string name=\"filename\" value=\"…\"/>"));
+        };
+        let at = plugin.find("filename").map_or(&plugin.at, |property| &property.at);
+        Ok((xml::resolve(name, &self.folders, self.context), at.clone()))
+    }
+
+    /// A constant colour of light, with a factor for its brightness: spectra are told relative to their luminance here.
+    fn light_color(&mut self, plugin: &Plugin, name: &str) -> Result<(Color, f32)> {
+        let Some(property) = plugin.find(name) else { return Ok((Color::gray(1.0), 1.0)) };
+        match &property.value {
+            Value::Color(rgb) => Ok((Color::Value(*rgb), 1.0)),
+            Value::Float(value) if *value >= 0.0 => Ok((Color::gray(*value as f32), 1.0)),
+            Value::Curve(curve) => Ok(self.light_curve(curve.clone())),
+            _ => match property.plugin(&self.ids)? {
+                Some(spectrum) => self.light_spectrum(&spectrum),
+                None => Err(property.wrong("a colour: <rgb> or <spectrum>")),
+            },
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! The sensor with its film and sampler, and the integrator.
+
+use super::Reader;
+use super::plugin::Plugin;
+use crate::camera::{Camera, Lens, Projection, View, Window};
+use crate::error::Result;
+use crate::settings::{Filter, FilterShape, Integrator, PixelBounds, Sampler};
+
+/// Maximum width and height.
+const LARGEST: i64 = 1 << 16;
+/// Maximum number of samples per pixel.
+const MOST_SAMPLES: i64 = 1 << 24;
+
+/// Maximum number of reflections: so many that Russian roulette alone ends paths, except between perfect mirrors.
+const DEEPEST: u32 = 1000;
+
+const SENSORS: &[&str] = &["orthographic", "perspective", "thinlens"];
+const SAMPLERS: &[&str] = &["independent", "ldsampler", "multijitter", "orthogonal", "stratified"];
+const INTEGRATORS: &[&str] = &["aov", "direct", "moment", "path", "volpath", "volpathmis"];
+
+/// The axis along which a field of view is measured.
+#[derive(Clone, Copy)]
+enum Axis {
+    X,
+    Y,
+    Diagonal,
+    Smaller,
+    Larger,
+}
+
+impl Reader<'_, '_> {
+    pub(super) fn sensor(&mut self, plugin: &Plugin) -> Result<()> {
+        if !SENSORS.contains(&&*plugin.kind) {
+            return Err(plugin.unsupported(SENSORS));
+        }
+        plugin.ignore(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
+        let film = plugin.part("film", &self.ids)?;
+        self.film(film.as_deref())?;
+        let sampler = plugin.part("sampler", &self.ids)?;
+        self.sampler(sampler.as_deref())?;
+        let medium = match plugin.part("medium", &self.ids)? {
+            Some(medium) => Some(self.medium(&medium)?),
+            None => None,
+        };
+        let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
+        let projection = match &*plugin.kind {
+            "orthographic" => Projection::Orthographic { height: 2.0 / aspect },
+            _ => Projection::Perspective { fov: field_of_view(plugin, aspect)? },
+        };
+        let lens = match &*plugin.kind {
+            "thinlens" => {
+                let radius = plugin.positive("aperture_radius", 1.0)?;
+                Some(Lens { radius, focus_distance: plugin.positive("focus_distance", 1.0)? })
+            }
+            _ => {
+                plugin.ignore(&["focus_distance"]);
+                None
+            }
+        };
+        let (x, y) = match &*plugin.kind {
+            "perspective" => {
+                let offset = |name: &str| plugin.float(name, 0.0);
+                (offset("principal_point_offset_x")?, offset("principal_point_offset_y")?)
+            }
+            _ => (0.0, 0.0),
+        };
+        let shifted = Window {
+            x: [(2.0 * x - 1.0) * aspect, (2.0 * x + 1.0) * aspect],
+            y: [-1.0 - 2.0 * y, 1.0 - 2.0 * y],
+        };
+        self.scene.camera = Some(Camera {
+            at: plugin.at.clone(),
+            view: View::Matrix(plugin.to_world()?),
+            projection,
+            lens,
+            window: ((x, y) != (0.0, 0.0)).then_some(shifted),
+            medium,
+            ..Camera::default()
+        });
+        Ok(())
+    }
+
+    fn film(&mut self, film: Option<&Plugin>) -> Result<()> {
+        let image = &mut self.scene.image;
+        (image.width, image.height) = (768, 576);
+        image.filter = FilterShape::Gaussian { sigma: 0.5 }.of_radius(2.0);
+        let Some(film) = film else { return Ok(()) };
+        if film.kind != "hdrfilm" {
+            return Err(film.unsupported(&["hdrfilm"]));
+        }
+        // The format of the picture is that of the file that is asked for.
+        film.ignore(&[
+            "file_format",
+            "pixel_format",
+            "component_format",
+            "sample_border",
+            "banner",
+            "compensate",
+        ]);
+        image.width = film.integer("width", 768, 1, LARGEST)? as u32;
+        image.height = film.integer("height", 576, 1, LARGEST)? as u32;
+        let (width, height) = (i64::from(image.width), i64::from(image.height));
+        let x0 = film.integer("crop_offset_x", 0, 0, width - 1)?;
+        let y0 = film.integer("crop_offset_y", 0, 0, height - 1)?;
+        let columns = film.integer("crop_width", width - x0, 1, width - x0)?;
+        let rows = film.integer("crop_height", height - y0, 1, height - y0)?;
+        if (columns, rows) != (width, height) {
+            let [x0, y0, x1, y1] = [x0, y0, x0 + columns, y0 + rows].map(|edge| edge as u32);
+            image.crop = Some(PixelBounds { x0, y0, x1, y1 });
+        }
+        if let Some(filter) = film.part("rfilter", &self.ids)? {
+            self.scene.image.filter = reconstruction(&filter)?;
+        }
+        Ok(())
+    }
+
+    fn sampler(&mut self, sampler: Option<&Plugin>) -> Result<()> {
+        let render = &mut self.scene.render;
+        (render.samples, render.sampler) = (4, Sampler::Independent);
+        let Some(sampler) = sampler else { return Ok(()) };
+        if !SAMPLERS.contains(&&*sampler.kind) {
+            return Err(sampler.unsupported(SAMPLERS));
+        }
+        sampler.ignore(&["jitter"]);
+        render.samples = sampler.integer("sample_count", 4, 1, MOST_SAMPLES)? as u32;
+        render.seed = sampler.integer("seed", 0, 0, i64::from(u32::MAX))? as u64;
+        if sampler.kind != "independent" {
+            render.sampler = Sampler::Sobol;
+        }
+        Ok(())
+    }
+
+    pub(super) fn integrator(&mut self, integrator: Option<&Plugin>) -> Result<()> {
+        let render = &mut self.scene.render;
+        (render.integrator, render.depth, render.media) = (Integrator::Path, DEEPEST, false);
+        let Some(plugin) = integrator else { return Ok(()) };
+        match &*plugin.kind {
+            "moment" | "aov" => {
+                if plugin.kind == "aov" && plugin.find("aovs").is_some() {
+                    self.warn_once(
+                        &plugin.at,
+                        "`aovs` have no effect here: the option `layers` has such pictures",
+                    );
+                }
+                let inner = plugin.part("integrator", &self.ids)?;
+                return self.within_integrator(plugin, inner.as_ref());
+            }
+            "direct" => {
+                plugin.ignore(&["shading_samples", "emitter_samples", "bsdf_samples"]);
+                render.depth = 1;
+            }
+            "path" | "volpath" | "volpathmis" => {
+                plugin.ignore(&["rr_depth"]);
+                // Segments of a path, one more than its reflections.
+                let segments = plugin.integer("max_depth", -1, -1, i64::from(u32::MAX))?;
+                if segments == 0 {
+                    return Err(plugin.refuse(
+                        "max_depth",
+                        "at least 1, since with 0 the picture is black, or −1 for no limit",
+                    ));
+                }
+                render.depth = u32::try_from(segments - 1).map_or(DEEPEST, |depth| depth.min(DEEPEST));
+                render.media = plugin.kind != "path";
+            }
+            _ => return Err(plugin.unsupported(INTEGRATORS)),
+        }
+        if plugin.boolean("hide_emitters", false)? {
+            self.warn_once(&plugin.at, "emitters are not hidden: `hide_emitters` has no effect here");
+        }
+        Ok(())
+    }
+
+    /// The integrator in another one that only measures it.
+    fn within_integrator(&mut self, outer: &Plugin, inner: Option<&std::rc::Rc<Plugin>>) -> Result<()> {
+        match inner {
+            Some(inner) => self.within(inner, |reader| reader.integrator(Some(inner))),
+            None => Err(crate::error::Error::invalid(
+                &outer.at,
+                format!("the {} has no integrator in it", outer.title()),
+            )),
+        }
+    }
+}
+
+fn reconstruction(filter: &Plugin) -> Result<Filter> {
+    Ok(match &*filter.kind {
+        "box" => FilterShape::Box.of_radius(0.5),
+        "tent" => FilterShape::Triangle.of_radius(filter.positive("radius", 1.0)? as f32),
+        "gaussian" => {
+            let sigma = filter.positive("stddev", 0.5)? as f32;
+            FilterShape::Gaussian { sigma }.of_radius(4.0 * sigma)
+        }
+        "mitchell" => {
+            let [b, c] = [filter.float("B", 1.0 / 3.0)?, filter.float("C", 1.0 / 3.0)?];
+            FilterShape::Mitchell { b: b as f32, c: c as f32 }.of_radius(2.0)
+        }
+        "catmullrom" => FilterShape::Mitchell { b: 0.0, c: 0.5 }.of_radius(2.0),
+        "lanczos" => {
+            let lobes = filter.integer("lobes", 3, 1, 16)? as f32;
+            FilterShape::Sinc { tau: lobes }.of_radius(lobes)
+        }
+        _ => {
+            return Err(filter.unsupported(&[
+                "box",
+                "catmullrom",
+                "gaussian",
+                "lanczos",
+                "mitchell",
+                "tent",
+            ]));
+        }
+    })
+}
+
+/// The vertical field of view in degrees.
+fn field_of_view(plugin: &Plugin, aspect: f64) -> Result<f64> {
+    let half = |degrees: f64| libm::tan((0.5 * degrees).to_radians());
+    let (tangent, axis) = if plugin.find("fov").is_some() {
+        let degrees =
+            plugin.float_where("fov", 0.0, "an angle between 0 and 180 degrees", |a| a > 0.0 && a < 180.0)?;
+        let axes = [
+            ("x", Axis::X),
+            ("y", Axis::Y),
+            ("diagonal", Axis::Diagonal),
+            ("smaller", Axis::Smaller),
+            ("larger", Axis::Larger),
+        ];
+        (half(degrees), plugin.choice("fov_axis", Axis::X, &axes)?)
+    } else {
+        // The focal length in mm of a camera for film of 36 mm × 24 mm.
+        let focal = match plugin.string("focal_length")? {
+            None => 50.0,
+            Some(written) => {
+                let number = written.trim().trim_end_matches("mm").trim().parse::<f64>().ok();
+                let number = number.filter(|number| *number > 0.0 && number.is_finite());
+                number.ok_or_else(|| plugin.refuse("focal_length", "a length in mm, such as 50mm"))?
+            }
+        };
+        (0.5 * (36.0_f64 * 36.0 + 24.0 * 24.0).sqrt() / focal, Axis::Diagonal)
+    };
+    let vertical = match axis {
+        Axis::X => tangent / aspect,
+        Axis::Y => tangent,
+        Axis::Diagonal => tangent / (1.0 + aspect * aspect).sqrt(),
+        Axis::Smaller => {
+            if aspect > 1.0 {
+                tangent
+            } else {
+                tangent / aspect
+            }
+        }
+        Axis::Larger => {
+            if aspect > 1.0 {
+                tangent / aspect
+            } else {
+                tangent
+            }
+        }
+    };
+    Ok((2.0 * libm::atan(vertical)).to_degrees())
+}

@@ -1,0 +1,491 @@
+//! Scenes of Mitsuba in XML: what is read of each kind of plugin, what is said of faults, and hostile files.
+
+use std::f32::consts::FRAC_1_PI;
+use std::path::{Path, PathBuf};
+
+use glam::{DMat4, DVec3, DVec4};
+use lookfrom_scene::camera::{Projection, View};
+use lookfrom_scene::excerpt::Excerpts;
+use lookfrom_scene::light::{LightKind, Sky};
+use lookfrom_scene::material::{BumpMapping, Color, Ior, MaterialKind, Metal, Scalar};
+use lookfrom_scene::settings::{FilterShape, Integrator, PixelBounds, Sampler};
+use lookfrom_scene::shape::{Geometry, Shape};
+use lookfrom_scene::texture::{Mapping, TexelFilter, TextureKind, Wrap};
+use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, load};
+use proptest::prelude::*;
+
+fn files(files: &[(&str, &str)]) -> Memory {
+    Memory(files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec())).collect())
+}
+
+fn read_of(memory: &Memory, variables: &[(&str, &str)]) -> (Result<Scene>, Vec<String>) {
+    let mut context = LoadContext::new(memory);
+    context.limits.elements = 10_000;
+    for (name, value) in variables {
+        context.variables.values.insert((*name).to_owned(), (*value).to_owned());
+    }
+    let scene = load::scene(Path::new("s/a.xml"), &mut context);
+    (scene, context.warnings.iter().map(ToString::to_string).collect())
+}
+
+/// The scene with these elements, and the warnings.
+fn told(elements: &str) -> (Scene, Vec<String>) {
+    let text = format!("<scene version=\"3.0.0\">\n{elements}\n</scene>");
+    let (scene, warnings) =
+        read_of(&files(&[("s/a.xml", &text), ("s/p.pfm", PICTURE), ("s/m.obj", MESH)]), &[]);
+    (scene.unwrap_or_else(|error| panic!("{elements}: {error}")), warnings)
+}
+
+/// As [`told`], without warnings.
+fn scene(elements: &str) -> Scene {
+    let (scene, warnings) = told(elements);
+    assert!(warnings.is_empty(), "{elements}: {warnings:?}");
+    scene
+}
+
+fn error(elements: &str) -> Error {
+    let text = format!("<scene version=\"3.0.0\">\n{elements}\n</scene>");
+    read_of(&files(&[("s/a.xml", &text)]), &[]).0.expect_err(elements)
+}
+
+/// A grey picture of one texel.
+const PICTURE: &str = "Pf\n1 1\n-1.0\n\0\0\0?";
+const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+
+/// The matrix of the only shape, with this transform.
+fn matrix(steps: &str) -> DMat4 {
+    let scene =
+        scene(&format!("<shape type=\"cube\"><transform name=\"to_world\">{steps}</transform></shape>"));
+    scene.shapes[0].world_from_object
+}
+
+/// The material of a cube with this BSDF, and its shape.
+fn material(bsdf: &str) -> (MaterialKind, Shape, Vec<String>) {
+    let (scene, warnings) = told(&format!("<shape type=\"cube\">{bsdf}</shape>"));
+    let shape = scene.shapes[0].clone();
+    (scene.materials[shape.material.index()].kind.clone(), shape, warnings)
+}
+
+fn near(a: DVec3, b: DVec3) -> bool {
+    (a - b).length() < 1e-12
+}
+
+#[test]
+fn parameters_have_defaults_that_come_first_or_from_outside() {
+    let text = "<scene version=\"3.0.0\">\n<default name=\"kind\" value=\"per\"/><default name=\"kind\" value=\"x\"/>\n\
+                <sensor type=\"$kind\"/></scene>";
+    let memory = files(&[("s/a.xml", text)]);
+    let (result, _) = read_of(&memory, &[]);
+    let message = result.expect_err("per is no sensor").to_string();
+    assert!(message.contains("s/a.xml:3:15: the sensor \"per\" is not supported"), "{message}");
+    let text = r#"<scene version="3.0.0"><default name="spp" value="8"/><sensor type="perspective">
+        <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler></sensor></scene>"#;
+    let memory = files(&[("s/a.xml", text)]);
+    let samples =
+        |variables: &[(&str, &str)]| read_of(&memory, variables).0.map(|scene| scene.render.samples);
+    assert_eq!(
+        (samples(&[]), samples(&[("spp", "32")]), samples(&[("spp", "\"5\"")])),
+        (Ok(8), Ok(32), Ok(5))
+    );
+    let stranger = samples(&[("sp", "32")]).expect_err("a slip");
+    assert_eq!((stranger.kind, stranger.hint), (ErrorKind::Request, Some("did you mean `spp`?".into())));
+    let missing = error("<shape type=\"$which\"/>");
+    assert_eq!(missing.message, "the parameter `$which` has no value");
+    assert_eq!((missing.at.line, missing.at.column), (2, 14));
+}
+
+#[test]
+fn includes_paths_references_and_aliases_join_a_scene() {
+    let main = r#"<scene version="3.0.0"><path value="../lib"/><include filename="parts.xml"/>
+        <shape type="cube"><ref id="paint"/></shape>
+        <shape type="cube"><ref id="later"/></shape>
+        <bsdf type="diffuse" id="later"/></scene>"#;
+    let parts =
+        r#"<scene version="3.0.0"><include filename="deep.xml"/><alias id="red" as="paint"/></scene>"#;
+    let deep = r##"<bsdf type="diffuse" id="red"><rgb name="reflectance" value="#ff0000"/></bsdf>"##;
+    let memory = files(&[("s/a.xml", main), ("s/../lib/parts.xml", parts), ("s/../lib/deep.xml", deep)]);
+    let (scene, warnings) = read_of(&memory, &[]);
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let reflectance = |index: usize| match scene.materials[scene.shapes[index].material.index()].kind {
+        MaterialKind::Diffuse { reflectance } => reflectance,
+        ref other => panic!("{other:?}"),
+    };
+    assert_eq!((reflectance(0), reflectance(1)), (Color::Value([1.0, 0.0, 0.0]), Color::gray(0.5)));
+}
+
+#[test]
+fn transforms_apply_in_the_order_of_the_file() {
+    let point = |steps: &str, p: [f64; 3]| matrix(steps).transform_point3(p.into());
+    let first = point("<translate x=\"1\"/><scale value=\"2\"/>", [1.0, 0.0, 0.0]);
+    let other = point("<scale value=\"2, 2, 2\"/><translate value=\"1 0 0\"/>", [1.0, 0.0, 0.0]);
+    assert_eq!((first, other), (DVec3::new(4.0, 0.0, 0.0), DVec3::new(3.0, 0.0, 0.0)));
+    assert_eq!(point("<rotate z=\"2\" angle=\"90\"/>", [1.0, 0.0, 0.0]), DVec3::Y);
+    assert!(near(point("<rotate value=\"1 1 1\" angle=\"-120\"/>", [1.0, 0.0, 0.0]), DVec3::Z));
+    let rows = "<matrix value=\"1 0 0 5  0 2 0 6  0 0 3 7  0 0 0 1\"/>";
+    assert_eq!(point(rows, [1.0; 3]), DVec3::new(6.0, 8.0, 10.0));
+    assert_eq!(point("<matrix value=\"0 1 0 1 0 0 0 0 1\"/>", [1.0, 2.0, 3.0]), DVec3::new(2.0, 1.0, 3.0));
+    // x to the left, y up, z forward.
+    let look = matrix("<lookat origin=\"1 2 3\" target=\"1 2 -5\" up=\"0 9 0\"/>");
+    assert_eq!(look.x_axis, DVec4::NEG_X);
+    assert_eq!((look.y_axis, look.z_axis), (DVec4::Y, DVec4::NEG_Z));
+    assert_eq!(look.w_axis, DVec4::new(1.0, 2.0, 3.0, 1.0));
+}
+
+#[test]
+fn names_of_old_versions_are_understood() {
+    let text = r#"<scene version="0.6.0"><sensor type="perspective"><float name="fov" value="90"/>
+        <string name="fovAxis" value="y"/><transform name="toWorld"><lookAt origin="0 0 1" target="0 0 0" up="0 1 0"/>
+        </transform></sensor></scene>"#;
+    let (scene, warnings) = read_of(&files(&[("s/a.xml", text)]), &[]);
+    let camera = scene.unwrap_or_else(|error| panic!("{error}")).camera.expect("a camera");
+    assert_eq!(camera.view.lookfrom(), DVec3::Z);
+    let Projection::Perspective { fov } = camera.projection else { panic!("{:?}", camera.projection) };
+    assert!((fov - 90.0).abs() < 1e-12 && warnings.is_empty(), "{fov} {warnings:?}");
+}
+
+#[test]
+fn sensors_films_and_integrators_are_settings() {
+    let read = scene(
+        r#"<integrator type="moment"><integrator type="volpath"><integer name="max_depth" value="8"/></integrator></integrator>
+        <sensor type="thinlens"><float name="fov" value="60"/><float name="aperture_radius" value="0.1"/>
+            <float name="focus_distance" value="3"/>
+            <film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/>
+                <integer name="crop_offset_x" value="10"/><integer name="crop_width" value="20"/>
+                <rfilter type="mitchell"/></film>
+            <sampler type="multijitter"><integer name="sample_count" value="16"/></sampler></sensor>"#,
+    );
+    assert_eq!((read.render.integrator, read.render.depth, read.render.media), (Integrator::Path, 7, true));
+    assert_eq!((read.render.samples, read.render.sampler), (16, Sampler::Sobol));
+    assert_eq!(read.image.crop, Some(PixelBounds { x0: 10, y0: 0, x1: 30, y1: 100 }));
+    assert!(matches!(read.image.filter.shape, FilterShape::Mitchell { .. }));
+    let camera = read.camera.expect("a camera");
+    let Projection::Perspective { fov } = camera.projection else { panic!("{:?}", camera.projection) };
+    // tan 30° along x is half of that along y.
+    assert!(((0.5 * fov).to_radians().tan() - 0.5 * 30.0_f64.to_radians().tan()).abs() < 1e-12);
+    assert_eq!(camera.view, View::Matrix(DMat4::IDENTITY));
+    assert_eq!(camera.lens.map(|lens| (lens.radius, lens.focus_distance)), Some((0.1, 3.0)));
+    // Mitsuba's own defaults: 38.1848° along x, for 768 × 576.
+    let plain = scene("<integrator type=\"direct\"/><sensor type=\"perspective\"/>");
+    assert_eq!(
+        (plain.image.width, plain.image.height, plain.render.samples, plain.render.depth),
+        (768, 576, 4, 1)
+    );
+    let Some(Projection::Perspective { fov }) = plain.camera.map(|camera| camera.projection) else {
+        panic!()
+    };
+    let along_x = 2.0 * ((0.5 * fov).to_radians().tan() * 768.0 / 576.0).atan().to_degrees();
+    assert!((along_x - 38.1848).abs() < 1e-4, "{along_x}");
+    let moved = scene(
+        "<sensor type=\"perspective\"><float name=\"principal_point_offset_x\" value=\"0.25\"/>\
+         <film type=\"hdrfilm\"><integer name=\"width\" value=\"10\"/><integer name=\"height\" value=\"10\"/></film></sensor>",
+    );
+    assert_eq!(moved.camera.and_then(|camera| camera.window).map(|window| window.x), Some([-0.5, 1.5]));
+    let flat = scene("<sensor type=\"orthographic\"/>").camera.expect("a camera");
+    assert_eq!(flat.projection, Projection::Orthographic { height: 2.0 * 576.0 / 768.0 });
+    assert_eq!(scene("<integrator type=\"path\"/>").render.depth, 1000);
+}
+
+#[test]
+fn shapes_have_their_geometry_and_sides() {
+    let (read, warnings) = told(
+        r#"<shape type="sphere"><point name="center" x="1" y="2" z="3"/><float name="radius" value="2"/></shape>
+        <shape type="cylinder"><float name="radius" value="0.5"/><point name="p1" value="0 0 4"/></shape>
+        <shape type="rectangle"><boolean name="flip_normals" value="true"/></shape>
+        <shape type="disk"/>
+        <shape type="obj"><string name="filename" value="m.obj"/><boolean name="face_normals" value="true"/></shape>
+        <shape type="obj"><string name="filename" value="m.obj"/></shape>"#,
+    );
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    let shapes = &read.shapes;
+    assert!(matches!(shapes[0].geometry, Geometry::PartialSphere { radius: 2.0, .. }));
+    assert_eq!(shapes[0].world_from_object.w_axis, DVec4::new(1.0, 2.0, 3.0, 1.0));
+    let bounds = shapes[1].bounds(&read.meshes);
+    assert!(
+        near(bounds.min, DVec3::new(-0.5, -0.5, 0.0)) && near(bounds.max, DVec3::new(0.5, 0.5, 4.0)),
+        "{bounds:?}"
+    );
+    assert!(shapes[2].reverse_orientation && !shapes[3].reverse_orientation);
+    let mesh = |index: usize| match shapes[index].geometry {
+        Geometry::Mesh(id) => &read.meshes[id.index()],
+        ref other => panic!("{other:?}"),
+    };
+    assert!(mesh(4).normals.is_empty());
+    assert_eq!(mesh(5).normals, [[0.0, 0.0, 1.0]; 3].map(glam::Vec3::from));
+    // Mitsuba turns v of OBJ files around, so that pictures are as usual: here they are as usual.
+    assert_eq!(mesh(5).uvs[2].to_array(), [0.0, 1.0]);
+    // v of a rectangle grows upward in Mitsuba, so that its pictures stand on their heads.
+    assert_eq!(mesh(2).uvs[0].to_array(), [0.0, 1.0]);
+}
+
+#[test]
+fn mirrored_meshes_face_as_their_corners_turn() {
+    let reversed = |more: &str| {
+        let read = scene(&format!(
+            "<shape type=\"obj\"><string name=\"filename\" value=\"m.obj\"/>{more}\
+             <transform name=\"to_world\"><scale x=\"-1\"/></transform></shape>"
+        ));
+        read.shapes[0].reverse_orientation
+    };
+    assert!(reversed("") && reversed("<boolean name=\"face_normals\" value=\"true\"/>"));
+    assert!(!reversed("<boolean name=\"flip_normals\" value=\"true\"/>"));
+}
+
+#[test]
+fn instances_place_groups() {
+    let read = scene(
+        r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="sphere"/></shape>
+        <shape type="instance"><ref id="g"/></shape>
+        <shape type="instance"><ref id="g"/><transform name="to_world"><translate x="5"/></transform></shape>"#,
+    );
+    assert_eq!((read.objects.len(), read.objects[0].shapes.len(), read.shapes.len()), (1, 2, 0));
+    assert_eq!(read.instances[1].world_from_object.w_axis.x, 5.0);
+}
+
+#[test]
+fn bsdfs_become_materials() {
+    let glass = material("<bsdf type=\"dielectric\"/>").0;
+    let MaterialKind::Dielectric { eta: Ior::Value(eta), .. } = glass else { panic!("{glass:?}") };
+    assert!((eta - 1.5046 / 1.000_277).abs() < 1e-6);
+    let (metal, _, warnings) = material(
+        "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Al\"/><float name=\"alpha_u\" value=\"0.25\"/></bsdf>",
+    );
+    let MaterialKind::Conductor { metal: Metal::Indices { eta: Color::Curve(_), .. }, roughness, .. } = metal
+    else {
+        panic!("{metal:?}")
+    };
+    assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.1), false));
+    assert!(warnings[0].contains("(GGX), not Beckmann's"), "{warnings:?}");
+    let mirror = material("<bsdf type=\"conductor\"/>").0;
+    assert!(
+        matches!(mirror, MaterialKind::Conductor { metal: Metal::Reflectance(white), .. } if white == Color::gray(1.0))
+    );
+    let (kind, shape, _) = material(
+        "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.3\"/><bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf></bsdf>",
+    );
+    assert_eq!(
+        (kind, shape.alpha),
+        (MaterialKind::Diffuse { reflectance: Color::gray(0.5) }, Some(Scalar::Value(0.3)))
+    );
+    assert_eq!(material("<bsdf type=\"null\"/>").0, MaterialKind::Interface);
+    let mix = material(
+        "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.2\"/><bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/></bsdf>",
+    );
+    assert!(matches!(mix.0, MaterialKind::Mix { amount: Scalar::Value(0.2), .. }), "{:?}", mix.0);
+    let (plastic, _, warnings) = material("<bsdf type=\"plastic\"/>");
+    assert!(matches!(plastic, MaterialKind::CoatedDiffuse { .. }) && warnings.len() == 1, "{warnings:?}");
+    let (principled, _, warnings) =
+        material("<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/></bsdf>");
+    let MaterialKind::Principled(look) = principled else { panic!("{principled:?}") };
+    assert!((look.ior - 1.5).abs() < 1e-6 && warnings.len() == 1, "{} {warnings:?}", look.ior);
+    let bumpy = scene(
+        "<shape type=\"cube\"><bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></shape>",
+    );
+    let of_shape = &bumpy.materials[bumpy.shapes[0].material.index()];
+    assert!(matches!(of_shape.bump_mapping, BumpMapping::Bump(Scalar::Texture(_))));
+}
+
+#[test]
+fn emitters_have_the_intensities_of_whitted() {
+    let read = scene(
+        r#"<emitter type="point"><point name="position" value="1 2 3"/><rgb name="intensity" value="6"/></emitter>
+        <emitter type="directional"><vector name="direction" value="0 0 -1"/></emitter>
+        <emitter type="envmap"><string name="filename" value="p.pfm"/><float name="scale" value="2"/></emitter>
+        <emitter type="constant"><spectrum name="radiance" value="0.5"/></emitter>
+        <shape type="sphere"><emitter type="area"><spectrum name="radiance" value="300:2, 900:2"/></emitter></shape>"#,
+    );
+    let scales: Vec<f32> = read.lights.iter().map(|light| light.power.scale).collect();
+    assert_eq!(scales[..3], [FRAC_1_PI, FRAC_1_PI, 1.0]);
+    // A constant spectrum of light is one of equal energy: in Mitsuba [0.602, 0.474, 0.454].
+    assert!((scales[3] - 0.5).abs() < 1e-6, "{}", scales[3]);
+    assert!(
+        matches!(read.lights[0].kind, LightKind::Point { intensity, .. } if intensity == Color::gray(6.0))
+    );
+    let LightKind::Environment { sky: Sky::Image { scale, world_from_light, .. }, .. } = read.lights[2].kind
+    else {
+        panic!("{:?}", read.lights[2].kind)
+    };
+    // The middle of our pictures is −z, the left edge of Mitsuba's is.
+    assert_eq!(world_from_light.transform_vector3(DVec3::NEG_Z), DVec3::Z);
+    assert_eq!(scale, [2.0; 3]);
+    let emission = read.shapes[0].emission.expect("an area light");
+    assert!(matches!(emission.radiance, Color::Curve(_)) && (emission.power.scale - 2.0).abs() < 1e-5);
+    // An emitter without a BSDF is black.
+    let black = &read.materials[read.shapes[0].material.index()];
+    assert_eq!(black.kind, MaterialKind::Diffuse { reflectance: Color::BLACK });
+    let (_, warnings) = told("<emitter type=\"spot\"/>");
+    assert!(warnings[0].contains("smoothstep"), "{warnings:?}");
+}
+
+#[test]
+fn textures_undo_the_direction_of_v() {
+    let read = scene(
+        r#"<shape type="cube"><bsdf type="blendbsdf"><texture name="weight" type="checkerboard"><transform name="to_uv">
+            <scale x="3" y="5"/></transform></texture>
+        <bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="p.pfm"/>
+            <string name="wrap_mode" value="mirror"/><string name="filter_type" value="nearest"/>
+            <transform name="to_uv"><scale x="2" y="4"/><translate x="0.5" y="0.25"/></transform></texture></bsdf>
+        <bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="p.pfm"/></texture></bsdf>
+        </bsdf></shape>"#,
+    );
+    let [TextureKind::Checker { mapping, even, .. }, first, second] =
+        [0, 1, 2].map(|index| read.textures[index].kind.clone())
+    else {
+        panic!("{:?}", read.textures)
+    };
+    // 2 · 5 · (1 − v).
+    assert_eq!(mapping, Mapping::Uv { scale: [6.0, -10.0], offset: [0.0, 10.0] });
+    assert_eq!(even, Color::gray(0.2));
+    let TextureKind::Image { mapping, wrap, filter, .. } = first else { panic!("{first:?}") };
+    // 1 − (4 (1 − v) + ¼).
+    assert_eq!(mapping, Mapping::Uv { scale: [2.0, 4.0], offset: [0.5, -3.25] });
+    assert_eq!((wrap, filter), ([Wrap::Mirror; 2], TexelFilter::Nearest));
+    assert!(matches!(second, TextureKind::Image { mapping: Mapping::UV, .. }), "{second:?}");
+}
+
+#[test]
+fn media_are_absorption_and_scattering() {
+    let read = scene(
+        r#"<medium type="homogeneous" id="fog"><rgb name="sigma_t" value="1 2 4"/><float name="albedo" value="0.75"/>
+            <float name="scale" value="3"/><phase type="hg"><float name="g" value="0.5"/></phase></medium>
+        <shape type="sphere"><bsdf type="null"/><ref name="interior" id="fog"/></shape>
+        <shape type="cube"><bsdf type="null"/><ref name="interior" id="fog"/></shape>"#,
+    );
+    let [fog] = &read.media[..] else { panic!("{:?}", read.media) };
+    assert_eq!(
+        (fog.absorption, fog.scattering),
+        (Color::Value([0.25, 0.5, 1.0]), Color::Value([0.75, 1.5, 3.0]))
+    );
+    assert_eq!((fog.g, fog.scale), (0.5, 3.0));
+    let sides = read.shapes[1].sides.expect("sides");
+    assert!(sides.inside.is_some() && sides.outside.is_none());
+}
+
+#[test]
+fn what_has_no_effect_is_warned_of() {
+    let (_, warnings) = told(
+        "<shape type=\"cube\">\n<float name=\"raduis\" value=\"2\"/><bsdf type=\"diffuse\" id=\"d\"/></shape>\n\
+         <bsdf type=\"diffuse\" id=\"unused\"><float name=\"x\" value=\"1\"/></bsdf>",
+    );
+    assert_eq!(warnings, ["s/a.xml:3:29: the `raduis` of the shape \"cube\" has no effect here"]);
+}
+
+#[test]
+fn errors_have_their_place_and_a_remedy() {
+    for (elements, at, message, hint) in [
+        (
+            "<shape type=\"sphere\"><float name=\"radius\" value=\"x\"/></shape>",
+            50,
+            "\"x\" is not a number, or too large",
+            "",
+        ),
+        ("<shape type=\"spere\"/>", 14, "the shape \"spere\" is not supported", "did you mean \"sphere\"?"),
+        ("<shape type=\"sdfgrid\"/>", 14, "the shape \"sdfgrid\" is not supported", "there are: cube"),
+        ("<shap type=\"sphere\" name=\"x\"/>", 1, "<shap> is not a known element", "did you mean <shape>?"),
+        ("<shape type=\"cube\"><ref id=\"b\"/></shape>", 29, "\"b\" is not a known id", ""),
+        ("<float name=\"x\" valeu=\"1\"/>", 17, "<float> has no attribute `valeu`", "it has: name, value"),
+        ("<shape type=\"cube\"><ref/></shape>", 20, "this <ref> has no `id`", ""),
+        ("<emitter type=\"area\"/>", 16, "an area light is a part of a shape", "write <emitter"),
+        (
+            "<shape type=\"ply\"><string name=\"filename\" value=\"no.ply\"/></shape>",
+            50,
+            "s/no.ply: no such file",
+            "",
+        ),
+        ("words", 0, "unexpected text between elements", "comments are"),
+        (
+            "<shape type=\"cube\"><transform name=\"to_world\"><scale x=\"0\"/></transform></shape>",
+            20,
+            "`to_world` has to be a transform that can be inverted",
+            "",
+        ),
+    ] {
+        let found = error(elements);
+        assert_eq!(found.message, message);
+        if at > 0 {
+            assert_eq!((found.at.line, found.at.column), (2, at), "{elements}");
+        }
+        let hinted = found.hint.map(|hint| hint.to_string()).unwrap_or_default();
+        assert!(hinted.starts_with(hint), "{elements}: {hinted}");
+    }
+    let text = "<scene version=\"3.0.0\">\n  <shape type=\"sphree\"/>\n</scene>";
+    let memory = files(&[("s/a.xml", text)]);
+    let found = read_of(&memory, &[]).0.expect_err("a slip");
+    let shown = Excerpts::new(&memory).of(&found.at).expect("a line").to_string();
+    assert_eq!(shown, "  <shape type=\"sphree\"/>\n               ^^^^^^");
+    let broken = read_of(&files(&[("s/a.xml", "<scene version=\"3.0.0\">\n<shape>\n</scene>")]), &[]);
+    let broken = broken.0.expect_err("no end");
+    assert_eq!((broken.kind, broken.at.line), (ErrorKind::Syntax, 3));
+}
+
+#[test]
+fn hostile_files_end_in_errors() {
+    let of = |text: &str| read_of(&files(&[("s/a.xml", text)]), &[]).0.expect_err("hostile");
+    let bomb = "<!DOCTYPE scene [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;\">]>\n<scene version=\"&b;\"/>";
+    assert_eq!(of(bomb).kind, ErrorKind::Unsupported);
+    let endless =
+        of("<scene version=\"3.0.0\"><include filename=\"a.xml\"/><include filename=\"a.xml\"/></scene>");
+    assert_eq!(endless.kind, ErrorKind::Limit);
+    let deep = format!("<scene version=\"3.0.0\">{}", "<bsdf type=\"twosided\">".repeat(100_000));
+    assert!(matches!(of(&deep).kind, ErrorKind::Syntax | ErrorKind::Limit));
+    let closed = "<bsdf type=\"twosided\">".repeat(10_000) + &"</bsdf>".repeat(10_000);
+    assert_eq!(error(&closed).kind, ErrorKind::Limit);
+    assert_eq!(
+        error("<shape type=\"sphere\"><float name=\"radius\" value=\"1e400\"/></shape>").kind,
+        ErrorKind::Invalid
+    );
+    let huge = "<scale value=\"1e38\"/>".repeat(20);
+    let huge =
+        error(&format!("<shape type=\"cube\"><transform name=\"to_world\">{huge}</transform></shape>"));
+    assert_eq!(huge.kind, ErrorKind::Invalid);
+    // Each parameter is twice as long as the one before it.
+    let doubled: String =
+        (1..60).map(|k| format!("<default name=\"p{k}\" value=\"$p{}$p{}\"/>\n", k - 1, k - 1)).collect();
+    assert_eq!(error(&format!("<default name=\"p0\" value=\"xx\"/>{doubled}")).kind, ErrorKind::Limit);
+    // Many long values, each within its limit.
+    let long = format!("<default name=\"p\" value=\"{}\"/>", "x".repeat(60_000));
+    let uses: String = (0..500).map(|k| format!("<string name=\"s{k}\" value=\"$p\"/>")).collect();
+    assert_eq!(error(&format!("{long}<shape type=\"cube\">{uses}</shape>")).kind, ErrorKind::Limit);
+    // Columns of one long line are not counted from its beginning each time.
+    let line = format!("{}<shape type=\"x\"/>", "<bsdf type=\"diffuse\"/>".repeat(100_000));
+    assert_eq!(error(&line).at.column, 22 * 100_000 + 14);
+    let circle = "<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>\
+                  <shape type=\"cube\"><ref id=\"a\"/></shape>";
+    assert!(error(circle).message.ends_with("is a part of itself"));
+    let twice = "<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"diffuse\" id=\"a\"/>";
+    assert!(error(twice).message.starts_with("the id \"a\" is taken already"));
+}
+
+/// A scene with most of the vocabulary, for mutations.
+const SEED: &str = r##"<scene version="3.0.0"><default name="spp" value="4"/><integrator type="path"/>
+<sensor type="perspective"><transform name="to_world"><lookat origin="0 0 4" target="0 0 0" up="0 1 0"/></transform>
+<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler></sensor>
+<bsdf type="diffuse" id="d"><rgb name="reflectance" value="#808080"/></bsdf>
+<shape type="sphere"><ref id="d"/><transform name="to_world"><scale x="2"/><rotate y="1" angle="30"/></transform></shape>
+<emitter type="point"><spectrum name="intensity" value="400:1, 700:2"/></emitter></scene>"##;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn broken_scenes_are_errors_or_scenes(
+        edits in proptest::collection::vec((0..SEED.len(), any::<u8>(), 0..4_usize), 1..6),
+    ) {
+        let mut bytes = SEED.as_bytes().to_vec();
+        for (place, byte, kind) in edits {
+            let place = place.min(bytes.len().saturating_sub(1));
+            match kind {
+                0 => bytes.truncate(place),
+                1 => bytes.insert(place, byte),
+                2 if !bytes.is_empty() => drop(bytes.remove(place)),
+                _ if !bytes.is_empty() => bytes[place] = byte,
+                _ => {}
+            }
+        }
+        let memory = Memory([(PathBuf::from("s/a.xml"), bytes)].into());
+        match read_of(&memory, &[]).0 {
+            Err(error) => prop_assert!(!error.message.is_empty() && !error.at.file.is_empty()),
+            Ok(scene) => prop_assert!(scene.shapes.iter().all(|shape| shape.material.index() < scene.materials.len())),
+        }
+    }
+}
