@@ -36,9 +36,9 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
 
     It is a mapping of layers by name, where they were asked for: `layers="geometry"` gives albedo, normal, geometric_normal and
     position (h, w, 3), uv (h, w, 2), depth (h, w) and variance (h, w, 3), means over the samples, in the space of the camera
-    (x right, y up, z forward); `layers="motion"` gives "motion" (h, w, 2) besides, in pixels (x right, y up) while the shutter is open;
-    light_path={"direct": "C<RD>L"} gives a layer "direct" (h, w, 3); spectral_buckets=16 with color="spectral" gives a layer
-    "spectrum" (h, w, 16), by wavelength; a denoised picture has the layer "noisy".
+    (x right, y up, z forward); `layers="motion"` gives "motion" (h, w, 2) besides: pixels (x right, y up) while the shutter is
+    open; light_path={"direct": "C<RD>L"} gives a layer "direct" (h, w, 3); spectral_buckets=16 with color="spectral" gives a
+    layer "spectrum" (h, w, 16), by wavelength; a denoised picture has the layer "noisy".
 
     In Jupyter it shows itself.
     """

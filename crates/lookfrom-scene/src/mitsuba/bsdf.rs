@@ -173,24 +173,37 @@ impl Reader<'_, '_> {
                 energy: Energy::SingleScattering,
             },
             "dielectric" => MaterialKind::Dielectric {
-                eta: eta(plugin, "bk7")?,
+                eta: index(plugin, "bk7")?,
                 roughness: SMOOTH,
                 energy: Energy::SingleScattering,
             },
             "roughdielectric" => MaterialKind::Dielectric {
-                eta: eta(plugin, "bk7")?,
+                eta: index(plugin, "bk7")?,
                 roughness: self.roughness(plugin)?,
                 energy: Energy::SingleScattering,
             },
-            "thindielectric" => MaterialKind::ThinDielectric { eta: eta(plugin, "bk7")? },
+            "thindielectric" => MaterialKind::ThinDielectric { eta: index(plugin, "bk7")? },
             "plastic" | "roughplastic" => {
                 let reflectance = self.reflectance(plugin, "diffuse_reflectance", 0.5)?;
                 let roughness = if plugin.kind == "plastic" { SMOOTH } else { self.roughness(plugin)? };
-                plugin.ignore(&["nonlinear"]);
-                let message = "plastic is a diffuse base under a coat, with the light between them sampled: in Mitsuba a formula \
-                     stands for it, and colours are less saturated without `nonlinear`";
+                let eta = eta(plugin, "polypropylene")?;
+                let is_linear = !plugin.boolean("nonlinear", false)?;
+                let message = match reflectance {
+                    Color::Value(_) => {
+                        "plastic is a diffuse base under a coat, with the light between them sampled: in Mitsuba a formula \
+                         stands for it"
+                    }
+                    _ => {
+                        "plastic is a diffuse base under a coat, with the light between them sampled: in Mitsuba a formula stands for it, \
+                         and textures are brighter without `nonlinear`"
+                    }
+                };
                 self.warn_once(&plugin.at, message);
-                let coat = Coat { eta: eta(plugin, "polypropylene")?, roughness, ..Coat::default() };
+                let reflectance = match reflectance {
+                    Color::Value(rgb) if is_linear => Color::Value(beneath_linear_plastic(rgb, eta)),
+                    other => other,
+                };
+                let coat = Coat { eta: Ior::Value(eta as f32), roughness, ..Coat::default() };
                 MaterialKind::CoatedDiffuse { reflectance, coat }
             }
             "blendbsdf" => {
@@ -323,7 +336,12 @@ fn is_straight(map: &Plugin) -> bool {
 }
 
 /// The index of refraction of the inside relative to the outside.
-fn eta(plugin: &Plugin, inside: &str) -> Result<Ior> {
+fn index(plugin: &Plugin, inside: &str) -> Result<Ior> {
+    eta(plugin, inside).map(|eta| Ior::Value(eta as f32))
+}
+
+/// As [`index`], as a number.
+fn eta(plugin: &Plugin, inside: &str) -> Result<f64> {
     let index = |name: &str, default: &str| -> Result<f64> {
         let named = |name: &str| INDICES.iter().find(|(known, _)| *known == name).map(|(_, index)| *index);
         match plugin.find(name) {
@@ -334,5 +352,31 @@ fn eta(plugin: &Plugin, inside: &str) -> Result<Ior> {
             Some(_) => plugin.positive(name, 1.0),
         }
     };
-    Ok(Ior::Value((index("int_ior", inside)? / index("ext_ior", "air")?) as f32))
+    Ok(index("int_ior", inside)? / index("ext_ior", "air")?)
+}
+
+/// The reflectance of a base under a coat that is as bright as Mitsuba's `plastic` of another one without `nonlinear`: there light that the
+/// coat reflects back inside, a part r of diffuse light, loses nothing at the base. So ρ′ / (1 − r ρ′) = ρ / (1 − r).
+fn beneath_linear_plastic(rgb: [f32; 3], eta: f64) -> [f32; 3] {
+    const STEPS: u32 = 512;
+    let r = (0..STEPS).fold(0.0, |sum, step| {
+        let cos = (f64::from(step) + 0.5) / f64::from(STEPS);
+        sum + 2.0 * cos * fresnel(cos, 1.0 / eta) / f64::from(STEPS)
+    });
+    rgb.map(|rho| {
+        let rho = f64::from(rho.clamp(0.0, 1.0));
+        (rho / (1.0 - r + rho * r)) as f32
+    })
+}
+
+/// Fresnel's reflectance of an interface by the cosine of the angle to its normal; `eta` is the index behind over that in front.
+fn fresnel(cos: f64, eta: f64) -> f64 {
+    let sin_squared = (1.0 - cos * cos) / (eta * eta);
+    if sin_squared >= 1.0 {
+        return 1.0;
+    }
+    let behind = (1.0 - sin_squared).sqrt();
+    let parallel = (eta * cos - behind) / (eta * cos + behind);
+    let perpendicular = (cos - eta * behind) / (cos + eta * behind);
+    0.5 * (parallel * parallel + perpendicular * perpendicular)
 }
