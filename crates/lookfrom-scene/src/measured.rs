@@ -16,7 +16,7 @@ use crate::files::LoadContext;
 /// A measured material.
 #[derive(Clone, PartialEq)]
 pub struct Measured {
-    /// What was measured.
+    /// The measured values.
     pub tables: Tables,
     /// The digest of the file: equal tables have the same.
     pub digest: String,

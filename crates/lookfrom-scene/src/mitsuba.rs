@@ -98,9 +98,9 @@ struct Reader<'s, 'f> {
 const DEEPEST: usize = 64;
 
 impl Reader<'_, '_> {
-    /// What a shape without a BSDF has.
+    /// The material of shapes without a BSDF.
     const DEFAULT: MaterialId = MaterialId(0);
-    /// What an emitting shape without a BSDF has.
+    /// The material of emitting shapes without a BSDF.
     const BLACK: MaterialId = MaterialId(1);
 
     fn root(&mut self, root: &Plugin) -> Result<()> {

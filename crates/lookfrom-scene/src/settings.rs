@@ -126,7 +126,7 @@ pub enum Layers {
     None,
     /// Albedo, normals, position, depth, uv and variance of the first visible surface.
     Geometry,
-    /// As [`Layers::Geometry`], and how far the surface moves in the picture while the shutter is open.
+    /// As [`Layers::Geometry`], and motion vectors from the opening to the closing of the shutter.
     Motion,
 }
 

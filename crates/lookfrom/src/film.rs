@@ -357,7 +357,7 @@ impl Film {
             .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
     }
 
-    /// How far what is seen in a pixel moves in the picture while the shutter is open, in pixels to the right and upwards: the mean over the
+    /// The motion vector of a pixel, from the opening to the closing of the shutter, in pixels to the right and upwards: the mean over the
     /// samples with a hit, 0 without any. `None` where the film has no memory for it, and outside of [`Film::area`].
     pub fn motion(&self, x: u32, y: u32) -> Option<[f32; 2]> {
         self.sums_of(&self.motions, x, y).map(|sums| sums.mean())

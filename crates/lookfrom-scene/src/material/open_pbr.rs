@@ -50,7 +50,7 @@ pub struct OpenPbr {
     pub coat_roughness_anisotropy: Scalar,
     /// Its index of refraction: > 0.
     pub coat_ior: f32,
-    /// How far light to and fro below the coat darkens the base.
+    /// The darkening of the base by interreflection below the coat: 0 is none.
     pub coat_darkening: Scalar,
     /// Presence of the fuzz.
     pub fuzz_weight: Scalar,

@@ -20,7 +20,7 @@ impl SpectralFilm {
     /// The wavelengths that there are, in nm.
     pub const ALL: [f32; 2] = [SHORTEST as f32, LONGEST as f32];
 
-    /// What [`SpectralFilm::is_range`] expects, in words.
+    /// The range that [`SpectralFilm::is_range`] allows, in words.
     pub const RANGE: &str =
         "two wavelengths from 360 to 830 nm, the second at least 1 nm longer than the first";
 

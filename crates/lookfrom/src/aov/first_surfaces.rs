@@ -145,8 +145,14 @@ impl FirstSurfaces {
         Some(&self.aovs)
     }
 
-    /// The hit of a slot that counts, after [`Self::aovs`]: behind what its ray from the camera passes as if it were not there.
-    pub(crate) fn seen(&self, slot: usize, ray: Ray) -> RayHit {
+    /// The hit of a slot that has AOVs, after [`Self::aovs`].
+    pub(crate) fn met(&self, slot: usize, ray: Ray) -> Option<RayHit> {
+        let has_aovs = self.aovs[slot / LANES].hits >> (slot % LANES) & 1 != 0;
+        has_aovs.then(|| self.seen(slot, ray))
+    }
+
+    /// The hit of a slot that counts: behind what its ray from the camera passes as if it were not there.
+    fn seen(&self, slot: usize, ray: Ray) -> RayHit {
         let end = self.behind.partition_point(|(of, _)| *of as usize <= slot);
         let behind = self.behind[..end].last().filter(|(of, _)| *of as usize == slot);
         behind.map_or(RayHit { ray, hit: self.outermost[slot] }, |(_, seen)| *seen)

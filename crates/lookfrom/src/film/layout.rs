@@ -16,7 +16,7 @@ use crate::aov::{AovSums, LayerSums};
 pub(crate) struct Layout {
     pub(super) alpha: bool,
     pub(super) aovs: bool,
-    /// How far first hits move.
+    /// Motion vectors.
     pub(super) motion: bool,
     /// Variances in the channels of a sensor that does not measure X, Y and Z.
     pub(super) sensor: bool,

@@ -1,4 +1,4 @@
-//! Sums of motion vectors: how far what is seen in a pixel moves in the picture while the shutter is open.
+//! Sums of motion vectors, from the opening to the closing of the shutter.
 
 use super::stored::{Stored, Sums, channels_of, store_fields};
 use crate::core::fixed_point::{TWO_TO_64, fixed_point};

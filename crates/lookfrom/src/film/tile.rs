@@ -202,8 +202,7 @@ impl FilmTile {
         !self.motions.is_empty()
     }
 
-    /// Adds how far the first hit of one sample moves in the picture while the shutter is open, where there is memory for it: in pixels, to
-    /// the right and upwards.
+    /// Adds the motion vector of the first hit of one sample, where there is memory for it: in pixels, to the right and upwards.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.

@@ -4,7 +4,6 @@ use glam::{DMat4, DVec3};
 
 use super::{Batch, Renderer, SampleId};
 use crate::aov::{CameraSpace, RayHit};
-use crate::core::lanes::LANES;
 use crate::film::FilmTile;
 
 impl Renderer {
@@ -23,32 +22,38 @@ impl Renderer {
         let Some(aovs) = queues.first_surfaces.aovs(&self.world, (&start.rays, &start.times)) else { return };
         tile.add_first_hits(ids, aovs, aov_sums);
         if tile.has_motion() {
-            let hits: Vec<u32> = aovs.iter().map(|eight| eight.hits).collect();
-            for (slot, id) in
-                ids.iter().enumerate().filter(|(slot, _)| hits[slot / LANES] >> (slot % LANES) & 1 != 0)
-            {
-                let seen = queues.first_surfaces.seen(slot, start.rays[slot]);
-                if let Some(motion) = self.motion_of(seen, start.times.of(slot)) {
-                    tile.add_motion(id.pixel[0], id.pixel[1], motion);
-                }
-            }
+            self.add_motion(ids, batch, tile);
         }
     }
 
-    /// How far what a ray has hit at a time moves in the picture while the shutter is open: pixels to the right and upwards. `None` for
-    /// cameras without an image plane, and for what is behind the camera at the opening or the closing.
-    fn motion_of(&self, RayHit { ray, hit }: RayHit, time: f32) -> Option<[f32; 2]> {
+    /// Adds the motion vectors of a sample of each pixel whose AOVs have been added.
+    fn add_motion(&self, ids: &[SampleId], batch: &Batch, tile: &mut FilmTile) {
+        let Batch { queues, start, .. } = batch;
+        let camera = &self.view.camera;
+        let view_from_world = [0.0, 1.0].map(|time| {
+            let motion = camera.motion.as_ref().map_or(DMat4::IDENTITY, |motion| motion.at(time));
+            (motion * camera.world_from_view()).inverse()
+        });
+        for (slot, id) in ids.iter().enumerate() {
+            let met = queues.first_surfaces.met(slot, start.rays[slot]);
+            let motion = met.and_then(|met| self.motion_vector(met, start.times.of(slot), &view_from_world));
+            motion.into_iter().for_each(|motion| tile.add_motion(id.pixel[0], id.pixel[1], motion));
+        }
+    }
+
+    /// The motion vector of a hit at a time, in pixels to the right and upwards, by the view spaces of the camera at the opening and the
+    /// closing of the shutter. `None` for cameras without an image plane, and for a point that is behind the camera at either time.
+    fn motion_vector(&self, met: RayHit, time: f32, view_from_world: &[DMat4; 2]) -> Option<[f32; 2]> {
+        let RayHit { ray, hit } = met;
         if !self.moves() || !hit.is_hit() {
             return Some([0.0; 2]);
         }
-        let camera = &self.view.camera;
         let [opening, closing] = self.world.point_at(&ray, &hit, time, [0.0, 1.0]);
-        let image_at = |point: DVec3, time: f64| {
-            let motion = camera.motion.as_ref().map_or(DMat4::IDENTITY, |motion| motion.at(time));
-            let view_from_world = (motion * camera.world_from_view()).inverse();
-            camera.image_of(view_from_world.transform_point3(self.world.origin + point))
+        let image_at = |point: DVec3, view_from_world: &DMat4| {
+            self.view.camera.image_of(view_from_world.transform_point3(self.world.origin + point))
         };
-        let ([x0, y0], [x1, y1]) = (image_at(opening, 0.0)?, image_at(closing, 1.0)?);
+        let [x0, y0] = image_at(opening, &view_from_world[0])?;
+        let [x1, y1] = image_at(closing, &view_from_world[1])?;
         Some([(x1 - x0) as f32, (y1 - y0) as f32])
     }
 }

@@ -106,7 +106,7 @@ pub struct Principled<R: Real = f32, M = Gltf> {
     pub film: ThinFilm<R>,
     /// Weights of the spectrum's lanes, of sum 1, by which lobes are chosen: positive wherever light matters.
     pub lane_weights: Spectrum<R>,
-    /// What the model adds.
+    /// The model, with its additional parameters.
     pub model: M,
 }
 

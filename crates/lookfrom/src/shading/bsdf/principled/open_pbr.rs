@@ -41,7 +41,7 @@ pub struct OpenPbr<R = f32> {
     pub coat_f90: R,
     /// The direction of its grain, in the local frame.
     pub coat_tangent: Vector<R>,
-    /// How far light that goes to and fro below the coat darkens what is there.
+    /// The strength of the darkening by interreflection below the coat, 0 … 1.
     pub coat_darkening: R,
     /// The factor of everything below the coat that comes of it: of [`Model::seen`].
     pub darkened: Spectrum<R>,
@@ -157,7 +157,7 @@ impl<R: Real> OpenPbr<R> {
         )
     }
 
-    /// What the tint takes at 82°.
+    /// The reflectance that the tint takes away at 82°.
     #[inline(always)]
     fn lost_at_edge(&self, f0: Spectrum<R>) -> Spectrum<R> {
         let one = Spectrum::splat(self.specular_weight.like(1.0));

@@ -249,7 +249,7 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
         (coat, sheen)
     }
 
-    /// What the layers above leave of light from `wi` for the surface: the fractions that coat and fibres pass, and the
+    /// The transmittance of the layers above for light from `wi`: the fractions that coat and fibres pass, and the
     /// coat's colour.
     #[inline(always)]
     pub(super) fn below_all(&self, wi: Vector<R>) -> Spectrum<R> {
