@@ -10,8 +10,18 @@ use super::value::Value;
 use crate::camera::up_across;
 use crate::error::Result;
 use crate::ies;
-use crate::light::{LightKind, Power};
+use crate::light::{Edge, LightKind, Power, Projected};
 use crate::scene::ImageId;
+use crate::texture::TexelFilter;
+
+/// The words for the edges of spot lights.
+pub(super) const EDGES: &[(&str, Edge)] = &[("smooth", Edge::Smooth), ("linear", Edge::Linear)];
+/// The words for the interpolation of projected images.
+const PROJECTED_FILTERS: &[(&str, TexelFilter)] =
+    &[("nearest", TexelFilter::Nearest), ("bilinear", TexelFilter::Bilinear)];
+/// The words for the quantities of projected images.
+pub(super) const QUANTITIES: &[(&str, Projected)] =
+    &[("intensity", Projected::Intensity), ("irradiance", Projected::Irradiance)];
 
 impl Reader<'_, '_> {
     /// A spot light.
@@ -28,7 +38,11 @@ impl Reader<'_, '_> {
         let inner_angle = table.or("inner_angle", 0.8 * cone_angle, |value| {
             value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=cone_angle).contains(&angle))
         });
-        Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, power))
+        let edge = table.or("edge", Edge::default(), |value| value.choice(EDGES));
+        Ok((
+            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, edge, falloff },
+            power,
+        ))
     }
 
     /// A projection light.
@@ -66,7 +80,29 @@ impl Reader<'_, '_> {
             forward.extend(0.0),
             position.extend(1.0),
         );
-        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
+        let filter = table.or("filter", TexelFilter::Nearest, |value| value.choice(PROJECTED_FILTERS));
+        let quantity = table.or("quantity", Projected::default(), |value| value.choice(QUANTITIES));
+        let cone = self.projected_cone(table)?;
+        let kind = LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light };
+        Ok((kind, power))
+    }
+
+    /// The half-angles of the cone of a projection light, if it has one.
+    fn projected_cone(&mut self, table: &Table<'_>) -> Result<Option<[f64; 2]>> {
+        let expected = "degrees, more than 0 and less than 90";
+        let outer = table
+            .maybe("cone_angle", |value| value.number_where(expected, |angle| angle > 0.0 && angle < 90.0));
+        table.sound(&["cone_angle"])?;
+        let Some(outer) = outer else {
+            if let Some(inner) = table.find("inner_angle") {
+                inner.note(inner.error("`inner_angle` needs a `cone_angle`"));
+            }
+            return Ok(None);
+        };
+        let inner = table.or("inner_angle", outer, |value| {
+            value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=outer).contains(&angle))
+        });
+        Ok(Some([outer, inner]))
     }
 
     /// The octahedral map of a luminaire's photometric file, or of a picture.

@@ -43,6 +43,7 @@ pub(super) const RENDER: &[&str] = &[
     "light_sampler",
     "regularize",
     "occlusion_distance",
+    "thin_passages_count",
     "open_fronts",
 ];
 
@@ -211,6 +212,7 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         regularize: table.or("regularize", default.regularize, Value::boolean),
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         media: default.media,
+        thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),
         open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
     }
 }

@@ -63,7 +63,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 /// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
-    use super::{physical, sky, solid};
+    use super::{directional, physical, sky, solid};
     use crate::settings::{Allocation, ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
@@ -80,6 +80,8 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("[[solid.of]]", words(solid::TYPES)),
         ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
+        ("edge", words(directional::EDGES)),
+        ("quantity", words(directional::QUANTITIES)),
         ("energy", words(physical::ENERGIES)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),
