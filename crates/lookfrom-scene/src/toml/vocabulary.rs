@@ -81,6 +81,8 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
         ("energy", words(physical::ENERGIES)),
+        ("distribution", words(physical::DISTRIBUTIONS)),
+        ("masking", words(physical::MASKINGS)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),
         ("filter", words(texture::FILTERS)),

@@ -30,6 +30,7 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
+use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::whitted::WhittedBsdf;
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
@@ -45,8 +46,8 @@ pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
-    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
-    Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::MaterialRow;
@@ -350,6 +351,7 @@ impl Evaluator<'_> {
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
+            MaterialKind::Plastic(plastic) => Bsdf::Plastic(self.plastic(plastic)),
             MaterialKind::Hair(hair) => Bsdf::Hair(self.hair(hair)),
             MaterialKind::Measured(tables) => Bsdf::Measured(self.measured(tables)),
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
@@ -392,6 +394,11 @@ impl Evaluator<'_> {
         let coat = self.coat(coat);
         let (eta, k) = self.indices(metal);
         Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat, self.seed)
+    }
+
+    fn plastic(&self, plastic: &PlasticMaterial) -> Plastic {
+        let (base, surface) = (self.albedo(&plastic.reflectance), self.albedo(&plastic.specular_reflectance));
+        Plastic::new(base, surface, plastic.is_nonlinear, plastic.interface)
     }
 
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {

@@ -12,7 +12,7 @@ use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::albedo;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
     is_grazing,
@@ -32,7 +32,7 @@ pub struct Conductor<R = f32> {
     /// Extinction over the surrounding index.
     pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
-    pub(crate) roughness: TrowbridgeReitz<R>,
+    pub(crate) roughness: Microfacets<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
 }
@@ -67,11 +67,12 @@ impl<R: Real> MultipleScattering<R> {
 
 impl Conductor {
     /// By index and extinction over the surrounding index, with single scattering.
-    pub fn new(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
-        Self { eta, k, roughness, conserves: 0.0 }
+    pub fn new(eta: Spectrum, k: Spectrum, roughness: impl Into<Microfacets>) -> Self {
+        Self { eta, k, roughness: roughness.into(), conserves: 0.0 }
     }
 
-    /// This conductor with the light between its facets or without it.
+    /// This conductor with the light between its facets or without it; its table is that of Trowbridge and Reitz's, with correlated
+    /// masking.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }
@@ -131,11 +132,12 @@ impl<R: Real> Conductor<R> {
     /// The light that facets of a rough surface send to one another, along `wo`.
     #[inline(always)]
     pub(super) fn multiple_scattering(&self, wo: Vector<R>) -> MultipleScattering<R> {
-        let alpha = albedo::even_alpha(self.roughness);
+        let roughness = self.roughness.alpha;
+        let alpha = albedo::even_alpha(roughness);
         let up = Vector { z: Float::abs(wo.z), ..wo };
         MultipleScattering {
-            albedo: albedo::reflector(up, self.roughness, alpha).all(),
-            mean_albedo: albedo::reflector_mean(self.roughness, alpha).all(),
+            albedo: albedo::reflector(up, roughness, alpha).all(),
+            mean_albedo: albedo::reflector_mean(roughness, alpha).all(),
             mean_fresnel: fresnel::conductor(wo.z.like(MEAN_COSINE), self.eta, self.k),
         }
     }

@@ -11,7 +11,7 @@ use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::lanes::LaneBsdf;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
     fresnel, is_grazing,
@@ -26,7 +26,7 @@ pub struct Dielectric<R = f32> {
     /// Inside over outside.
     pub(crate) eta: R,
     /// Roughness of the boundary.
-    pub(crate) roughness: TrowbridgeReitz<R>,
+    pub(crate) roughness: Microfacets<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
 }
@@ -48,8 +48,8 @@ pub(super) struct Facet<R: Real> {
 
 impl Dielectric {
     /// By its relative index and its roughness, with single scattering. Index 0 and NaN count as 1, as in pbrt.
-    pub fn new(eta: f32, roughness: TrowbridgeReitz) -> Self {
-        Self { eta: fresnel::valid_eta(eta), roughness, conserves: 0.0 }
+    pub fn new(eta: f32, roughness: impl Into<Microfacets>) -> Self {
+        Self { eta: fresnel::valid_eta(eta), roughness: roughness.into(), conserves: 0.0 }
     }
 
     /// This boundary with the light between its facets or without it.
