@@ -107,9 +107,10 @@ impl ScatteringFunction for Conductor {
     fn description(&self) -> Description {
         Description {
             kind: "conductor",
-            does: match self.roughness.is_smooth() {
-                true => "smooth metal: specular reflection, tinted by Fresnel's equations",
-                false => "rough metal: microfacets of roughness alpha",
+            does: match (self.roughness.is_smooth(), self.roughness.is_beckmann()) {
+                (true, _) => "smooth metal: specular reflection, tinted by Fresnel's equations",
+                (false, false) => "rough metal: microfacets of roughness alpha",
+                (false, true) => "rough metal: Beckmann's microfacets of roughness alpha",
             },
             numbers: vec![("eta", self.eta.into()), ("k", self.k.into()), ("alpha", self.roughness.into())],
         }

@@ -90,9 +90,12 @@ impl ScatteringFunction for Dielectric {
     fn description(&self) -> Description {
         Description {
             kind: "dielectric",
-            does: match self.roughness.is_smooth() {
-                true => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
-                false => "rough glass: microfacets of roughness alpha that reflect and refract",
+            does: match (self.roughness.is_smooth(), self.roughness.is_beckmann()) {
+                (true, _) => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
+                (false, false) => "rough glass: microfacets of roughness alpha that reflect and refract",
+                (false, true) => {
+                    "rough glass: Beckmann's microfacets of roughness alpha that reflect and refract"
+                }
             },
             numbers: vec![("eta", self.eta.into()), ("alpha", self.roughness.into())],
         }
