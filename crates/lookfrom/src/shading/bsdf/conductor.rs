@@ -118,11 +118,11 @@ impl ScatteringFunction for Conductor {
 }
 
 impl<R: Real> Conductor<R> {
-    /// `f` with the half vector `wm`; both directions on one side, neither grazing.
+    /// `f` with the half vector `wm`; both directions on one side, neither grazing; `seen` is D G.
     #[inline(always)]
-    fn rough_f(&self, wo: Vector<R>, wi: Vector<R>, wm: Vector<R>) -> Spectrum<R> {
+    fn rough_f(&self, [wo, wi, wm]: [Vector<R>; 3], seen: R) -> Spectrum<R> {
         let fresnel = fresnel::conductor(Float::abs(wo.dot(wm)), self.eta, self.k);
-        let once = fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * 4.0 * wi.z));
+        let once = fresnel * (seen / (wo.z * 4.0 * wi.z));
         let conserves = self.conserves.gt(wo.z.like(0.0));
         if !conserves.any() {
             return once;
@@ -166,10 +166,12 @@ impl<R: Real> Conductor<R> {
     fn sample_rough(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
         let wm = self.roughness.sample(wo, u);
         let wi = optics::reflect(wo, wm);
-        let pdf = self.roughness.visible_per_cosine(wo, wm) * 0.25;
+        let d = self.roughness.d(wm);
+        let [g, g1] = self.roughness.g_and_g1(wo, wi);
+        let pdf = d * g1 / Float::abs(wo.z) * 0.25;
         let is_valid = same_side(wo, wi);
         let no = is_valid.like(false);
-        let f = self.rough_f(wo, wi, wm);
+        let f = self.rough_f([wo, wi, wm], d * g);
         DirectionSample {
             wi,
             f,
@@ -217,7 +219,8 @@ impl<R: Real> LaneBsdf<R> for Conductor<R> {
         if !is_lit.any() {
             return black;
         }
-        Spectrum::select(is_lit, self.rough_f(wo, wi, wm), black)
+        let seen = self.roughness.d(wm) * self.roughness.g(wo, wi);
+        Spectrum::select(is_lit, self.rough_f([wo, wi, wm], seen), black)
     }
 
     #[inline(always)]

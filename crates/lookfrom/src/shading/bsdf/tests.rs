@@ -199,7 +199,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
 pub(super) fn of_any_kind(index: u64, roughness: TrowbridgeReitz) -> Microfacets {
     let distribution =
         if index.is_multiple_of(2) { Distribution::TrowbridgeReitz } else { Distribution::Beckmann };
-    let masking = if index / 2 % 2 == 0 { Masking::Correlated } else { Masking::Separable };
+    let masking = if (index / 2).is_multiple_of(2) { Masking::Correlated } else { Masking::Separable };
     Microfacets::new(roughness, written::Microfacets { distribution, masking })
 }
 

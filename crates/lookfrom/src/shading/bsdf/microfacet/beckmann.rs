@@ -17,7 +17,9 @@ use crate::core::vector::Vector;
 /// 1/√π.
 const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
 
-/// As [`TrowbridgeReitz::d`]. Not inlined, as the next two, since few surfaces need it, in many places.
+/// As [`TrowbridgeReitz::d`]. Not inlined, as the next two, since few surfaces need it, in many places; and cold, so that those places keep
+/// their registers.
+#[cold]
 #[inline(never)]
 pub(super) fn d<R: Real>(alpha: TrowbridgeReitz<R>, wm: Vector<R>) -> R {
     wm.z.at_level(
@@ -32,6 +34,7 @@ pub(super) fn d<R: Real>(alpha: TrowbridgeReitz<R>, wm: Vector<R>) -> R {
 }
 
 /// Smith's Λ: `½ (exp(−a²) / (a √π) − erfc a)`, where a is the cotangent of the direction's angle over α.
+#[cold]
 #[inline(never)]
 pub(super) fn lambda<R: Real>(alpha: TrowbridgeReitz<R>, w: Vector<R>) -> R {
     w.z.at_level(
@@ -46,6 +49,7 @@ pub(super) fn lambda<R: Real>(alpha: TrowbridgeReitz<R>, w: Vector<R>) -> R {
 }
 
 /// As [`TrowbridgeReitz::sample`].
+#[cold]
 #[inline(never)]
 pub(super) fn sample<R: Real>(alpha: TrowbridgeReitz<R>, wo: Vector<R>, u: [R; 2]) -> Vector<R> {
     wo.z.at_level(
@@ -127,7 +131,7 @@ fn slope_of_erfc<R: Real>(p: R) -> R {
         Float::sqrt(w) - 3.0,
         &[
             2.832_976_8,
-            1.001_674_1,
+            1.001_674,
             9.438_870_5e-3,
             -7.622_461_3e-3,
             5.739_507_7e-3,
