@@ -3,7 +3,9 @@
 mod disney;
 mod hair;
 mod inputs;
+mod microfacets;
 mod open_pbr;
+mod plastic;
 mod subsurface;
 
 use std::sync::Arc;
@@ -12,7 +14,9 @@ use glam::Vec3;
 
 pub use disney::Disney;
 pub use hair::{Hair, Pigment};
+pub use microfacets::{Distribution, Energy, Masking, Microfacets, Roughness};
 pub use open_pbr::{OpenPbr, Tangent};
+pub use plastic::Plastic;
 pub use subsurface::{Subsurface, SubsurfaceMedium};
 
 use crate::error::Location;
@@ -180,6 +184,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: Coat,
     },
+    /// A diffuse base under a dielectric surface, with the light between them in closed form.
+    Plastic(Box<Plastic>),
     /// Light is scattered below a dielectric surface: skin, wax, marble, milk.
     Subsurface(Box<Subsurface>),
     /// Fibres of hair or fur.
@@ -238,6 +244,7 @@ impl MaterialKind {
             }
             Self::Conductor { metal, .. } => of_metal(metal),
             Self::CoatedDiffuse { reflectance, coat } => vec![*reflectance, coat.albedo],
+            Self::Plastic(plastic) => vec![plastic.reflectance, plastic.specular_reflectance],
             Self::CoatedConductor { metal, coat, .. } => {
                 let mut colors = of_metal(metal);
                 colors.push(coat.albedo);
@@ -278,6 +285,10 @@ impl MaterialKind {
             Self::CoatedDiffuse { reflectance, coat } => {
                 vec![("reflectance", *reflectance), ("coat_albedo", coat.albedo)]
             }
+            Self::Plastic(plastic) => vec![
+                ("reflectance", plastic.reflectance),
+                ("specular_reflectance", plastic.specular_reflectance),
+            ],
             Self::Conductor { metal: Metal::Reflectance(reflectance), .. } => {
                 vec![("reflectance", *reflectance)]
             }
@@ -445,32 +456,6 @@ impl Default for Ior {
     fn default() -> Self {
         Self::Value(Self::GLASS)
     }
-}
-
-/// Roughness of a microfacet surface (Trowbridge & Reitz 1975), along u and v.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Roughness {
-    /// Along u.
-    pub u: Scalar,
-    /// Along v.
-    pub v: Scalar,
-    /// Whether the values are user-facing ones in [0, 1], whose square root is α; otherwise they are α.
-    pub remap: bool,
-}
-
-impl Roughness {
-    /// A perfectly smooth surface.
-    pub const SMOOTH: Self = Self { u: Scalar::Value(0.0), v: Scalar::Value(0.0), remap: true };
-}
-
-/// Multiple scattering between the microfacets of a rough surface (Heitz et al. 2016): kept or lost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Energy {
-    /// It leaves in the end: a white surface reflects or transmits all light at any roughness.
-    #[default]
-    Conserved,
-    /// It is lost, as in pbrt: scattering is that of single microfacets (Walter et al. 2007; Heitz 2014), and reciprocal.
-    SingleScattering,
 }
 
 /// A dielectric layer over a base, with a medium in between (Guo, Hašan & Zhao 2018).

@@ -503,7 +503,7 @@ export interface Microfacet {
     cos_o: number;
     /** The cosine of the direction to the viewer, and ω_m. */
     cos_om: number;
-    /** D(ω_m): the Trowbridge–Reitz distribution; null where the boundary is smooth. */
+    /** D(ω_m): the density of facets with that normal; null where the boundary is smooth. */
     d: number | null;
     /** η: the index of refraction on the side of the light over that on the side of the viewer where light is refracted; else 1. */
     eta: number;

@@ -33,7 +33,8 @@ pub mod prelude {
     pub use lookfrom_scene::Scene;
     pub use lookfrom_scene::light::{Falloff, LightKind, Sky};
     pub use lookfrom_scene::material::{
-        Color, Energy, Ior, MaterialKind, Metal, Principled, Roughness, Scalar, Whitted,
+        Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic, Principled,
+        Roughness, Scalar, Whitted,
     };
     pub use lookfrom_scene::settings::Integrator;
     pub use lookfrom_scene::shape::{Emission, Geometry, Mesh, Shape};

@@ -721,7 +721,7 @@ class Microfacet:
     cos_i: The absolute cosine of the direction to the light, and the normal.
     cos_om: The cosine of the direction to the viewer, and ω_m.
     cos_im: The cosine of the direction to the light, and ω_m.
-    d: D(ω_m): the Trowbridge–Reitz distribution; null where the boundary is smooth.
+    d: D(ω_m): the density of facets with that normal; null where the boundary is smooth.
     g: G: Smith's masking and shadowing; null where it is smooth.
     fresnel: F: the Fresnel reflectance of the facets.
     part: What the facets do with light of this way: F where they reflect it, else 1 − F, tinted by the body.

@@ -61,6 +61,7 @@ impl MaterialKind {
             | Self::Diffuse { .. }
             | Self::DiffuseTransmission { .. }
             | Self::ThinDielectric { .. }
+            | Self::Plastic(_)
             | Self::Measured(_)
             | Self::Unlit { .. }
             | Self::ShadowCatcher { .. }

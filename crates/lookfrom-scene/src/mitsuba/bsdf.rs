@@ -7,8 +7,8 @@ use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
-    BumpMapping, Coat, Color, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal, NormalTexture,
-    Pigment, Roughness, Scalar,
+    BumpMapping, Color, Disney, Distribution, Energy, Hair, Ior, Masking, Material, MaterialKind, Metal,
+    Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -188,29 +188,7 @@ impl Reader<'_, '_> {
                 energy: Energy::SingleScattering,
             },
             "thindielectric" => MaterialKind::ThinDielectric { eta: index(plugin, "bk7")? },
-            "plastic" | "roughplastic" => {
-                let reflectance = self.reflectance(plugin, "diffuse_reflectance", 0.5)?;
-                let roughness = if plugin.kind == "plastic" { SMOOTH } else { self.roughness(plugin)? };
-                let eta = eta(plugin, "polypropylene")?;
-                let is_linear = !plugin.boolean("nonlinear", false)?;
-                let message = match reflectance {
-                    Color::Value(_) => {
-                        "plastic is a diffuse base under a coat, with the light between them sampled: in Mitsuba a formula \
-                         stands for it"
-                    }
-                    _ => {
-                        "plastic is a diffuse base under a coat, with the light between them sampled: in Mitsuba a formula stands for it, \
-                         and textures are brighter without `nonlinear`"
-                    }
-                };
-                self.warn_once(&plugin.at, message);
-                let reflectance = match reflectance {
-                    Color::Value(rgb) if is_linear => Color::Value(beneath_linear_plastic(rgb, eta)),
-                    other => other,
-                };
-                let coat = Coat { eta: Ior::Value(eta as f32), roughness, ..Coat::default() };
-                MaterialKind::CoatedDiffuse { reflectance, coat }
-            }
+            "plastic" | "roughplastic" => MaterialKind::Plastic(Box::new(self.plastic(plugin)?)),
             "blendbsdf" => {
                 let amount = self.scalar(plugin, "weight", 0.5)?;
                 let parts = plugin.parts("bsdf", &self.ids)?;
@@ -284,17 +262,29 @@ impl Reader<'_, '_> {
 
     /// The roughness α of a BSDF.
     fn roughness(&mut self, plugin: &Plugin) -> Result<Roughness> {
-        plugin.ignore(&["sample_visible"]);
-        if !plugin.choice("distribution", false, &[("beckmann", false), ("ggx", true)])? {
-            let message = "microfacets have the distribution of Trowbridge and Reitz (GGX), not Beckmann's";
-            self.warn_once(&plugin.at, message);
-        }
+        let microfacets = microfacets(plugin)?;
         let both = self.scalar(plugin, "alpha", 0.1)?;
         let mut along = |name: &str| match plugin.find(name) {
             Some(_) => self.scalar(plugin, name, 0.1),
             None => Ok(both),
         };
-        Ok(Roughness { u: along("alpha_u")?, v: along("alpha_v")?, remap: false })
+        Ok(Roughness { microfacets, ..Roughness::of_alphas(along("alpha_u")?, along("alpha_v")?) })
+    }
+
+    fn plastic(&mut self, plugin: &Plugin) -> Result<Plastic> {
+        let is_rough = plugin.kind == "roughplastic";
+        let alpha = match is_rough {
+            true => plugin.float_where("alpha", 0.1, "a number of at least 0", |alpha| alpha >= 0.0)?,
+            false => 0.0,
+        };
+        Ok(Plastic {
+            reflectance: self.reflectance(plugin, "diffuse_reflectance", 0.5)?,
+            specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0)?,
+            eta: eta(plugin, "polypropylene")? as f32,
+            alpha: alpha as f32,
+            microfacets: if is_rough { microfacets(plugin)? } else { Microfacets::default() },
+            is_nonlinear: plugin.boolean("nonlinear", false)?,
+        })
     }
 
     /// Chiang et al.'s hair.
@@ -379,6 +369,14 @@ fn is_straight(map: &Plugin) -> bool {
         }
 }
 
+/// The kind of microfacets of a BSDF.
+fn microfacets(plugin: &Plugin) -> Result<Microfacets> {
+    plugin.ignore(&["sample_visible"]);
+    let distributions = [("beckmann", Distribution::Beckmann), ("ggx", Distribution::TrowbridgeReitz)];
+    let distribution = plugin.choice("distribution", Distribution::Beckmann, &distributions)?;
+    Ok(Microfacets { distribution, masking: Masking::Separable })
+}
+
 /// The index of refraction of the inside relative to the outside.
 fn index(plugin: &Plugin, inside: &str) -> Result<Ior> {
     eta(plugin, inside).map(|eta| Ior::Value(eta as f32))
@@ -397,30 +395,4 @@ fn eta(plugin: &Plugin, inside: &str) -> Result<f64> {
         }
     };
     Ok(index("int_ior", inside)? / index("ext_ior", "air")?)
-}
-
-/// The reflectance of a base under a coat that is as bright as Mitsuba's `plastic` of another one without `nonlinear`: there light that the
-/// coat reflects back inside, a part r of diffuse light, loses nothing at the base. So ρ′ / (1 − r ρ′) = ρ / (1 − r).
-fn beneath_linear_plastic(rgb: [f32; 3], eta: f64) -> [f32; 3] {
-    const STEPS: u32 = 512;
-    let r = (0..STEPS).fold(0.0, |sum, step| {
-        let cos = (f64::from(step) + 0.5) / f64::from(STEPS);
-        sum + 2.0 * cos * fresnel(cos, 1.0 / eta) / f64::from(STEPS)
-    });
-    rgb.map(|rho| {
-        let rho = f64::from(rho.clamp(0.0, 1.0));
-        (rho / (1.0 - r + rho * r)) as f32
-    })
-}
-
-/// Fresnel's reflectance of an interface by the cosine of the angle to its normal; `eta` is the index behind over that in front.
-fn fresnel(cos: f64, eta: f64) -> f64 {
-    let sin_squared = (1.0 - cos * cos) / (eta * eta);
-    if sin_squared >= 1.0 {
-        return 1.0;
-    }
-    let behind = (1.0 - sin_squared).sqrt();
-    let parallel = (eta * cos - behind) / (eta * cos + behind);
-    let perpendicular = (cos - eta * behind) / (cos + eta * behind);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
 }

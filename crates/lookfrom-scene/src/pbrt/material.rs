@@ -181,6 +181,7 @@ impl Reader<'_, '_> {
             u: self.scalar_or_none(p, u)?.unwrap_or(both),
             v: self.scalar_or_none(p, v)?.unwrap_or(both),
             remap: p.boolean("remaproughness", true)?,
+            ..Roughness::SMOOTH
         })
     }
 

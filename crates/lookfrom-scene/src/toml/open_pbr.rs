@@ -317,7 +317,7 @@ impl Reader<'_, '_> {
                 None => [Scalar::Texture(id); 2],
             },
         };
-        Roughness { u, v, remap: false }
+        Roughness::of_alphas(u, v)
     }
 }
 

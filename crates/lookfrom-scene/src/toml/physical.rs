@@ -9,7 +9,10 @@ use super::Reader;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
-use crate::material::{Coat, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{
+    Coat, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic, Roughness,
+    Scalar,
+};
 use crate::measured::Measured;
 
 /// Reflectance of a diffuse surface, or base, where a scene does not set it: that of white paint, as of Whitted's `diffuse`.
@@ -19,8 +22,37 @@ const REFLECTANCE: f32 = 0.8;
 pub(super) const ENERGIES: &[(&str, Energy)] =
     &[("conserved", Energy::Conserved), ("single_scattering", Energy::SingleScattering)];
 
+/// The words for distributions of microfacet normals.
+pub(super) const DISTRIBUTIONS: &[(&str, Distribution)] =
+    &[("trowbridge_reitz", Distribution::TrowbridgeReitz), ("beckmann", Distribution::Beckmann)];
+
+/// The words for masking-shadowing functions.
+pub(super) const MASKINGS: &[(&str, Masking)] =
+    &[("correlated", Masking::Correlated), ("separable", Masking::Separable)];
+
 fn energy(table: &Table<'_>) -> Energy {
     table.or("energy", Energy::default(), |value| value.choice(ENERGIES))
+}
+
+/// The energy of a metal, which is conserved only for the microfacets whose albedo is in a table.
+fn energy_of_metal(table: &Table<'_>, microfacets: Microfacets) -> Energy {
+    let energy = energy(table);
+    if energy == Energy::Conserved && microfacets != Microfacets::default() {
+        let key = if table.has("distribution") { "distribution" } else { "masking" };
+        if let Some(value) = table.find(key) {
+            let message = format!("`{key}` is for metals that do not conserve energy");
+            value.note(value.error(message).hint("add `energy = \"single_scattering\"`"));
+        }
+    }
+    energy
+}
+
+fn microfacets(table: &Table<'_>) -> Microfacets {
+    let usual = Microfacets::default();
+    Microfacets {
+        distribution: table.or("distribution", usual.distribution, |value| value.choice(DISTRIBUTIONS)),
+        masking: table.or("masking", usual.masking, |value| value.choice(MASKINGS)),
+    }
 }
 
 impl Reader<'_, '_> {
@@ -35,14 +67,17 @@ impl Reader<'_, '_> {
                 transmittance: self.color_or(table, "transmittance", MaterialKind::DIFFUSE_SHEET),
                 scale: 1.0,
             },
-            "conductor" => MaterialKind::Conductor {
-                metal: self.metal_of(table),
-                roughness: self.roughness(table, "roughness"),
-                energy: energy(table),
-            },
+            "conductor" => {
+                let roughness = self.rough_microfacets(table);
+                MaterialKind::Conductor {
+                    metal: self.metal_of(table),
+                    roughness,
+                    energy: energy_of_metal(table, roughness.microfacets),
+                }
+            }
             "dielectric" => MaterialKind::Dielectric {
                 eta: self.ior_of(table),
-                roughness: self.roughness(table, "roughness"),
+                roughness: self.rough_microfacets(table),
                 energy: energy(table),
             },
             "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table) },
@@ -55,6 +90,7 @@ impl Reader<'_, '_> {
                 roughness: self.roughness(table, "base_roughness"),
                 coat: self.coat(table),
             },
+            "plastic" => MaterialKind::Plastic(Box::new(self.plastic(table))),
             "subsurface" => MaterialKind::Subsurface(Box::new(self.subsurface(table))),
             "hair" => MaterialKind::Hair(Box::new(self.hair(table))),
             "measured" => {
@@ -118,6 +154,21 @@ impl Reader<'_, '_> {
         table.or("ior", Ior::default(), |value| self.ior(value))
     }
 
+    fn plastic(&mut self, table: &Table<'_>) -> Plastic {
+        let roughness = table.or("roughness", 0.0, |value| {
+            value.single_where("a number from 0 to 1", |roughness| (0.0..=1.0).contains(&roughness))
+        });
+        Plastic {
+            reflectance: self.color_or(table, "reflectance", REFLECTANCE),
+            specular_reflectance: self.color_or(table, "specular_reflectance", 1.0),
+            eta: table
+                .or("ior", Plastic::ETA, |value| value.single_where("a number greater than 0", |n| n > 0.0)),
+            alpha: roughness * roughness,
+            microfacets: microfacets(table),
+            is_nonlinear: table.or("nonlinear", true, Value::boolean),
+        }
+    }
+
     fn coat(&mut self, table: &Table<'_>) -> Coat {
         let usual = Coat::default();
         let thickness = table.or("thickness", usual.thickness, |value| {
@@ -136,6 +187,11 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// As [`Self::roughness`], of microfacets of a kind.
+    fn rough_microfacets(&mut self, table: &Table<'_>) -> Roughness {
+        Roughness { microfacets: microfacets(table), ..self.roughness(table, "roughness") }
+    }
+
     /// One roughness for all directions, or a list of two along u and v; smooth by default.
     pub(super) fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
         table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
@@ -145,7 +201,7 @@ impl Reader<'_, '_> {
             } else {
                 [self.alpha_of(value)?; 2]
             };
-            Ok(Roughness { u, v, remap: false })
+            Ok(Roughness::of_alphas(u, v))
         })
     }
 

@@ -83,6 +83,8 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("edge", words(directional::EDGES)),
         ("quantity", words(directional::QUANTITIES)),
         ("energy", words(physical::ENERGIES)),
+        ("distribution", words(physical::DISTRIBUTIONS)),
+        ("masking", words(physical::MASKINGS)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),
         ("filter", words(texture::FILTERS)),

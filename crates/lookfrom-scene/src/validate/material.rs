@@ -3,8 +3,8 @@
 use super::Part;
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, Hair, Ior, MaterialKind, NormalTexture, OpenPbr, Pigment, Principled, Roughness,
-    Scalar, Subsurface, Tangent, Whitted,
+    BumpMapping, Coat, Energy, Hair, Ior, MaterialKind, Microfacets, NormalTexture, OpenPbr, Pigment,
+    Plastic, Principled, Roughness, Scalar, Subsurface, Tangent, Whitted,
 };
 use crate::scene::Scene;
 
@@ -25,7 +25,16 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
     match kind {
         MaterialKind::Whitted(whitted) => check_whitted(part, whitted),
         MaterialKind::DiffuseTransmission { scale, .. } => part.finite("scale", &[f64::from(*scale)]),
-        MaterialKind::Conductor { roughness, .. } => check_roughness(part, roughness),
+        MaterialKind::Conductor { roughness, energy, .. } => {
+            let is_tabulated = roughness.microfacets == Microfacets::default();
+            if *energy == Energy::Conserved && !is_tabulated {
+                return Err(part.fault(
+                    "has microfacets of which it is not known how much light goes from one to another: its energy is that of \
+                     single scattering",
+                ));
+            }
+            check_roughness(part, roughness)
+        }
         MaterialKind::Dielectric { eta, roughness, .. } => {
             check_ior(part, *eta)?;
             check_roughness(part, roughness)
@@ -36,6 +45,7 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
             check_roughness(part, roughness)?;
             check_coat(part, coat)
         }
+        MaterialKind::Plastic(plastic) => check_plastic(part, plastic),
         MaterialKind::Mix { materials, amount } => {
             materials.iter().try_for_each(|id| part.material(*id))?;
             part.scalar("amount", *amount)
@@ -103,6 +113,11 @@ fn check_coat(part: &Part<'_>, coat: &Coat) -> Result<()> {
     part.scalar("g", coat.g)?;
     part.number("max_depth", coat.max_depth.into(), "1 to 1048576", (1..=1 << 20).contains(&coat.max_depth))?;
     part.number("samples", coat.samples.into(), "1 to 65536", (1..=1 << 16).contains(&coat.samples))
+}
+
+fn check_plastic(part: &Part<'_>, plastic: &Plastic) -> Result<()> {
+    part.positive("eta", plastic.eta.into())?;
+    part.at_least_zero("alpha", plastic.alpha.into())
 }
 
 fn check_subsurface(part: &Part<'_>, below: &Subsurface) -> Result<()> {

@@ -7,7 +7,9 @@ use glam::{DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::light::{Edge, LightKind, MapRows, Projected, Sky};
-use lookfrom_scene::material::{BumpMapping, Color, Ior, MaterialKind, Metal, Scalar};
+use lookfrom_scene::material::{
+    BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic, Scalar,
+};
 use lookfrom_scene::medium::{Density, Medium};
 use lookfrom_scene::scene::TextureId;
 use lookfrom_scene::settings::{FilterShape, Integrator, Layers, PixelBounds, Sampler};
@@ -257,7 +259,9 @@ fn bsdfs_become_materials() {
         panic!("{metal:?}")
     };
     assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.1), false));
-    assert!(warnings[0].contains("(GGX), not Beckmann's"), "{warnings:?}");
+    let separable = |distribution| Microfacets { distribution, masking: Masking::Separable };
+    assert_eq!(roughness.microfacets, separable(Distribution::Beckmann));
+    assert!(warnings.is_empty(), "{warnings:?}");
     let mirror = material("<bsdf type=\"conductor\"/>").0;
     assert!(
         matches!(mirror, MaterialKind::Conductor { metal: Metal::Reflectance(white), .. } if white == Color::gray(1.0))
@@ -275,15 +279,22 @@ fn bsdfs_become_materials() {
     );
     assert!(matches!(mix.0, MaterialKind::Mix { amount: Scalar::Value(0.2), .. }), "{:?}", mix.0);
     let (plastic, _, warnings) = material("<bsdf type=\"plastic\"/>");
-    // The diffuse reflectance inside glass of 1.5 is 0.596, and of 0.5 it leaves 0.5 / (0.404 + 0.298).
-    let MaterialKind::CoatedDiffuse { reflectance: Color::Value([r, ..]), .. } = plastic else {
-        panic!("{plastic:?}")
+    let eta = (1.49 / 1.000_277) as f32;
+    let expected = Plastic {
+        reflectance: Color::gray(0.5),
+        specular_reflectance: Color::gray(1.0),
+        eta,
+        alpha: 0.0,
+        microfacets: Microfacets::default(),
+        is_nonlinear: false,
     };
-    assert!((r - 0.711).abs() < 0.004 && warnings.len() == 1, "{r} {warnings:?}");
-    let kept = material("<bsdf type=\"plastic\"><boolean name=\"nonlinear\" value=\"true\"/></bsdf>").0;
-    assert!(
-        matches!(kept, MaterialKind::CoatedDiffuse { reflectance, .. } if reflectance == Color::gray(0.5))
+    assert_eq!((plastic, warnings.len()), (MaterialKind::Plastic(Box::new(expected)), 0));
+    let (plastic, _, warnings) = material(
+        "<bsdf type=\"roughplastic\"><string name=\"distribution\" value=\"ggx\"/><boolean name=\"nonlinear\" value=\"true\"/></bsdf>",
     );
+    let microfacets = separable(Distribution::TrowbridgeReitz);
+    let expected = Plastic { alpha: 0.1, microfacets, is_nonlinear: true, ..expected };
+    assert_eq!((plastic, warnings.len()), (MaterialKind::Plastic(Box::new(expected)), 0));
     let (principled, _, warnings) =
         material("<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/></bsdf>");
     let MaterialKind::Disney(look) = principled else { panic!("{principled:?}") };

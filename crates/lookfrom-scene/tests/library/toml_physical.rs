@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
-    BumpMapping, Color, Energy, Ior, MaterialKind, Metal, OpenPbr, Roughness, Scalar, SubsurfaceMedium,
-    Tangent,
+    BumpMapping, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, OpenPbr,
+    Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent,
 };
 use lookfrom_scene::medium::Density;
 use lookfrom_scene::scene::MediumId;
@@ -34,6 +34,57 @@ fn read(text: &str) -> Scene {
 
 fn kind<'a>(scene: &'a Scene, name: &str) -> &'a MaterialKind {
     &scene.materials.iter().find(|material| material.name == name).expect("a material").kind
+}
+
+#[test]
+fn microfacets_are_of_a_kind() {
+    let scene = read(
+        r#"
+[materials.usual]
+type = "dielectric"
+roughness = 0.3
+distribution = "trowbridge_reitz"
+[materials.walter]
+type = "conductor"
+metal = "gold"
+energy = "single_scattering"
+distribution = "beckmann"
+masking = "separable"
+[materials.ball]
+type = "plastic"
+[materials.toy]
+type = "plastic"
+reflectance = [0.1, 0.2, 0.3]
+specular_reflectance = 0.5
+nonlinear = false
+ior = 1.4
+roughness = 0.5
+distribution = "beckmann"
+"#,
+    );
+    let MaterialKind::Dielectric { roughness, .. } = kind(&scene, "usual") else { panic!("a dielectric") };
+    assert_eq!(roughness.microfacets, Microfacets::default());
+    let MaterialKind::Conductor { roughness, .. } = kind(&scene, "walter") else { panic!("a conductor") };
+    let walter = Microfacets { distribution: Distribution::Beckmann, masking: Masking::Separable };
+    assert_eq!(roughness.microfacets, walter);
+    let ball = Plastic {
+        reflectance: Color::gray(0.8),
+        specular_reflectance: Color::gray(1.0),
+        eta: 1.5,
+        alpha: 0.0,
+        microfacets: Microfacets::default(),
+        is_nonlinear: true,
+    };
+    assert_eq!(*kind(&scene, "ball"), MaterialKind::Plastic(Box::new(ball)));
+    let toy = Plastic {
+        reflectance: Color::Value([0.1, 0.2, 0.3]),
+        specular_reflectance: Color::gray(0.5),
+        eta: 1.4,
+        alpha: 0.25,
+        microfacets: Microfacets { distribution: Distribution::Beckmann, ..Microfacets::default() },
+        is_nonlinear: false,
+    };
+    assert_eq!(*kind(&scene, "toy"), MaterialKind::Plastic(Box::new(toy)));
 }
 
 #[test]
@@ -100,7 +151,7 @@ type = "dots"
     assert_eq!(energy, Energy::Conserved);
     // Perceptual 0.5 is α = 0.25.
     let quarter = Scalar::Value(0.25);
-    assert_eq!(roughness, Roughness { u: quarter, v: quarter, remap: false });
+    assert_eq!(roughness, Roughness::of_alphas(quarter, quarter));
 
     // A texture is squared as a number is.
     let MaterialKind::Conductor { metal: Metal::Reflectance(_), roughness, energy } = *kind(&scene, "tin")
@@ -725,7 +776,7 @@ alpha = 0.75
     let mean_free_path = Color::Value([0.5, 0.25, 0.125]);
     assert_eq!(wax.medium, SubsurfaceMedium::Reflectance { reflectance, mean_free_path });
     let [u, v] = OpenPbr::alphas(0.5, 0.5).map(Scalar::Value);
-    assert_eq!((wax.eta, wax.roughness), (1.5, Roughness { u, v, remap: false }));
+    assert_eq!((wax.eta, wax.roughness), (1.5, Roughness::of_alphas(u, v)));
     let MaterialKind::Mix { materials: [above, below], amount } = kind(&scene, "skin") else {
         panic!("{:?}", kind(&scene, "skin"))
     };

@@ -28,7 +28,7 @@ pub struct MicrofacetReport {
     pub cos_om: f32,
     /// The cosine of the direction to the light, and ω_m.
     pub cos_im: f32,
-    /// D(ω_m): the Trowbridge–Reitz distribution; `None` where the boundary is smooth.
+    /// D(ω_m): the density of facets with that normal; `None` where the boundary is smooth.
     pub d: Option<f32>,
     /// G: Smith's masking and shadowing; `None` where it is smooth.
     pub g: Option<f32>,

@@ -168,6 +168,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }
             | MaterialKind::CoatedConductor { .. }
+            | MaterialKind::Plastic(_)
             | MaterialKind::Measured(_)
             | MaterialKind::Subsurface(_) => true,
             // A sky on a dome is unlit.

@@ -27,6 +27,7 @@ pub mod normalized_fresnel;
 mod one;
 pub mod open_pbr;
 pub mod phase;
+pub mod plastic;
 pub mod principled;
 pub mod subsurface;
 pub mod whitted;
@@ -43,7 +44,7 @@ use diffuse::{Diffuse, DiffuseTransmission};
 use lanes::ClassTraits;
 use layered::{CoatLayer, Layered};
 use lobes::Lobes;
-use microfacet::TrowbridgeReitz;
+use microfacet::Microfacets;
 
 pub use class::{Bsdf, BsdfClass, Description, Parameter, ScatteringFunction};
 pub(crate) use class::{Variant, bsdf_classes};
@@ -192,7 +193,7 @@ impl Bsdf {
     }
 
     /// pbrt's `dielectric`.
-    pub fn dielectric(eta: f32, roughness: TrowbridgeReitz) -> Self {
+    pub fn dielectric(eta: f32, roughness: impl Into<Microfacets>) -> Self {
         Self::Dielectric(Dielectric::new(eta, roughness))
     }
 
@@ -202,12 +203,12 @@ impl Bsdf {
     }
 
     /// pbrt's `conductor` by index of refraction and extinction.
-    pub fn conductor(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
+    pub fn conductor(eta: Spectrum, k: Spectrum, roughness: impl Into<Microfacets>) -> Self {
         Self::Conductor(Conductor::new(eta, k, roughness))
     }
 
     /// pbrt's `conductor` by its reflectance at normal incidence.
-    pub fn conductor_of_reflectance(reflectance: Spectrum, roughness: TrowbridgeReitz) -> Self {
+    pub fn conductor_of_reflectance(reflectance: Spectrum, roughness: impl Into<Microfacets>) -> Self {
         let (eta, k) = fresnel::conductor_of_reflectance(reflectance);
         Self::conductor(eta, k, roughness)
     }
@@ -232,7 +233,7 @@ impl Bsdf {
     pub fn coated_conductor(
         eta: Spectrum,
         k: Spectrum,
-        roughness: TrowbridgeReitz,
+        roughness: impl Into<Microfacets>,
         coat: &CoatLayer,
     ) -> Self {
         Self::CoatedConductor(Layered::coated_conductor(eta, k, roughness, coat, 0.0))

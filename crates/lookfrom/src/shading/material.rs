@@ -31,6 +31,7 @@ use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
+use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::whitted::WhittedBsdf;
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
@@ -47,8 +48,8 @@ pub(crate) use compile::Compiler;
 pub use disney::DisneyMaterial;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
-    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
-    Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::MaterialRow;
@@ -353,6 +354,7 @@ impl Evaluator<'_> {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
             MaterialKind::Disney(look) => Bsdf::Disney(self.disney(look)),
+            MaterialKind::Plastic(plastic) => Bsdf::Plastic(self.plastic(plastic)),
             MaterialKind::Hair(hair) => Bsdf::Hair(self.hair(hair)),
             MaterialKind::Measured(tables) => Bsdf::Measured(self.measured(tables)),
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),
@@ -395,6 +397,11 @@ impl Evaluator<'_> {
         let coat = self.coat(coat);
         let (eta, k) = self.indices(metal);
         Layered::coated_conductor(eta, k, roughness.at(self.textures, self.point), &coat, self.seed)
+    }
+
+    fn plastic(&self, plastic: &PlasticMaterial) -> Plastic {
+        let (base, surface) = (self.albedo(&plastic.reflectance), self.albedo(&plastic.specular_reflectance));
+        Plastic::new(base, surface, plastic.is_nonlinear, plastic.interface)
     }
 
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {

@@ -73,7 +73,7 @@ fn changed_materials_and_lights_have_the_bits_of_a_scene_compiled_anew() {
     // Rough metal needs derivatives of meshes, clear bodies have media, and all materials are compiled together.
     let metal = MaterialKind::Conductor {
         metal: Metal::Reflectance(Color::Value([0.9, 0.6, 0.3])),
-        roughness: Roughness { u: Scalar::Value(0.1), v: Scalar::Value(0.4), remap: true },
+        roughness: Roughness { u: Scalar::Value(0.1), v: Scalar::Value(0.4), ..Roughness::SMOOTH },
         energy: Energy::Conserved,
     };
     let tinted = MaterialKind::Whitted(Whitted {

@@ -37,6 +37,8 @@ mirror = { type = "conductor", metal = "silver" }
 lacquer = { type = "coated_diffuse", reflectance = [0.5, 0.1, 0.1], roughness = 0.4 }
 car = { type = "principled", base_color = [0.1, 0.3, 0.7], roughness = 0.6, clearcoat = 0.8, clearcoat_roughness = 0.5 }
 frost = { type = "principled", base_color = [0.9, 1, 0.9], roughness = 0.6, transmission = 1, solid = true, ior = 1.4 }
+toy = { type = "plastic", reflectance = [0.1, 0.5, 0.1], roughness = 0.6 }
+marble = { type = "plastic", reflectance = 0.3 }
 pane = { type = "principled", base_color = [0.9, 1, 0.9], roughness = 0.6, transmission = 1 }
 
 [[plane]]
@@ -89,6 +91,16 @@ material = "mirror"
 center = [1.4, 0.3, 1]
 radius = 0.3
 material = "sheet"
+
+[[sphere]]
+center = [-0.5, 0.3, 1]
+radius = 0.3
+material = "toy"
+
+[[sphere]]
+center = [0.4, 0.3, 1]
+radius = 0.3
+material = "marble"
 
 [[light]]
 type = "rectangle"
@@ -297,6 +309,8 @@ fn microfacets_come_to_the_bsdf() {
         "smooth conductor reflects",
         "smooth thin dielectric reflects",
         "coat reflects",
+        "smooth coat reflects",
+        "light: coat reflects",
         "specular reflects",
         "clear coat reflects",
         "glass reflects",

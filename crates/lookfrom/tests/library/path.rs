@@ -5,7 +5,8 @@ use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Sky};
 use lookfrom_scene::material::{
-    Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
+    Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Microfacets, Plastic, Roughness,
+    Scalar,
 };
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::{ColorMode, FilterShape, Integrator, LightSampler, Sampler};
@@ -175,11 +176,19 @@ fn furnace(kind: MaterialKind) -> Scene {
 /// Whoever keeps all light cannot be seen in front of light that is the same all around.
 #[test]
 fn a_white_furnace_hides_what_keeps_all_light() {
-    let rough = |alpha: f32| Roughness { u: Scalar::Value(alpha), v: Scalar::Value(alpha), remap: false };
+    let rough = |alpha: f32| Roughness::of_alphas(Scalar::Value(alpha), Scalar::Value(alpha));
     let white = Color::gray(1.0);
     let metal =
         |roughness, energy| MaterialKind::Conductor { metal: Metal::Reflectance(white), roughness, energy };
     let glass = |roughness, energy| MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness, energy };
+    let plastic = MaterialKind::Plastic(Box::new(Plastic {
+        reflectance: white,
+        specular_reflectance: white,
+        eta: 1.5,
+        alpha: 0.0,
+        microfacets: Microfacets::default(),
+        is_nonlinear: true,
+    }));
     let kinds = [
         ("diffuse", MaterialKind::Diffuse { reflectance: white }),
         (
@@ -193,6 +202,7 @@ fn a_white_furnace_hides_what_keeps_all_light() {
         ("glass", glass(Roughness::SMOOTH, Energy::SingleScattering)),
         ("thin glass", MaterialKind::ThinDielectric { eta: Ior::Value(1.5) }),
         ("interface", MaterialKind::Interface),
+        ("plastic", plastic),
         ("mirror", metal(Roughness::SMOOTH, Energy::SingleScattering)),
         ("nearly smooth metal", metal(rough(0.05), Energy::SingleScattering)),
         ("nearly smooth glass", glass(rough(0.02), Energy::SingleScattering)),

@@ -235,11 +235,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
     let mut scene = scene();
     let kind = MaterialKind::Conductor {
         metal: lookfrom_scene::material::Metal::Reflectance(Color::gray(0.5)),
-        roughness: lookfrom_scene::material::Roughness {
-            u: Scalar::Value(0.1),
-            v: Scalar::Value(0.5),
-            remap: false,
-        },
+        roughness: lookfrom_scene::material::Roughness::of_alphas(Scalar::Value(0.1), Scalar::Value(0.5)),
         energy: lookfrom_scene::material::Energy::SingleScattering,
     };
     scene.materials.push(Material::new("brushed", nowhere(), kind));

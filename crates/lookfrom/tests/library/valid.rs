@@ -233,6 +233,11 @@ impl<'a> Places<'a> {
                 self.roughness(roughness);
                 self.coat(coat);
             }
+            MaterialKind::Plastic(plastic) => {
+                self.color(&mut plastic.reflectance);
+                self.color(&mut plastic.specular_reflectance);
+                self.single.extend([&mut plastic.eta, &mut plastic.alpha]);
+            }
             MaterialKind::Mix { materials, amount } => {
                 self.whole.extend(materials.iter_mut().map(|id| &mut id.0));
                 self.scalar(amount);

@@ -40,6 +40,7 @@ use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
+use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::subsurface::Subsurface;
 use crate::shading::bsdf::{Bsdf, BsdfClass, BsdfSample, Uniform, bsdf_classes};

@@ -12,6 +12,7 @@ use super::lobes::Lobes;
 use super::measured::Measured;
 use super::normalized_fresnel::NormalizedFresnel;
 use super::open_pbr::OpenPbrSurface;
+use super::plastic::Plastic;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
 use super::whitted::WhittedBsdf;
@@ -90,6 +91,12 @@ impl From<super::microfacet::TrowbridgeReitz> for Parameter {
     }
 }
 
+impl From<super::microfacet::Microfacets> for Parameter {
+    fn from(microfacets: super::microfacet::Microfacets) -> Self {
+        microfacets.alpha.into()
+    }
+}
+
 /// Calls a macro with the table: first the classes that are computed in lanes, by the names of their variants and types.
 macro_rules! bsdf_classes {
     ($callback:ident $($context:tt)*) => {
@@ -106,6 +113,8 @@ macro_rules! bsdf_classes {
                 CoatedDiffuse(Layered<Diffuse>),
                 /// A metal under a dielectric coat.
                 CoatedConductor(Layered<Conductor>),
+                /// Lambertian reflection under a dielectric surface, in closed form.
+                Plastic(Plastic),
                 /// glTF's metallic-roughness material with its extensions.
                 Principled(Principled),
                 /// OpenPBR's surface.

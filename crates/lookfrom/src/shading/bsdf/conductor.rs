@@ -12,7 +12,7 @@ use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::albedo;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
     is_grazing,
@@ -32,7 +32,7 @@ pub struct Conductor<R = f32> {
     /// Extinction over the surrounding index.
     pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
-    pub(crate) roughness: TrowbridgeReitz<R>,
+    pub(crate) roughness: Microfacets<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
 }
@@ -67,11 +67,12 @@ impl<R: Real> MultipleScattering<R> {
 
 impl Conductor {
     /// By index and extinction over the surrounding index, with single scattering.
-    pub fn new(eta: Spectrum, k: Spectrum, roughness: TrowbridgeReitz) -> Self {
-        Self { eta, k, roughness, conserves: 0.0 }
+    pub fn new(eta: Spectrum, k: Spectrum, roughness: impl Into<Microfacets>) -> Self {
+        Self { eta, k, roughness: roughness.into(), conserves: 0.0 }
     }
 
-    /// This conductor with the light between its facets or without it.
+    /// This conductor with the light between its facets or without it; its table is that of Trowbridge and Reitz's, with correlated
+    /// masking.
     #[must_use]
     pub fn with_energy(self, energy: Energy) -> Self {
         Self { conserves: f32::from(energy == Energy::Conserved), ..self }
@@ -106,9 +107,10 @@ impl ScatteringFunction for Conductor {
     fn description(&self) -> Description {
         Description {
             kind: "conductor",
-            does: match self.roughness.is_smooth() {
-                true => "smooth metal: specular reflection, tinted by Fresnel's equations",
-                false => "rough metal: microfacets of roughness alpha",
+            does: match (self.roughness.is_smooth(), self.roughness.is_beckmann()) {
+                (true, _) => "smooth metal: specular reflection, tinted by Fresnel's equations",
+                (false, false) => "rough metal: microfacets of roughness alpha",
+                (false, true) => "rough metal: Beckmann's microfacets of roughness alpha",
             },
             numbers: vec![("eta", self.eta.into()), ("k", self.k.into()), ("alpha", self.roughness.into())],
         }
@@ -116,11 +118,11 @@ impl ScatteringFunction for Conductor {
 }
 
 impl<R: Real> Conductor<R> {
-    /// `f` with the half vector `wm`; both directions on one side, neither grazing.
+    /// `f` with the half vector `wm`; both directions on one side, neither grazing; `seen` is D G.
     #[inline(always)]
-    fn rough_f(&self, wo: Vector<R>, wi: Vector<R>, wm: Vector<R>) -> Spectrum<R> {
+    fn rough_f(&self, [wo, wi, wm]: [Vector<R>; 3], seen: R) -> Spectrum<R> {
         let fresnel = fresnel::conductor(Float::abs(wo.dot(wm)), self.eta, self.k);
-        let once = fresnel * (self.roughness.d(wm) * self.roughness.g(wo, wi) / (wo.z * 4.0 * wi.z));
+        let once = fresnel * (seen / (wo.z * 4.0 * wi.z));
         let conserves = self.conserves.gt(wo.z.like(0.0));
         if !conserves.any() {
             return once;
@@ -131,11 +133,12 @@ impl<R: Real> Conductor<R> {
     /// The light that facets of a rough surface send to one another, along `wo`.
     #[inline(always)]
     pub(super) fn multiple_scattering(&self, wo: Vector<R>) -> MultipleScattering<R> {
-        let alpha = albedo::even_alpha(self.roughness);
+        let roughness = self.roughness.alpha;
+        let alpha = albedo::even_alpha(roughness);
         let up = Vector { z: Float::abs(wo.z), ..wo };
         MultipleScattering {
-            albedo: albedo::reflector(up, self.roughness, alpha).all(),
-            mean_albedo: albedo::reflector_mean(self.roughness, alpha).all(),
+            albedo: albedo::reflector(up, roughness, alpha).all(),
+            mean_albedo: albedo::reflector_mean(roughness, alpha).all(),
             mean_fresnel: fresnel::conductor(wo.z.like(MEAN_COSINE), self.eta, self.k),
         }
     }
@@ -163,10 +166,12 @@ impl<R: Real> Conductor<R> {
     fn sample_rough(&self, wo: Vector<R>, u: [R; 2]) -> DirectionSample<R> {
         let wm = self.roughness.sample(wo, u);
         let wi = optics::reflect(wo, wm);
-        let pdf = self.roughness.visible_per_cosine(wo, wm) * 0.25;
+        let d = self.roughness.d(wm);
+        let [g, g1] = self.roughness.g_and_g1(wo, wi);
+        let pdf = d * g1 / Float::abs(wo.z) * 0.25;
         let is_valid = same_side(wo, wi);
         let no = is_valid.like(false);
-        let f = self.rough_f(wo, wi, wm);
+        let f = self.rough_f([wo, wi, wm], d * g);
         DirectionSample {
             wi,
             f,
@@ -214,7 +219,8 @@ impl<R: Real> LaneBsdf<R> for Conductor<R> {
         if !is_lit.any() {
             return black;
         }
-        Spectrum::select(is_lit, self.rough_f(wo, wi, wm), black)
+        let seen = self.roughness.d(wm) * self.roughness.g(wo, wi);
+        Spectrum::select(is_lit, self.rough_f([wo, wi, wm], seen), black)
     }
 
     #[inline(always)]

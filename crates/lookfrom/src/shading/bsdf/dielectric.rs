@@ -11,7 +11,7 @@ use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::lanes::LaneBsdf;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
     fresnel, is_grazing,
@@ -26,7 +26,7 @@ pub struct Dielectric<R = f32> {
     /// Inside over outside.
     pub(crate) eta: R,
     /// Roughness of the boundary.
-    pub(crate) roughness: TrowbridgeReitz<R>,
+    pub(crate) roughness: Microfacets<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
 }
@@ -48,8 +48,8 @@ pub(super) struct Facet<R: Real> {
 
 impl Dielectric {
     /// By its relative index and its roughness, with single scattering. Index 0 and NaN count as 1, as in pbrt.
-    pub fn new(eta: f32, roughness: TrowbridgeReitz) -> Self {
-        Self { eta: fresnel::valid_eta(eta), roughness, conserves: 0.0 }
+    pub fn new(eta: f32, roughness: impl Into<Microfacets>) -> Self {
+        Self { eta: fresnel::valid_eta(eta), roughness: roughness.into(), conserves: 0.0 }
     }
 
     /// This boundary with the light between its facets or without it.
@@ -90,9 +90,12 @@ impl ScatteringFunction for Dielectric {
     fn description(&self) -> Description {
         Description {
             kind: "dielectric",
-            does: match self.roughness.is_smooth() {
-                true => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
-                false => "rough glass: microfacets of roughness alpha that reflect and refract",
+            does: match (self.roughness.is_smooth(), self.roughness.is_beckmann()) {
+                (true, _) => "smooth glass: reflects and refracts, in the ratio of Fresnel's equations",
+                (false, false) => "rough glass: microfacets of roughness alpha that reflect and refract",
+                (false, true) => {
+                    "rough glass: Beckmann's microfacets of roughness alpha that reflect and refract"
+                }
             },
             numbers: vec![("eta", self.eta.into()), ("alpha", self.roughness.into())],
         }
@@ -141,11 +144,11 @@ impl<R: Real> Dielectric<R> {
         self.conserves.gt(self.conserves.like(0.0))
     }
 
-    /// `f` by a facet, in each lane of a spectrum.
+    /// `f` by a facet, in each lane of a spectrum; `seen` is D G.
     #[inline(always)]
-    fn facet_f(&self, wo: Vector<R>, wi: Vector<R>, facet: &Facet<R>, mode: Mode) -> R {
+    fn facet_f([wo, wi]: [Vector<R>; 2], facet: &Facet<R>, seen: R, mode: Mode) -> R {
         let &Facet { wm, fresnel, reflects, eta, .. } = facet;
-        let visible = self.roughness.d(wm) * self.roughness.g(wo, wi) / Float::abs(wo.z * wi.z);
+        let visible = seen / Float::abs(wo.z * wi.z);
         let reflected = visible * 0.25 * fresnel;
         if reflects.all() {
             return reflected;
@@ -155,13 +158,20 @@ impl<R: Real> Dielectric<R> {
         R::select(reflects, reflected, radiance_scale(transmitted, eta, mode))
     }
 
-    /// The density of `wi` by a facet whose side is chosen with a probability.
+    /// The density of `wi` by a facet whose side is chosen with a probability; `seen` is D G₁.
     #[inline(always)]
-    fn facet_pdf(&self, wo: Vector<R>, wi: Vector<R>, facet: &Facet<R>, probability: R) -> R {
+    fn facet_pdf([wo, wi]: [Vector<R>; 2], facet: &Facet<R>, seen: R, probability: R) -> R {
         let &Facet { wm, reflects, eta, .. } = facet;
-        let visible = self.roughness.visible_per_cosine(wo, wm);
+        let visible = seen / Float::abs(wo.z);
         let refraction = Float::abs(wo.dot(wm)) * refraction_jacobian(wo, wi, wm, eta);
         visible * R::select(reflects, eta.like(0.25), refraction) * probability
+    }
+
+    /// As [`Self::facet_pdf`].
+    #[inline(always)]
+    fn facet_density(&self, [wo, wi]: [Vector<R>; 2], facet: &Facet<R>, probability: R) -> R {
+        let seen = self.roughness.d(facet.wm) * self.roughness.g1(wo);
+        Self::facet_pdf([wo, wi], facet, seen, probability)
     }
 
     /// As [`super::Bsdf::f`].
@@ -172,7 +182,8 @@ impl<R: Real> Dielectric<R> {
         let [facet, _] = &facets;
         let mut f = zero;
         if facet.exists.any() {
-            f = R::select(facet.exists, self.facet_f(wo, wi, facet, mode), zero);
+            let seen = self.roughness.d(facet.wm) * self.roughness.g(wo, wi);
+            f = R::select(facet.exists, Self::facet_f([wo, wi], facet, seen, mode), zero);
         }
         if conserves.any() {
             f = R::select(conserves, self.unmasked_f(wo, wi, &facets, mode), f);
@@ -205,9 +216,9 @@ impl<R: Real> Dielectric<R> {
         probability: impl Fn(&Facet<R>) -> R,
     ) -> R {
         let zero = wo.z.like(0.0);
-        let mut sum = R::select(first.exists, self.facet_pdf(wo, wi, first, probability(first)), zero);
+        let mut sum = R::select(first.exists, self.facet_density([wo, wi], first, probability(first)), zero);
         if wrong.exists.any() {
-            let other = self.facet_pdf(wo, across(wi), wrong, probability(wrong));
+            let other = self.facet_density([wo, across(wi)], wrong, probability(wrong));
             sum = sum + R::select(wrong.exists, other, zero);
         }
         sum
@@ -281,8 +292,10 @@ impl<R: Real> Dielectric<R> {
         let is_valid = exists & (r + t).gt(zero) & !is_grazing(wo) & !is_grazing(wi);
         let facet = Facet { wm, fresnel, reflects, eta, exists };
         let probability = R::select(reflects, reflection, one - reflection);
-        let mut f = self.facet_f(wo, wi, &facet, mode);
-        let mut pdf = self.facet_pdf(wo, wi, &facet, probability);
+        let d = self.roughness.d(wm);
+        let [g, g1] = self.roughness.g_and_g1(wo, wi);
+        let mut f = Self::facet_f([wo, wi], &facet, d * g, mode);
+        let mut pdf = Self::facet_pdf([wo, wi], &facet, d * g1, probability);
         if conserves.any() {
             let facets = self.facets(wo, wi);
             f = R::select(conserves, self.unmasked_f(wo, wi, &facets, mode), f);

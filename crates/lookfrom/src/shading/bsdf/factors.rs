@@ -9,7 +9,8 @@ use glam::Vec3;
 
 use super::conductor::{Conductor, MultipleScattering, try_half_vector};
 use super::dielectric::{Dielectric, ThinDielectric};
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::{Microfacets, TrowbridgeReitz};
+use super::plastic::Plastic;
 use super::{fresnel, is_grazing, same_side};
 use crate::core::spectrum::Spectrum;
 
@@ -50,19 +51,19 @@ impl MicrofacetFactors {
     /// reflectance of 0.
     fn of_boundary(
         boundary: &'static str,
-        roughness: TrowbridgeReitz,
+        microfacets: Microfacets,
         is_smooth: bool,
         [wo, wi, wm]: [Vec3; 3],
     ) -> Self {
         Self {
             boundary,
             refracts: false,
-            roughness,
+            roughness: microfacets.alpha,
             wm,
             cos: [wo.z.abs(), wi.z.abs()],
             cos_m: [wo.dot(wm), wi.dot(wm)],
-            d: (!is_smooth).then(|| roughness.d(wm.into())),
-            g: (!is_smooth).then(|| roughness.g(wo.into(), wi.into())),
+            d: (!is_smooth).then(|| microfacets.d(wm.into())),
+            g: (!is_smooth).then(|| microfacets.g(wo.into(), wi.into())),
             fresnel: Spectrum::BLACK,
             part: Spectrum::BLACK,
             eta: 1.0,
@@ -96,7 +97,7 @@ impl ThinDielectric {
         }
         let smooth = MicrofacetFactors::of_boundary(
             "thin dielectric",
-            TrowbridgeReitz::SMOOTH,
+            TrowbridgeReitz::SMOOTH.into(),
             true,
             [wo, wi, Vec3::Z],
         );
@@ -118,6 +119,26 @@ impl Conductor {
         let multiple_scattering =
             (self.conserves > 0.0 && !is_smooth).then(|| self.multiple_scattering(wo.into()));
         Some(MicrofacetFactors { fresnel, part: fresnel, multiple_scattering, ..plain })
+    }
+}
+
+impl Plastic {
+    pub(super) fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Option<MicrofacetFactors> {
+        let is_smooth = self.microfacets.is_smooth();
+        if !same_side(wo, wi) || is_smooth != is_specular {
+            return None;
+        }
+        let up = if wo.z < 0.0 { -1.0 } else { 1.0 };
+        let wm = if is_smooth { Vec3::Z } else { try_half_vector(up * wo, up * wi)? };
+        let plain =
+            MicrofacetFactors::of_boundary("coat", self.microfacets, is_smooth, [up * wo, up * wi, wm]);
+        let fresnel = fresnel::dielectric(plain.cos_m[0], self.eta);
+        Some(MicrofacetFactors {
+            wm: up * wm,
+            fresnel: Spectrum([fresnel; 4]),
+            part: self.specular * fresnel,
+            ..plain
+        })
     }
 }
 

@@ -8,7 +8,7 @@ use super::diffuse::Diffuse;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::{Microfacets, TrowbridgeReitz};
 use super::open_pbr::OpenPbrSurface;
 use super::principled::Principled;
 use super::principled::open_pbr::OpenPbr;
@@ -138,10 +138,13 @@ impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
 }
 
 #[inline(always)]
-fn gather_roughness<S: Simd>(simd: S, rows: &[TrowbridgeReitz; LANES]) -> TrowbridgeReitz<f32x8<S>> {
-    TrowbridgeReitz {
-        alpha_x: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha_x)),
-        alpha_y: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha_y)),
+pub(super) fn gather_microfacets<S: Simd>(simd: S, rows: &[Microfacets; LANES]) -> Microfacets<f32x8<S>> {
+    Microfacets {
+        alpha: TrowbridgeReitz {
+            alpha_x: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha.alpha_x)),
+            alpha_y: f32x8::load_array(simd, by_lane!(lane => rows[lane].alpha.alpha_y)),
+        },
+        kind: f32x8::load_array(simd, by_lane!(lane => rows[lane].kind)),
     }
 }
 
@@ -177,7 +180,7 @@ impl RowBsdf for Conductor {
         Conductor {
             eta: gather_spectrum(simd, &by_lane!(lane => rows[lane].eta)),
             k: gather_spectrum(simd, &by_lane!(lane => rows[lane].k)),
-            roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+            roughness: gather_microfacets(simd, &by_lane!(lane => rows[lane].roughness)),
             conserves: f32x8::load_array(simd, by_lane!(lane => rows[lane].conserves)),
         }
     }
@@ -190,7 +193,7 @@ impl RowBsdf for Dielectric {
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Dielectric {
             eta: f32x8::load_array(simd, by_lane!(lane => rows[lane].eta)),
-            roughness: gather_roughness(simd, &by_lane!(lane => rows[lane].roughness)),
+            roughness: gather_microfacets(simd, &by_lane!(lane => rows[lane].roughness)),
             conserves: f32x8::load_array(simd, by_lane!(lane => rows[lane].conserves)),
         }
     }

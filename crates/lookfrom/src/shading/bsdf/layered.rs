@@ -37,7 +37,7 @@ use super::diffuse::Diffuse;
 use super::fresnel;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, is_grazing,
 };
@@ -46,6 +46,7 @@ use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 pub use coat::{CoatInterior, CoatLayer, DiffuseInterior};
+pub(super) use coat::{PLANE, lattice};
 use coat::{coat_f, coat_pdf, sample_coat};
 use random::{Purpose, Random};
 use walk::{Walk, surviving};
@@ -91,7 +92,7 @@ impl Layered<Conductor> {
     pub fn coated_conductor(
         eta: Spectrum,
         k: Spectrum,
-        roughness: TrowbridgeReitz,
+        roughness: impl Into<Microfacets>,
         coat: &CoatLayer,
         seed: f32,
     ) -> Self {

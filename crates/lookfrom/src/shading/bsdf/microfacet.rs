@@ -1,4 +1,4 @@
-//! The Trowbridge–Reitz (GGX) microfacet distribution, with visible normals sampled (Heitz 2018).
+//! The Trowbridge–Reitz (GGX) microfacet distribution, with visible normals sampled (Heitz 2018); Beckmann's is beside it.
 //!
 //! The distribution has two roughnesses and Smith's height-correlated masking-shadowing. The scattering by the
 //! facets is left to conductors and dielectrics.
@@ -6,12 +6,17 @@
 //! Trowbridge & Reitz 1975; Walter et al. 2007; Heitz 2014 (masking), 2018 (visible normals); Dupuy & Benyoub 2023
 //! (visible normals by a spherical cap).
 
+mod beckmann;
+mod model;
+
 use std::f32::consts::PI;
 
 use lookfrom_simd::{Float, Real};
 
 use crate::core::vector::Vector;
 use crate::core::warp;
+
+pub use model::Microfacets;
 
 /// The Trowbridge–Reitz distribution of microfacet normals. They have unit length and z > 0; directions may be on
 /// either side.

@@ -5,10 +5,12 @@ mod clay;
 #[expect(unreachable_pub, reason = "as the table makes it")]
 mod example;
 
+use super::microfacet::TrowbridgeReitz;
 use super::whitted::WhittedBsdf;
 use super::*;
 use crate::core::hash;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
+use lookfrom_scene::material::{self as written, Distribution, Masking};
 use std::f32::consts::PI;
 use std::f64::consts::TAU;
 
@@ -52,6 +54,24 @@ fn gold() -> (Spectrum, Spectrum) {
 
 fn rough(x: f32, y: f32) -> TrowbridgeReitz {
     TrowbridgeReitz::new(x, y)
+}
+
+/// Facets of a distribution, with a masking.
+fn of_kind(x: f32, y: f32, distribution: Distribution, masking: Masking) -> Microfacets {
+    Microfacets::new(rough(x, y), written::Microfacets { distribution, masking })
+}
+
+fn beckmann(x: f32, y: f32) -> Microfacets {
+    of_kind(x, y, Distribution::Beckmann, Masking::Correlated)
+}
+
+fn separable(x: f32, y: f32) -> Microfacets {
+    of_kind(x, y, Distribution::TrowbridgeReitz, Masking::Separable)
+}
+
+fn plastic(reflectance: f32, is_nonlinear: bool, facets: Microfacets) -> Bsdf {
+    let interface = plastic::Interface::kept(1.5, facets);
+    Bsdf::Plastic(plastic::Plastic::new(grey(reflectance), grey(0.8), is_nonlinear, interface))
 }
 
 fn hair(h: f32, betas: [f32; 2]) -> Bsdf {
@@ -146,6 +166,22 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("conserving gold 0.7 × 0.2", of_gold(0.7, 0.2).with_energy(Energy::Conserved)),
         ("conserving glass 0.6", Bsdf::dielectric(1.5, rough(0.6, 0.6)).with_energy(Energy::Conserved)),
         ("conserving bubble 0.3", Bsdf::dielectric(0.75, rough(0.3, 0.3)).with_energy(Energy::Conserved)),
+        ("beckmann gold 0.4 × 0.1", Bsdf::conductor(eta, k, beckmann(0.4, 0.1))),
+        ("beckmann glass 0.3", Bsdf::dielectric(1.5, beckmann(0.3, 0.3))),
+        ("beckmann bubble 0.6", Bsdf::dielectric(0.7, beckmann(0.6, 0.6))),
+        (
+            "conserving beckmann glass",
+            Bsdf::dielectric(1.5, beckmann(0.4, 0.2)).with_energy(Energy::Conserved),
+        ),
+        ("separable gold 0.6", Bsdf::conductor(eta, k, separable(0.6, 0.6))),
+        (
+            "separable beckmann glass",
+            Bsdf::dielectric(1.5, of_kind(0.5, 0.5, Distribution::Beckmann, Masking::Separable)),
+        ),
+        ("smooth plastic", plastic(0.6, true, rough(0.0, 0.0).into())),
+        ("plastic 0.2", plastic(0.6, true, rough(0.2, 0.2).into())),
+        ("beckmann plastic 0.4", plastic(0.3, false, beckmann(0.4, 0.4))),
+        ("black plastic 0.5", plastic(0.0, false, separable(0.5, 0.5))),
         ("hair", hair(0.3, [0.3, 0.3])),
         ("hair rough", hair(-0.8, [0.6, 0.8])),
         ("measured", measured(1)),
@@ -158,6 +194,14 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
     subjects.extend(open_pbr::tests::subjects());
     subjects.extend(disney::tests::subjects());
     subjects
+}
+
+/// A roughness with one of all kinds of facets.
+pub(super) fn of_any_kind(index: u64, roughness: TrowbridgeReitz) -> Microfacets {
+    let distribution =
+        if index.is_multiple_of(2) { Distribution::TrowbridgeReitz } else { Distribution::Beckmann };
+    let masking = if (index / 2).is_multiple_of(2) { Masking::Correlated } else { Masking::Separable };
+    Microfacets::new(roughness, written::Microfacets { distribution, masking })
 }
 
 /// From above, from the side, nearly grazing, and from inside.
@@ -534,7 +578,9 @@ fn roughness_is_as_in_pbrt() {
 
 #[test]
 fn facets_cover_the_surface_and_what_is_seen_of_it() {
-    for roughness in [rough(0.5, 0.5), rough(0.2, 0.7), rough(0.1, 0.1)] {
+    let usual = [rough(0.5, 0.5), rough(0.2, 0.7), rough(0.1, 0.1)].map(Microfacets::from);
+    let others = [beckmann(0.5, 0.5), beckmann(0.2, 0.7), beckmann(0.1, 0.1)];
+    for roughness in usual.into_iter().chain(others) {
         let projected = |wm: Vec3| f64::from(roughness.d(wm.into()) * wm.z.max(0.0));
         let sum: f64 = over_cells(&projected, 1e-6).iter().sum();
         assert!((sum - 1.0).abs() < 1e-4, "{sum}");
@@ -704,7 +750,7 @@ fn numbers_of_any_size_never_become_nan() {
         let roughness = rough(small(21), small(22));
         let coat = CoatLayer {
             eta: if trial.is_multiple_of(3) { size(31) } else { 1.5 },
-            roughness: rough(small(32), small(33)),
+            roughness: of_any_kind(trial / 4, rough(small(32), small(33))),
             thickness: size(34),
             albedo: if trial.is_multiple_of(2) { lanes(35) } else { Spectrum::BLACK },
             g: 1.0 - 2.0 * number(36, trial),
@@ -768,8 +814,8 @@ fn numbers_of_any_size_never_become_nan() {
         for bsdf in [
             Bsdf::diffuse(lanes(71)),
             Bsdf::diffuse_transmission(lanes(71), lanes(72)),
-            Bsdf::conductor(lanes(73), lanes(74), roughness),
-            Bsdf::dielectric(size(75), roughness),
+            Bsdf::conductor(lanes(73), lanes(74), of_any_kind(trial, roughness)),
+            Bsdf::dielectric(size(75), of_any_kind(trial, roughness)),
             Bsdf::dielectric(1.0 + any_size(76, trial, 24).min(1.0), roughness),
             Bsdf::thin_dielectric(size(75)),
             Bsdf::coated_diffuse(lanes(71), &coat),

@@ -49,6 +49,7 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
         MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
             reflectance.varies()
         }
+        MaterialKind::Plastic(plastic) => plastic.reflectance.varies(),
         MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
             reflectance.varies() || transmittance.varies()
         }
@@ -101,6 +102,7 @@ fn of_kind(
         MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
             color(reflectance)
         }
+        MaterialKind::Plastic(plastic) => color(&plastic.reflectance),
         MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
             (color(reflectance) + color(transmittance)) * *scale
         }

@@ -33,6 +33,10 @@ pub(super) fn in_whitteds_model(
             Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }
         }
         MaterialKind::CoatedDiffuse { reflectance, coat } => coated(*reflectance, &coat.roughness),
+        MaterialKind::Plastic(plastic) => {
+            let alpha = Scalar::Value(plastic.alpha);
+            coated(plastic.reflectance, &Roughness::of_alphas(alpha, alpha))
+        }
         MaterialKind::Subsurface(below) => {
             let reflectance = match below.medium {
                 SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance,
@@ -119,7 +123,7 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let number = |scalar: Scalar| textures.float(scalar.into(), &TexturePoint::NOWHERE);
     let roughness = look.roughness;
     if number(look.metallic) > 0.5 {
-        let roughness = Roughness { u: squared(roughness), v: squared(roughness), remap: false };
+        let roughness = Roughness::of_alphas(squared(roughness), squared(roughness));
         return metallic(&Metal::Reflectance(look.base_color), &roughness, textures);
     }
     let plain = Whitted {
@@ -136,7 +140,7 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     }
     let is_coated = number(look.clearcoat) > 0.5;
     let above = if is_coated { look.clearcoat_roughness } else { roughness };
-    let shininess = shininess(&Roughness { u: squared(above), v: squared(above), remap: false });
+    let shininess = shininess(&Roughness::of_alphas(squared(above), squared(above)));
     let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
     // A broad highlight is also faint.
     let specular = Color::gray(0.2 * number(look.specular).min(1.0) * (shininess / 50.0).min(1.0));

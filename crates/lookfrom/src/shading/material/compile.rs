@@ -7,13 +7,14 @@ use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{TextureId, VertexNormals};
 
 use super::kind::{
-    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
-    Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
 };
 use super::{Material, albedo, approximate, measured, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
-use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
+use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
@@ -94,6 +95,7 @@ impl<'a> Compiler<'a> {
                 roughness: rough(roughness),
                 coat: Box::new(self.coat(coat)),
             },
+            Written::Plastic(plastic) => MaterialKind::Plastic(Box::new(self.plastic(plastic))),
             Written::Mix { materials, amount } => {
                 MaterialKind::Mix { materials: materials.map(|id| id.0), amount: (*amount).into() }
             }
@@ -138,10 +140,10 @@ impl<'a> Compiler<'a> {
     fn coat(&self, coat: &written::Coat) -> CoatMaterial {
         let roughness = rough(&coat.roughness);
         let interior = match (coat.eta, &roughness, coat.thickness) {
-            (written::Ior::Value(eta), Roughness::Constant(distribution), Scalar::Value(thickness))
+            (written::Ior::Value(eta), Roughness::Constant(microfacets), Scalar::Value(thickness))
                 if coat.albedo == Color::BLACK && coat.estimate == written::CoatEstimate::Unbiased =>
             {
-                Some(CoatInterior::new(eta, *distribution, thickness))
+                Some(CoatInterior::new(eta, *microfacets, thickness))
             }
             _ => None,
         };
@@ -155,6 +157,16 @@ impl<'a> Compiler<'a> {
             max_depth: coat.max_depth.min(u16::MAX.into()) as u16,
             samples: coat.samples.min(u16::MAX.into()) as u16,
             estimate: coat.estimate,
+        }
+    }
+
+    fn plastic(&self, plastic: &written::Plastic) -> PlasticMaterial {
+        let roughness = TrowbridgeReitz::new(plastic.alpha, plastic.alpha);
+        PlasticMaterial {
+            reflectance: self.albedo(plastic.reflectance),
+            specular_reflectance: self.albedo(plastic.specular_reflectance),
+            is_nonlinear: plastic.is_nonlinear,
+            interface: Interface::kept(plastic.eta, Microfacets::new(roughness, plastic.microfacets)),
         }
     }
 
@@ -242,12 +254,12 @@ impl<'a> Compiler<'a> {
 }
 
 fn rough(roughness: &written::Roughness) -> Roughness {
-    let written::Roughness { u, v, remap } = *roughness;
+    let written::Roughness { u, v, remap, microfacets } = *roughness;
     match (u, v) {
         (Scalar::Value(u), Scalar::Value(v)) => {
-            Roughness::Constant(TrowbridgeReitz::from_roughness([u, v], remap))
+            Roughness::Constant(Microfacets::new(TrowbridgeReitz::from_roughness([u, v], remap), microfacets))
         }
-        _ => Roughness::Varying { along: [u.into(), v.into()], remap },
+        _ => Roughness::Varying { along: [u.into(), v.into()], remap, microfacets },
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use lookfrom_scene::material::{CoatEstimate, Energy};
+use lookfrom_scene::material::{self as written, CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
 use super::disney::DisneyMaterial;
@@ -11,8 +11,9 @@ use super::hair::HairMaterial;
 use super::open_pbr::OpenPbrMaterial;
 use crate::shading::bsdf::layered::CoatInterior;
 use crate::shading::bsdf::measured::MeasuredTables;
-use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
+use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bsdf::principled as bsdf;
 use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
@@ -76,6 +77,8 @@ pub enum MaterialKind {
         /// The coat.
         coat: Box<CoatMaterial>,
     },
+    /// A diffuse base under a dielectric surface, with the light between them in closed form.
+    Plastic(Box<PlasticMaterial>),
     /// Light is scattered below a dielectric surface.
     Subsurface(Box<SubsurfaceMaterial>),
     /// Fibres of hair or fur.
@@ -160,24 +163,27 @@ pub enum Ior {
 #[derive(Clone, Copy, Debug)]
 pub enum Roughness {
     /// One value everywhere.
-    Constant(TrowbridgeReitz),
+    Constant(Microfacets),
     /// It varies over the surface.
     Varying {
         /// Along u and v.
         along: [FloatTexture; 2],
         /// True if the numbers are a user's 0 … 1 whose square root is α.
         remap: bool,
+        /// The kind of microfacets.
+        microfacets: written::Microfacets,
     },
 }
 
 impl Roughness {
     /// The microfacet distribution at a point.
     #[inline]
-    pub(super) fn at(&self, textures: &Textures, point: &TexturePoint) -> TrowbridgeReitz {
+    pub(super) fn at(&self, textures: &Textures, point: &TexturePoint) -> Microfacets {
         match self {
-            Self::Constant(distribution) => *distribution,
-            Self::Varying { along, remap } => {
-                TrowbridgeReitz::from_roughness(along.map(|texture| textures.float(texture, point)), *remap)
+            Self::Constant(microfacets) => *microfacets,
+            Self::Varying { along, remap, microfacets } => {
+                let roughness = along.map(|texture| textures.float(texture, point));
+                Microfacets::new(TrowbridgeReitz::from_roughness(roughness, *remap), *microfacets)
             }
         }
     }
@@ -204,6 +210,19 @@ pub struct CoatMaterial {
     pub estimate: CoatEstimate,
     /// Knowledge of its inside, where the coat is the same everywhere and has no particles, and is not pbrt's.
     pub interior: Option<CoatInterior>,
+}
+
+/// A diffuse base under a dielectric surface, see [`lookfrom_scene::material::Plastic`].
+#[derive(Clone, Debug)]
+pub struct PlasticMaterial {
+    /// Albedo of the base.
+    pub reflectance: SpectrumTexture,
+    /// Multiplies what the surface reflects.
+    pub specular_reflectance: SpectrumTexture,
+    /// Whether light is coloured each time it comes back to the base.
+    pub is_nonlinear: bool,
+    /// The surface.
+    pub interface: &'static Interface,
 }
 
 /// A medium below a dielectric surface, see [`lookfrom_scene::material::Subsurface`].

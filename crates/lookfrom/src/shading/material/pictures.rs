@@ -27,6 +27,10 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.roughness(roughness);
             walk.coat(coat);
         }
+        MaterialKind::Plastic(plastic) => {
+            walk.color(&plastic.reflectance);
+            walk.color(&plastic.specular_reflectance);
+        }
         MaterialKind::Principled(look) => {
             walk.color(&look.base_color);
             walk.number(look.metallic);

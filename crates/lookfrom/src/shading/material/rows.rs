@@ -9,6 +9,7 @@ use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
+use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{TexturePoint, Textures};
@@ -26,6 +27,7 @@ impl Material {
                 (!look.is_solid && !look.refraction().disperses()).then_some(BsdfClass::Principled)
             }
             MaterialKind::OpenPbr(look) => (!look.is_solid).then_some(BsdfClass::OpenPbr),
+            MaterialKind::Plastic(_) => Some(BsdfClass::Plastic),
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             _ => None,
         }
@@ -166,6 +168,14 @@ impl MaterialRow for Hair {
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
         let MaterialKind::Hair(hair) = kind else { return None };
         Some(evaluator.hair(hair))
+    }
+}
+
+impl MaterialRow for Plastic {
+    #[inline]
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+        let MaterialKind::Plastic(plastic) = kind else { return None };
+        Some(evaluator.plastic(plastic))
     }
 }
 

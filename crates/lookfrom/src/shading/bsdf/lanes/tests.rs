@@ -9,9 +9,11 @@ use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
+use crate::shading::bsdf::plastic::{Interface, Plastic};
 use crate::shading::bsdf::principled::film::ThinFilm;
 use crate::shading::bsdf::principled::open_pbr::OpenPbr;
 use crate::shading::bsdf::principled::{Gltf, Principled};
+use crate::shading::bsdf::tests::of_any_kind;
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
@@ -113,6 +115,13 @@ fn roughness(seed: u64, index: u64) -> TrowbridgeReitz {
     TrowbridgeReitz::new(any(seed, index, 12), any(seed + 1, index, 12))
 }
 
+/// Facets of any kind, and in a quarter of all rounds of one kind.
+fn microfacets(seed: u64, index: u64) -> Microfacets {
+    let round = index / 8;
+    let kind = if round.is_multiple_of(4) { round / 4 } else { hash::pair(seed, index) >> 20 };
+    of_any_kind(kind, roughness(seed, index))
+}
+
 fn spectrum(seed: u64, index: u64) -> Spectrum {
     Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 4).min(1.0)))
 }
@@ -124,7 +133,7 @@ fn energy(index: u64) -> Energy {
 fn coat(index: u64) -> CoatLayer {
     CoatLayer {
         eta: if index.is_multiple_of(5) { 1.0 } else { any(31, index, 1) },
-        roughness: roughness(33, index),
+        roughness: microfacets(33, index),
         thickness: any(35, index, 8),
         albedo: if index.is_multiple_of(3) { spectrum(37, index) } else { Spectrum::BLACK },
         g: 2.0 * unit(41, index) - 1.0,
@@ -260,7 +269,7 @@ fn diffuse_in_lanes() {
 fn conductors_in_lanes() {
     compare::<Conductor>(|index| {
         let lanes = |seed| Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 20)));
-        Bsdf::conductor(lanes(60), lanes(64), roughness(68, index)).with_energy(energy(index))
+        Bsdf::conductor(lanes(60), lanes(64), microfacets(68, index)).with_energy(energy(index))
     });
 }
 
@@ -268,7 +277,33 @@ fn conductors_in_lanes() {
 fn dielectrics_in_lanes() {
     compare::<Dielectric>(|index| {
         let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
-        Bsdf::dielectric(eta, roughness(71, index)).with_energy(energy(index))
+        Bsdf::dielectric(eta, microfacets(71, index)).with_energy(energy(index))
+    });
+}
+
+#[test]
+fn plastic_in_lanes() {
+    let interfaces: Vec<&Interface> = (0..24)
+        .map(|k| {
+            let alpha = if k < 3 { 0.0 } else { unit(180, k) };
+            let facets = of_any_kind(k, TrowbridgeReitz::new(alpha, alpha));
+            Interface::kept(if k == 7 { 1.0 } else { any(181, k, 1) }, facets)
+        })
+        .collect();
+    compare::<Plastic>(|index| {
+        // Of one kind in some rounds.
+        let by = if (index / 8).is_multiple_of(3) { index / 8 } else { hash::pair(182, index) >> 20 };
+        let interface = interfaces[by as usize % interfaces.len()];
+        let mut plastic = Plastic::new(
+            spectrum(183, index),
+            if index.is_multiple_of(5) { Spectrum::BLACK } else { spectrum(187, index) },
+            hash::pair(191, index).is_multiple_of(2),
+            interface,
+        );
+        if index.is_multiple_of(11) {
+            plastic.regularize();
+        }
+        Bsdf::Plastic(plastic)
     });
 }
 

@@ -9,7 +9,7 @@ use crate::core::vector::Vector;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::cosine_direction;
 use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::microfacet::TrowbridgeReitz;
+use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 use crate::shading::bsdf::{DirectionSample, Mode};
 
 /// A coat: a dielectric boundary and the slab below it.
@@ -18,7 +18,7 @@ pub struct CoatLayer {
     /// Index of refraction over that outside; 0 counts as 1.
     pub eta: f32,
     /// Roughness of the boundary.
-    pub roughness: TrowbridgeReitz,
+    pub roughness: Microfacets,
     /// Thickness of the slab, in mean free paths.
     pub thickness: f32,
     /// Single-scattering albedo of the slab's particles, clamped to 0 … 1; black for no particles.
@@ -54,7 +54,7 @@ impl Default for CoatLayer {
     fn default() -> Self {
         Self {
             eta: 1.5,
-            roughness: TrowbridgeReitz::SMOOTH,
+            roughness: TrowbridgeReitz::SMOOTH.into(),
             thickness: 0.01,
             albedo: Spectrum::BLACK,
             g: 0.0,
@@ -110,8 +110,14 @@ impl<R: Real> DiffuseInterior<R> {
     }
 }
 
+/// The root for a plane.
+pub(in crate::shading::bsdf) const PLANE: f64 = 1.324_717_957_244_746;
+
 /// Points of a rank-1 lattice in `D` dimensions, by powers of the root of x^(D+1) = x + 1 (Roberts 2018).
-fn lattice<const D: usize>(count: u32, root: f64) -> impl Iterator<Item = [f32; D]> {
+pub(in crate::shading::bsdf) fn lattice<const D: usize>(
+    count: u32,
+    root: f64,
+) -> impl Iterator<Item = [f32; D]> {
     let step: [f64; D] = std::array::from_fn(|k| 1.0 / root.powi(k as i32 + 1));
     (0..count).map(move |point| {
         step.map(|step| {
@@ -127,7 +133,7 @@ impl CoatInterior {
 
     /// That of a coat by its relative index, its roughness and its thickness in mean free paths. The error of the reflectance is
     /// about 10⁻⁴, of the transmission 10⁻³, and up to 4 · 10⁻³ where it is grazing.
-    pub fn new(eta: f32, roughness: TrowbridgeReitz, thickness: f32) -> Self {
+    pub fn new(eta: f32, roughness: impl Into<Microfacets>, thickness: f32) -> Self {
         let coat = Dielectric::new(eta, roughness);
         let thickness = thickness.max(f32::MIN_POSITIVE);
         Self {
@@ -156,14 +162,15 @@ fn internal_reflectance(coat: &Dielectric, thickness: f32) -> f32 {
 /// [`CoatInterior::transmission`]: the polynomial through the values at Chebyshev's points, if it fits between them, too.
 fn transmission(coat: &Dielectric, thickness: f32) -> Option<[f32; COEFFICIENTS]> {
     const POINTS: u32 = 4096;
-    let is_even = coat.roughness.alpha_x == coat.roughness.alpha_y;
+    let alpha = coat.roughness.alpha;
+    let is_even = alpha.alpha_x == alpha.alpha_y;
     if coat.is_specular() || !is_even {
         return None;
     }
     let passed = |x: f64| {
         let cos = (x * x) as f32;
         let wo = Vector { x: (1.0 - cos * cos).max(0.0).sqrt(), y: 0.0, z: cos };
-        let sum: f64 = lattice::<2>(POINTS, 1.324_717_957_244_746)
+        let sum: f64 = lattice::<2>(POINTS, PLANE)
             .map(|u| {
                 let sample = sample_coat(coat, wo, 0.5, u, Mode::Importance, Lobes::TRANSMISSION);
                 if !sample.is_valid {

@@ -159,8 +159,8 @@ fn single_scattering_in_the_slab_has_a_formula() {
 /// Coats and bases of all kinds, deep enough that no walk is cut off.
 fn deep() -> Vec<(&'static str, Bsdf)> {
     let coat = CoatLayer { max_depth: 300, ..CoatLayer::default() };
-    let rough = CoatLayer { roughness: TrowbridgeReitz::new(0.4, 0.4), ..coat };
-    let brushed = CoatLayer { roughness: TrowbridgeReitz::new(0.2, 0.6), ..coat };
+    let rough = CoatLayer { roughness: TrowbridgeReitz::new(0.4, 0.4).into(), ..coat };
+    let brushed = CoatLayer { roughness: TrowbridgeReitz::new(0.2, 0.6).into(), ..coat };
     let milky = |coat| CoatLayer { albedo: grey(0.8), thickness: 0.4, g: 0.3, ..coat };
     let metal = |alpha, coat: &CoatLayer| {
         let roughness = TrowbridgeReitz::new(alpha, alpha);
@@ -258,7 +258,7 @@ fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
         (2.2, TrowbridgeReitz::new(0.05, 0.05), 0.1),
         (1.4, TrowbridgeReitz::new(0.6, 0.6), 0.5),
     ] {
-        let coat = CoatLayer { eta, roughness, thickness, ..coat };
+        let coat = CoatLayer { eta, roughness: roughness.into(), thickness, ..coat };
         let interior = CoatInterior::new(eta, roughness, thickness);
         let inside = interior.internal_reflectance;
         if roughness.is_smooth() && thickness < 0.02 {
@@ -328,8 +328,10 @@ fn radiance_and_importance_are_scattered_alike() {
     let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
     let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
     for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
-        let bsdf =
-            Bsdf::coated_diffuse(grey(0.9), &CoatLayer { roughness, max_depth: 4, ..CoatLayer::default() });
+        let bsdf = Bsdf::coated_diffuse(
+            grey(0.9),
+            &CoatLayer { roughness: roughness.into(), max_depth: 4, ..CoatLayer::default() },
+        );
         let f = |mode| bsdf.f(wo, wi, mode).0[0];
         assert!(close(f(Mode::Radiance), f(Mode::Importance)), "{roughness:?}");
         let weight = |mode, index| {
