@@ -12,6 +12,7 @@ mod color_names;
 mod curve;
 mod directional;
 mod document;
+mod elements;
 mod evaluate;
 mod expression;
 mod function;
@@ -48,6 +49,7 @@ mod transform;
 mod value;
 mod variables;
 mod vocabulary;
+pub mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -69,7 +71,7 @@ use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
 use crate::material::{MaterialKind, Scalar};
-use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
+use crate::scene::{CurveId, ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
@@ -108,6 +110,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         opacities: BTreeMap::new(),
         unwritten_default: None,
         black: None,
+        displaced: Vec::new(),
         open: Vec::new(),
         done: BTreeSet::new(),
         flake_spheres: 0,
@@ -167,6 +170,8 @@ struct Reader<'s, 'f> {
     /// The material "default", if it has been used but is not defined in a file (yet).
     unwritten_default: Option<MaterialId>,
     black: Option<MaterialId>,
+    /// Meshes that are those of files but for their displacement.
+    displaced: Vec<((MeshId, Scalar), MeshId)>,
     /// The open files: each is imported by the previous one.
     open: Vec<PathBuf>,
     /// The files that have been read.
@@ -268,6 +273,10 @@ impl Reader<'_, '_> {
         }
         if let Some(table) = top.maybe("render", |value| value.table("[render]")) {
             self.scene.render = settings::render(&table);
+            self.scene.vertex_normals = table.or("vertex_normals", VertexNormals::default(), |value| {
+                value.choice(settings::VERTEX_NORMALS)
+            });
+            self.scene.is_complete = !table.or("add_light", true, Value::boolean);
             self.has_render = true;
             self.names_integrator = table.has("integrator");
         }
@@ -293,6 +302,14 @@ impl Reader<'_, '_> {
         let file =
             file.ok_or_else(|| value.wrong("a picture, such as { file = \"sky.exr\", layer = \"beauty\" }"))?;
         self.image_as(file, layer.as_deref(), is_data)
+    }
+
+    /// An image whose 8- and 16-bit values are encoded by an exponent.
+    fn image_by_gamma(&mut self, value: Value<'_>, layer: Option<&str>, gamma: f32) -> Result<ImageId> {
+        let curve = |value: f32| libm::powf(value, gamma);
+        let reading = Reading { layer, ..Reading::new(Encoding::Curve(&curve)) };
+        let key = format!("{} gamma {gamma}", layer.unwrap_or_default());
+        self.image_by(value, Some(&key), false, |path, context| image::read_as(path, &reading, context))
     }
 
     /// The image that a file becomes, which is read once.
@@ -383,6 +400,11 @@ impl Reader<'_, '_> {
             }
         })
     }
+}
+
+/// The word for a value, of those that have one.
+fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
+    words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
 }
 
 /// The error that a name is defined twice.

@@ -51,6 +51,8 @@ pub(super) struct Header {
     pub(super) elements: Vec<Element>,
     /// Images named by comments.
     pub(super) textures: Vec<String>,
+    /// Whether it is a file of our own ([`MARK`]), and then whether its mesh is one of a solid ([`SOLID`]).
+    pub(super) own: Option<bool>,
     /// Length of the header in bytes and lines.
     pub(super) length: usize,
     pub(super) lines: u32,
@@ -98,6 +100,12 @@ impl Element {
     }
 }
 
+/// The first word of the comment in files of our own, which hold everything that a mesh has, bit by bit.
+pub(super) const MARK: &[u8] = b"lookfrom-mesh";
+
+/// The word after it for the surface of a solid.
+pub(super) const SOLID: &[u8] = b"solid";
+
 /// Parses the header.
 ///
 /// # Errors
@@ -110,6 +118,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let mut format = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut textures = Vec::new();
+    let mut own = None;
     let mut strays = Tally::default();
     loop {
         if !scanner.next_line() {
@@ -121,8 +130,12 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
         match keyword {
             b"" | b"obj_info" => {}
             b"comment" => {
-                if scanner.word() == b"TextureFile" {
-                    textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
+                match scanner.word() {
+                    b"TextureFile" => {
+                        textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
+                    }
+                    MARK => own = Some(scanner.word() == SOLID),
+                    _ => {}
                 }
             }
             b"format" => {
@@ -163,7 +176,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let before = scanner.position();
     scanner.next_line();
     let length = if lone_returns { (before + 1).min(bytes.len()) } else { scanner.position() };
-    Ok(Header { format, elements, textures, length, lines: scanner.line() })
+    Ok(Header { format, elements, textures, own, length, lines: scanner.line() })
 }
 
 fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[Element]) -> Result<Element> {

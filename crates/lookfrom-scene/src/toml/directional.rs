@@ -6,6 +6,7 @@ use super::Reader;
 use super::light::{aim, falloff, position, power, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
+use super::transform::invertible_rows;
 use super::value::Value;
 use crate::camera::up_across;
 use crate::error::Result;
@@ -33,18 +34,13 @@ impl Reader<'_, '_> {
 
     /// A projection light.
     pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
+        if table.has("matrix") {
+            return self.projection_by_matrix(table);
+        }
         let position = position(table);
         let forward = aim(table, position).normalize();
         let up = table.maybe("up", Value::direction);
-        let expected = "degrees between 0 and 180, exclusive";
-        let fov = table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0));
-        let intensity = table.or("intensity", 1.0, |value| {
-            value.single_where("a number of at least 0: the colours are in the picture", |number| {
-                number >= 0.0
-            })
-        });
-        let power = power(table, "power", 1.0);
-        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
+        let Projected { image, intensity, fov, power } = self.projected(table);
         table.sound(&["position", "target", "direction", "up"])?;
         let up = match up {
             Some(up) => {
@@ -69,6 +65,31 @@ impl Reader<'_, '_> {
         Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
     }
 
+    /// A projection light whose space a matrix places.
+    fn projection_by_matrix(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
+        for key in ["position", "target", "direction", "up"] {
+            table.one_of(&["matrix", key]);
+        }
+        let world_from_light = table.or("matrix", DMat4::IDENTITY, invertible_rows);
+        let Projected { image, intensity, fov, power } = self.projected(table);
+        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
+    }
+
+    /// What a projection light projects.
+    fn projected(&mut self, table: &Table<'_>) -> Projected {
+        let expected = "degrees between 0 and 180, exclusive";
+        Projected {
+            fov: table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0)),
+            intensity: table.or("intensity", 1.0, |value| {
+                value.single_where("a number of at least 0: the colours are in the picture", |number| {
+                    number >= 0.0
+                })
+            }),
+            power: power(table, "power", 1.0),
+            image: table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value)),
+        }
+    }
+
     /// The octahedral map of a luminaire's photometric file, or of a picture.
     fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
         match value.as_text().filter(|name| ies::is_ies(name)) {
@@ -80,10 +101,24 @@ impl Reader<'_, '_> {
 
     /// A goniometric light.
     pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Power) {
-        let position = position(table);
+        let world_from_light = match table.has("matrix") {
+            true => {
+                table.one_of(&["matrix", "position"]);
+                table.one_of(&["matrix", "rotate"]);
+                table.or("matrix", DMat4::IDENTITY, invertible_rows)
+            }
+            false => DMat4::from_translation(position(table)) * turned(table) * up_from_pole(),
+        };
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.intensities(value));
         let (intensity, power) = self.intensity(table, "power");
-        let world_from_light = DMat4::from_translation(position) * turned(table) * up_from_pole();
         (LightKind::Goniometric { intensity, image, world_from_light }, power)
     }
+}
+
+/// A picture and its light.
+struct Projected {
+    image: ImageId,
+    intensity: f32,
+    fov: f32,
+    power: Power,
 }

@@ -10,13 +10,13 @@ use super::quantity::Quantity;
 use super::table::Table;
 use super::value::Value;
 use super::{Reader, transform};
-use crate::error::Result;
+use crate::error::{Location, Result};
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
 use crate::medium::{DROPLETS, Density, Medium, Temperature, Variation};
-use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
+use crate::{nanovdb, npy};
 
 /// The keys of media, besides those of transforms.
 pub(super) const KEYS: &[&str] = &[
@@ -29,7 +29,23 @@ pub(super) const KEYS: &[&str] = &[
     "max_density",
     "emission",
     "temperature",
+    "density_scale",
+    "emission_scale",
+    "emission_density",
+    "bounds",
 ];
+
+/// The keys of numbers that are an array of NumPy in a box.
+pub(super) const ARRAY: &[&str] = &["npy", "min", "max"];
+
+/// The keys of temperatures besides those of their numbers.
+pub(super) const KELVIN: &[&str] = &["offset", "factor"];
+
+/// The keys of densities of colours, by the coefficients that they multiply.
+pub(super) const COLORS: &[&str] = &["absorption", "scattering", "emission"];
+
+/// The keys of pbrt's clouds.
+pub(super) const CLOUD: &[&str] = &["cloud", "wispiness", "frequency"];
 
 /// The keys of numbers by the place.
 pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
@@ -79,7 +95,7 @@ impl Reader<'_, '_> {
             value.single_where(what, |diameter| DROPLETS.contains(&diameter))
         });
         let density = table.maybe("density", |value| self.density(value, table));
-        let temperature = table.maybe("temperature", |value| self.volume(value));
+        let temperature = table.maybe("temperature", |value| self.temperature(value));
         (medium.emission, medium.emission_scale) = match temperature {
             None => table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
             Some(_) => {
@@ -89,30 +105,26 @@ impl Reader<'_, '_> {
                 (Color::BLACK, factor * Medium::ABSOLUTE)
             }
         };
-        let density = match density {
-            Some(Number::Volume(volume)) => {
-                medium.variation = Some(variation(table, volume, temperature));
-                return medium;
-            }
-            Some(Number::Varying(density)) => Some(density),
-            Some(Number::Even(density)) => {
-                medium.scale = density;
-                None
-            }
-            None => None,
-        };
-        if density.is_none() && temperature.is_none() {
-            return medium;
+        let factor = |value: Value<'_>| value.single_where("a number of at least 0", |factor| factor >= 0.0);
+        medium.emission_scale = table.or("emission_scale", medium.emission_scale, factor);
+        medium.scale = table.or("density_scale", 1.0, factor);
+        if let Some(Number::Even(density)) = density {
+            medium.scale *= density;
         }
-        let own = temperature.as_ref().map_or(DMat4::IDENTITY, |volume| volume.world_from_medium);
-        medium.variation = Some(Variation {
-            world_from_medium: transform::world_from_object(table) * own,
-            bounds: temperature.as_ref().map(|volume| volume.bounds),
-            density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
-            emission_scale: None,
-            temperature: temperature.map(Volume::temperature),
+        let emission_density =
+            table.maybe("emission_density", |value| self.volume(value)).map(|volume| volume.placed);
+        medium.variation = varying(table, density, temperature, emission_density.is_some()).map(|variation| {
+            let bounds = table.or("bounds", variation.bounds, box_or_none);
+            Variation { emission_scale: emission_density, bounds, ..variation }
         });
         medium
+    }
+
+    /// Temperatures by the place.
+    fn temperature(&mut self, value: Value<'_>) -> Result<Hot> {
+        let table = value.table("temperatures by the place")?;
+        let number = |key, default| table.or(key, default, Value::single);
+        Ok(Hot { offset: number("offset", 0.0), scale: number("factor", 1.0), volume: self.volume(value)? })
     }
 
     /// A coefficient per unit of length: the same everywhere.
@@ -128,7 +140,13 @@ impl Reader<'_, '_> {
     /// A density: a number, a texture, or numbers by the place.
     fn density(&mut self, value: Value<'_>, table: &Table<'_>) -> Result<Number> {
         if value.is_table() && !value.table("a density")?.has("type") {
-            return Ok(Number::Volume(self.volume(value)?));
+            let of = value.table("a density")?;
+            let has = |keys: &[&str]| keys.iter().any(|key| of.has(key));
+            return Ok(match () {
+                () if has(CLOUD) => Number::Varying(cloud(&of)),
+                () if has(COLORS) => Number::Varying(self.colors(&of)?),
+                () => Number::Volume(self.volume(value)?),
+            });
         }
         let most = table.or("max_density", 1.0, |value| {
             value.single_where("a number greater than 0", |most| most > 0.0 && most.is_finite())
@@ -139,15 +157,62 @@ impl Reader<'_, '_> {
         })
     }
 
+    /// Densities of colours.
+    fn colors(&mut self, table: &Table<'_>) -> Result<Density> {
+        table.allow(&[COLORS]);
+        let mut of = |key| {
+            table.maybe(key, |value| {
+                let table = value.table("colours by the place")?;
+                table.allow(&[ARRAY]);
+                self.placed(&table, |[r, g, b]: [f32; 3]| [r, g, b])
+            })
+        };
+        Ok(Density::Colors { absorption: of("absorption"), scattering: of("scattering"), emission: of("emission") })
+    }
+
+    /// The values of an array in a box: at least 0.
+    fn placed<T: Copy + Default + PartialEq, const N: usize>(
+        &mut self,
+        table: &Table<'_>,
+        of: impl Fn([f32; N]) -> T,
+    ) -> Result<Placed<T>> {
+        let file = table.find("npy").ok_or_else(|| table.missing("npy", "\"density.npy\""))?;
+        let corner = |key, default| table.or(key, default, super::shape::point);
+        let bounds = [corner("min", Vec3::NEG_ONE), corner("max", Vec3::ONE)];
+        table.sound(&["min", "max"])?;
+        if !bounds[0].cmple(bounds[1]).all() {
+            return Err(table.error_at("max", "`max` lies before `min` along an axis"));
+        }
+        let path = self.resolve(file, "the name of a .npy file")?;
+        let bytes = self.context.read(&path).map_err(|error| file.blame(error))?;
+        let (size, values) = npy::grid::<N>(&bytes, &Location::file(&path), self.context.limits.elements)?;
+        let values = values.into_iter().map(|row| row.map(|number| number as f32));
+        let values: Vec<[f32; N]> = values.collect();
+        if values.as_flattened().iter().any(|value| !(*value >= 0.0 && value.is_finite())) {
+            return Err(file.error("the array has numbers that are below 0 or not finite"));
+        }
+        let values: Vec<T> = values.into_iter().map(of).collect();
+        let grid = Grid::from_values(size, &values);
+        let grid = grid.ok_or_else(|| file.error("the array has no cells, or too many along an axis"))?;
+        self.context.keep(grid.bytes() as u64, "the grid", &table.at())?;
+        Ok(Placed { grid: Arc::new(grid), bounds })
+    }
+
     /// Numbers by the place: by a formula, or a grid of a file.
     fn volume(&mut self, value: Value<'_>) -> Result<Volume> {
         let table = value.table("numbers by the place")?;
+        let more: &[&str] = if value.key() == "temperature" { KELVIN } else { &[] };
+        if table.has("npy") {
+            table.allow(&[ARRAY, more]);
+            let placed = self.placed(&table, |[number]| number)?;
+            return Ok(Volume { bounds: placed.bounds, placed, world_from_medium: DMat4::IDENTITY });
+        }
         let Some(file) = table.find("file") else {
-            table.allow(&[VOLUME]);
+            table.allow(&[VOLUME, more]);
             let placed = formula(&table)?;
             return Ok(Volume { bounds: placed.bounds, placed, world_from_medium: DMat4::IDENTITY });
         };
-        table.allow(&[FILE]);
+        table.allow(&[FILE, more]);
         let path = self.resolve(file, "the name of a NanoVDB file")?;
         let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
         let volume = nanovdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
@@ -207,29 +272,87 @@ struct Volume {
     bounds: [Vec3; 2],
 }
 
-impl Volume {
-    /// As temperatures.
+/// Temperatures by the place.
+struct Hot {
+    volume: Volume,
+    offset: f32,
+    scale: f32,
+}
+
+impl Hot {
     fn temperature(self) -> Temperature {
-        Temperature { grid: self.placed, offset: 0.0, scale: 1.0 }
+        Temperature { grid: self.volume.placed, offset: self.offset, scale: self.scale }
     }
 }
 
+/// pbrt's clouds.
+fn cloud(table: &Table<'_>) -> Density {
+    table.allow(&[CLOUD]);
+    let number = |key, default| table.or(key, default, Value::single);
+    Density::Cloud {
+        density: number("cloud", 1.0),
+        wispiness: number("wispiness", 1.0),
+        frequency: number("frequency", 5.0),
+    }
+}
+
+/// Two corners, or `"none"`.
+fn box_or_none(value: Value<'_>) -> Result<Option<[Vec3; 2]>> {
+    if value.as_text() == Some("none") {
+        return Ok(None);
+    }
+    let expected = "two corners, the lower and the upper one, or \"none\"";
+    let [low, high] = value.list_of(expected)?;
+    let [low, high] = [super::shape::point(low)?, super::shape::point(high)?];
+    if low.cmple(high).all() { Ok(Some([low, high])) } else { Err(value.wrong(expected)) }
+}
+
+/// What varies of a medium, if anything does.
+fn varying(
+    table: &Table<'_>,
+    density: Option<Number>,
+    temperature: Option<Hot>,
+    emits_by_place: bool,
+) -> Option<Variation> {
+    let density = match density {
+        Some(Number::Volume(volume)) => return Some(variation(table, volume, temperature)),
+        Some(Number::Varying(density)) => Some(density),
+        Some(Number::Even(_)) | None => None,
+    };
+    if density.is_none() && temperature.is_none() && !emits_by_place {
+        return None;
+    }
+    let own = temperature.as_ref().map_or(DMat4::IDENTITY, |hot| hot.volume.world_from_medium);
+    Some(Variation {
+        world_from_medium: transform::after(table, &transform::world_from_object(table), &own),
+        bounds: temperature.as_ref().map(|hot| hot.volume.bounds),
+        density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
+        emission_scale: None,
+        temperature: temperature.map(Hot::temperature),
+    })
+}
+
 /// Densities of a grid, and temperatures of another.
-fn variation(table: &Table<'_>, density: Volume, temperature: Option<Volume>) -> Variation {
+fn variation(table: &Table<'_>, density: Volume, temperature: Option<Hot>) -> Variation {
     let mut bounds = density.bounds;
     let temperature = temperature.and_then(|mut hot| {
-        let place = nanovdb::placement(&density.world_from_medium, &hot.world_from_medium, hot.bounds);
+        let of = &mut hot.volume;
+        let place = nanovdb::placement(&density.world_from_medium, &of.world_from_medium, of.bounds);
         if place.is_none() {
             table.note(table.error_at("temperature", "its axes are not those of `density`"));
         }
         let place = place?;
-        let [low, high] = hot.bounds.map(&place);
+        let [low, high] = of.bounds.map(&place);
         bounds = [bounds[0].min(low), bounds[1].max(high)];
-        hot.placed.bounds = hot.placed.bounds.map(&place);
+        of.placed.bounds = of.placed.bounds.map(&place);
         Some(hot.temperature())
     });
     Variation {
-        world_from_medium: transform::world_from_object(table) * density.world_from_medium,
+        world_from_medium: transform::after(
+            table,
+            &transform::world_from_object(table),
+            &density.world_from_medium,
+        ),
         bounds: Some(bounds),
         density: Density::Grid(density.placed),
         emission_scale: None,

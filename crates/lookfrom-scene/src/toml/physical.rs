@@ -5,19 +5,28 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::Reader;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, unit};
 use crate::error::Result;
-use crate::material::{Coat, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
+use crate::material::{Coat, CoatEstimate, Color, Energy, Ior, MaterialKind, Metal, Roughness, Scalar};
 use crate::measured::Measured;
 
 /// Reflectance of a diffuse surface, or base, where a scene does not set it: that of white paint, as of Whitted's `diffuse`.
-const REFLECTANCE: f32 = 0.8;
+pub(super) const REFLECTANCE: f32 = 0.8;
 
 /// The words for what becomes of light between microfacets.
 pub(super) const ENERGIES: &[(&str, Energy)] =
     &[("conserved", Energy::Conserved), ("single_scattering", Energy::SingleScattering)];
+
+/// The words for estimates of coats.
+pub(super) const ESTIMATES: &[(&str, CoatEstimate)] =
+    &[("unbiased", CoatEstimate::Unbiased), ("pbrt", CoatEstimate::Pbrt)];
+
+/// The keys of a roughness that is not perceptual.
+pub(super) const ROUGHNESS: &[&str] = &["alpha", "alpha_squared"];
 
 fn energy(table: &Table<'_>) -> Energy {
     table.or("energy", Energy::default(), |value| value.choice(ENERGIES))
@@ -33,7 +42,9 @@ impl Reader<'_, '_> {
             "diffuse_transmission" => MaterialKind::DiffuseTransmission {
                 reflectance: self.color_or(table, "reflectance", MaterialKind::DIFFUSE_SHEET),
                 transmittance: self.color_or(table, "transmittance", MaterialKind::DIFFUSE_SHEET),
-                scale: 1.0,
+                scale: table.or("scale", 1.0, |value| {
+                    value.single_where("a number of at least 0", |scale| scale >= 0.0)
+                }),
             },
             "conductor" => MaterialKind::Conductor {
                 metal: self.metal_of(table),
@@ -76,6 +87,9 @@ impl Reader<'_, '_> {
                     None => MaterialKind::Interface,
                 }
             }
+            "shadow_catcher" => MaterialKind::ShadowCatcher {
+                normal: table.or("normal", Vec3::Y, |value| unit(value).map(|normal| normal.as_vec3())),
+            },
             _ => MaterialKind::Interface,
         }
     }
@@ -125,19 +139,25 @@ impl Reader<'_, '_> {
         let g = table.or("g", usual.g, |value| {
             self.scalar_where(value, "a number between -1 and 1", |g| g > -1.0 && g < 1.0)
         });
+        let whole = |value: Value<'_>| Ok(value.integer(1, u32::MAX.into())? as u32);
         Coat {
+            max_depth: table.or("coat_depth", usual.max_depth, whole),
+            samples: table.or("coat_samples", usual.samples, whole),
+            estimate: table.or("coat_estimate", usual.estimate, |value| value.choice(ESTIMATES)),
             eta: self.ior_of(table),
             roughness: self.roughness(table, "roughness"),
             thickness,
             albedo: table.or("coat_albedo", usual.albedo, |value| self.color(value)),
             g,
-            ..usual
         }
     }
 
     /// One roughness for all directions, or a list of two along u and v; smooth by default.
     pub(super) fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
         table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
+            if value.is_table() && !value.table("a roughness")?.has("type") {
+                return self.microfacets(value);
+            }
             let [u, v] = if value.is_list() {
                 let [u, v] = value.list_of("a number from 0 to 1, a texture, or two of them, [u, v]")?;
                 [self.alpha_of(u)?, self.alpha_of(v)?]
@@ -146,6 +166,23 @@ impl Reader<'_, '_> {
             };
             Ok(Roughness { u, v, remap: false })
         })
+    }
+
+    /// A roughness as the microfacet model has it, α, or its square, as pbrt's scenes have.
+    fn microfacets(&mut self, value: Value<'_>) -> Result<Roughness> {
+        let table = value.table("a roughness")?;
+        table.allow(&[ROUGHNESS]);
+        let one = table.one_of(ROUGHNESS).ok_or_else(|| {
+            value.wrong("a number from 0 to 1, a texture, or a table such as { alpha = 0.04 }")
+        })?;
+        let mut scalar = |value| self.scalar_where(value, "a number of at least 0", |alpha| alpha >= 0.0);
+        let [u, v] = if one.is_list() {
+            let [u, v] = one.list_of("a number of at least 0, a texture, or two of them, [u, v]")?;
+            [scalar(u)?, scalar(v)?]
+        } else {
+            [scalar(one)?; 2]
+        };
+        Ok(Roughness { u, v, remap: one.key() == "alpha_squared" })
     }
 
     fn alpha_of(&mut self, value: Value<'_>) -> Result<Scalar> {
