@@ -16,6 +16,9 @@ pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 /// The keys of a rotation about an axis.
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
 
+/// The most that the last row of a matrix may differ from 0, 0, 0, 1: other programs compute it.
+const ROUNDING: f64 = 1e-6;
+
 /// The matrix from object space to the parent space: affine, finite and invertible.
 pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
     if !table.has("transform") {
@@ -114,7 +117,8 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
 
 pub(super) fn from_rows(value: Value<'_>) -> Result<DMat4> {
     let numbers: [f64; 16] = value.numbers("16 numbers, row by row")?;
-    if numbers[12..] != [0.0, 0.0, 0.0, 1.0] {
+    let is_last = |(number, expected): (&f64, f64)| (number - expected).abs() <= ROUNDING;
+    if !numbers[12..].iter().zip([0.0, 0.0, 0.0, 1.0]).all(is_last) {
         return Err(value.error("the last row of `matrix` must be 0, 0, 0, 1").hint("write it row by row"));
     }
     Ok(DMat4::from_cols_array(&numbers).transpose())
