@@ -67,7 +67,9 @@ fn check_new(path: &Path) -> Result<(), Failure> {
         Err(_) => Ok(()),
         Ok(_) => {
             let shown = path.display();
-            Err(Failure::Usage(format!("{shown} exists already\n  help: give another name, or --force to replace it")))
+            Err(Failure::Usage(format!(
+                "{shown} exists already\n  help: give another name, or --force to replace it"
+            )))
         }
     }
 }

@@ -41,11 +41,7 @@ pub fn rows<const N: usize>(bytes: &[u8], at: &Location, limit: u64) -> Result<V
 ///
 /// # Errors
 /// As [`rows`].
-pub fn grid<const N: usize>(
-    bytes: &[u8],
-    at: &Location,
-    limit: u64,
-) -> Result<([u32; 3], Vec<[f64; N]>)> {
+pub fn grid<const N: usize>(bytes: &[u8], at: &Location, limit: u64) -> Result<([u32; 3], Vec<[f64; N]>)> {
     let header = header(bytes, at)?;
     let [z, y, x] = match *header.shape {
         [z, y, x] if N == 1 => [z, y, x],

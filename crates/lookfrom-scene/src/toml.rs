@@ -71,7 +71,9 @@ use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
 use crate::material::{MaterialKind, Scalar};
-use crate::scene::{CurveId, ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals};
+use crate::scene::{
+    CurveId, ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals,
+};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;

@@ -112,8 +112,11 @@ pub(super) fn read(
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let unlike = || {
-        Error::syntax(file, "a comment says that this mesh was written by lookfrom, but its header is another")
-            .hint("take the comment out of a file that another program has changed")
+        Error::syntax(
+            file,
+            "a comment says that this mesh was written by lookfrom, but its header is another",
+        )
+        .hint("take the comment out of a file that another program has changed")
     };
     let [vertices, faces] = &header.elements[..] else { return Err(unlike()) };
     let names: Vec<&str> = vertices.properties.iter().map(|property| property.name.as_str()).collect();
@@ -132,7 +135,8 @@ pub(super) fn read(
     let columns = columns.ok_or_else(unlike)?;
     let most = context.limits.elements.min(u32::MAX.into());
     if vertices.count.max(faces.count) > most {
-        let message = format!("{} elements are more than the limit of {most}", vertices.count.max(faces.count));
+        let message =
+            format!("{} elements are more than the limit of {most}", vertices.count.max(faces.count));
         return Err(Error::new(ErrorKind::Limit, file, message));
     }
     let (rows, corners) = bytes
@@ -205,7 +209,10 @@ fn triangles(bytes: &[u8], count: usize, vertices: u64, file: &Location) -> Resu
             None => Ok(triangle),
             Some(vertex) => Err(Error::invalid(
                 file,
-                format!("vertex index {vertex} is out of range: {}", crate::plural::there_are(vertices, "vertex")),
+                format!(
+                    "vertex index {vertex} is out of range: {}",
+                    crate::plural::there_are(vertices, "vertex")
+                ),
             )),
         }
     };

@@ -129,15 +129,13 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
         let at = scanner.at(file);
         match keyword {
             b"" | b"obj_info" => {}
-            b"comment" => {
-                match scanner.word() {
-                    b"TextureFile" => {
-                        textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
-                    }
-                    MARK => own = Some(scanner.word() == SOLID),
-                    _ => {}
+            b"comment" => match scanner.word() {
+                b"TextureFile" => {
+                    textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
                 }
-            }
+                MARK => own = Some(scanner.word() == SOLID),
+                _ => {}
+            },
             b"format" => {
                 let word = scanner.word();
                 format = Some(match word {

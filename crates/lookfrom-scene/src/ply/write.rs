@@ -13,7 +13,11 @@ pub fn write(mesh: &Mesh) -> Vec<u8> {
     let mut header = String::from("ply\nformat binary_little_endian 1.0\n");
     let [mark, solid] = [MARK, SOLID].map(String::from_utf8_lossy);
     // Writing to a string cannot fail.
-    let _ = writeln!(header, "comment {mark}{}", if mesh.is_of_solid { format!(" {solid}") } else { String::new() });
+    let _ = writeln!(
+        header,
+        "comment {mark}{}",
+        if mesh.is_of_solid { format!(" {solid}") } else { String::new() }
+    );
     let _ = writeln!(header, "element vertex {}", mesh.positions.len());
     for name in columns.names() {
         let _ = writeln!(header, "property float {name}");

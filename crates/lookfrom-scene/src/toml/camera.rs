@@ -71,7 +71,8 @@ impl Reader<'_, '_> {
             focus_distance: camera.lens.map_or(1.0, |lens| lens.focus_distance),
             film_diagonal,
             millimetre,
-            convention: table.or("lens_convention", LensConvention::AsPinhole, |value| value.choice(CONVENTIONS)),
+            convention: table
+                .or("lens_convention", LensConvention::AsPinhole, |value| value.choice(CONVENTIONS)),
         };
         Ok(Camera { projection: Projection::LensSystem(Arc::new(system)), lens: None, ..camera })
     }
@@ -235,9 +236,10 @@ fn projection(table: &Table<'_>) -> Projection {
         table.assume(if word == "orthographic" { &["height"] } else { &[] });
         value.note(error.hint(match (word, key) {
             ("perspective", _) => "give `fov` here, or the picture's `height` in [image]",
-            ("orthographic", "lens" | "film" | "aperture_shape" | "millimetre" | "stop" | "lens_convention") => {
-                "a lens makes the projection \"perspective\""
-            }
+            (
+                "orthographic",
+                "lens" | "film" | "aperture_shape" | "millimetre" | "stop" | "lens_convention",
+            ) => "a lens makes the projection \"perspective\"",
             ("orthographic", _) => "give `height`, the height of the picture in the world",
             _ => "a panoramic camera has no lens: leave it out",
         }));

@@ -12,11 +12,8 @@ use crate::error::Result;
 use crate::shape::{Geometry, Patches, Profile, Strand};
 
 /// The words for profiles; normals of ribbons are given besides.
-pub(super) const PROFILES: &[(&str, Profile)] = &[
-    ("flat", Profile::Flat),
-    ("cylinder", Profile::Cylinder),
-    ("ribbon", Profile::Ribbon([Vec3::Z; 2])),
-];
+pub(super) const PROFILES: &[(&str, Profile)] =
+    &[("flat", Profile::Flat), ("cylinder", Profile::Cylinder), ("ribbon", Profile::Ribbon([Vec3::Z; 2]))];
 
 /// A bilinear patch with four corners.
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {

@@ -19,7 +19,9 @@ impl Reader<'_, '_> {
         let centers = table.need("centers", "[[0, 0, 0], [1, 0, 0]]", Vec::new(), |value| {
             Ok(match self.array(value)? {
                 Some(rows) => rows.into_iter().map(DVec3::from_array).collect(),
-                None => value.list("a list of points, [x, y, z]")?.map(Value::vector).collect::<Result<_>>()?,
+                None => {
+                    value.list("a list of points, [x, y, z]")?.map(Value::vector).collect::<Result<_>>()?
+                }
             })
         });
         let count = centers.len();
@@ -44,19 +46,19 @@ impl Reader<'_, '_> {
     /// `[[patch]]` with `positions`: many bilinear patches over shared vertices.
     pub(super) fn patches(&mut self, table: &Table<'_>) -> Result<Geometry> {
         table.one_of(&["positions", "corners"]);
-        let positions: Vec<Vec3> = table.need("positions", "[[0, 0, 0]]", Vec::new(), |value| {
-            match self.array(value)? {
+        let positions: Vec<Vec3> =
+            table.need("positions", "[[0, 0, 0]]", Vec::new(), |value| match self.array(value)? {
                 Some(rows) => rows.iter().map(|row| finite(value, *row).map(Vec3::from_array)).collect(),
                 None => value.list("a list of points, [x, y, z]")?.map(point).collect(),
-            }
-        });
+            });
         let count = positions.len();
         let patches = table.need("patches", "[[0, 1, 2, 3]]", Vec::new(), |value| {
             let vertices = |row: [f64; 4]| {
                 let is_vertex = |number: f64| number >= 0.0 && number < count as f64 && number.fract() == 0.0;
                 match row.into_iter().all(is_vertex) {
                     true => Ok(row.map(|number| number as u32)),
-                    false => Err(value.error(format!("a patch has a vertex that `positions` has not: it has {count}"))
+                    false => Err(value
+                        .error(format!("a patch has a vertex that `positions` has not: it has {count}"))
                         .hint("vertices count from 0")),
                 }
             };
@@ -82,19 +84,21 @@ impl Reader<'_, '_> {
         if !is_separate {
             return super::curve::curve(table, self.context.limits.elements);
         }
-        let vectors = |reader: &Self, value: Value<'_>, of_item: fn(Value<'_>) -> Result<Vec3>| {
-            match reader.array(value)? {
-                Some(rows) => rows.iter().map(|row| finite(value, *row).map(Vec3::from_array)).collect(),
-                None => value.list("a list of points, [x, y, z]")?.map(of_item).collect::<Result<Vec<Vec3>>>(),
-            }
+        let vectors = |reader: &Self, value: Value<'_>, of_item: fn(Value<'_>) -> Result<Vec3>| match reader
+            .array(
+            value,
+        )? {
+            Some(rows) => rows.iter().map(|row| finite(value, *row).map(Vec3::from_array)).collect(),
+            None => value.list("a list of points, [x, y, z]")?.map(of_item).collect::<Result<Vec<Vec3>>>(),
         };
-        let points = table.need("points", "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]", Vec::new(), |value| {
-            let points = vectors(self, value, point)?;
-            match points.len() % 4 {
-                0 => Ok(points),
-                _ => Err(value.wrong("four points for each curve")),
-            }
-        });
+        let points =
+            table.need("points", "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]", Vec::new(), |value| {
+                let points = vectors(self, value, point)?;
+                match points.len() % 4 {
+                    0 => Ok(points),
+                    _ => Err(value.wrong("four points for each curve")),
+                }
+            });
         let ends = points.len() / 2;
         let widths = table.need("width", "0.1", Vec::new(), |value| {
             let is_width = |width: f32| width > 0.0;
@@ -103,7 +107,9 @@ impl Reader<'_, '_> {
                 return Ok(vec![value.single_where(&expected, is_width)?; ends]);
             }
             let widths: Vec<f32> = match self.array::<1>(value)? {
-                Some(rows) => rows.iter().map(|row| finite(value, *row).map(|[width]| width)).collect::<Result<_>>()?,
+                Some(rows) => {
+                    rows.iter().map(|row| finite(value, *row).map(|[width]| width)).collect::<Result<_>>()?
+                }
                 None => value.list(&expected)?.map(Value::single).collect::<Result<_>>()?,
             };
             let are_widths = widths.len() == ends && widths.iter().all(|width| is_width(*width));

@@ -21,7 +21,10 @@ pub(super) const KEYS: Kinds = &[
         "spot",
         &["position", "target", "direction", "intensity", "power", "cone_angle", "inner_angle", "falloff"],
     ),
-    ("projection", &["position", "target", "direction", "up", "image", "intensity", "power", "fov", "matrix"]),
+    (
+        "projection",
+        &["position", "target", "direction", "up", "image", "intensity", "power", "fov", "matrix"],
+    ),
     ("goniometric", &["position", "image", "intensity", "power", "rotate", "matrix"]),
     (
         "rectangle",
@@ -159,7 +162,8 @@ pub(super) const POWER: &[&str] = &["total", "scale", "absolute"];
 /// The power: the total in the key `total`, or else that of the colour, times `scale`; or a table of all that there is.
 pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
     if let Some(value) = table.find(total).filter(|value| value.is_table()) {
-        return value.noting(value.table(format!("`{total}`")).map(|table| written_power(&table)), Power::AS_WRITTEN);
+        return value
+            .noting(value.table(format!("`{total}`")).map(|table| written_power(&table)), Power::AS_WRITTEN);
     }
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)

@@ -9,8 +9,19 @@ use crate::error::Result;
 use crate::texture::Mapping;
 
 /// The keys of mappings.
-pub(super) const KEYS: &[&str] =
-    &["space", "scale", "offset", "size", "rotate", "translate", "axis_u", "axis_v", "texture_from_world", "uv_set", "uv_matrix"];
+pub(super) const KEYS: &[&str] = &[
+    "space",
+    "scale",
+    "offset",
+    "size",
+    "rotate",
+    "translate",
+    "axis_u",
+    "axis_v",
+    "texture_from_world",
+    "uv_set",
+    "uv_matrix",
+];
 
 /// The words for `space`.
 pub(super) const SPACES: [&str; 5] = ["uv", "world", "spherical", "cylindrical", "planar"];
@@ -42,7 +53,8 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         let scale = table.or("scale", [1.0; 2], pair);
         return Ok(Mapping::Uv { scale, offset: offset(table) });
     }
-    let axes = || [("axis_u", Vec3::X), ("axis_v", Vec3::Y)].map(|(key, default)| table.or(key, default, axis));
+    let axes =
+        || [("axis_u", Vec3::X), ("axis_v", Vec3::Y)].map(|(key, default)| table.or(key, default, axis));
     if table.has("texture_from_world") {
         for key in ["size", "scale", "rotate", "translate"] {
             table.one_of(&["texture_from_world", key]);
@@ -69,11 +81,7 @@ pub(super) fn mapping(table: &Table<'_>, default: &str) -> Result<Mapping> {
         "world" => Mapping::World { texture_from_world },
         "spherical" => Mapping::Spherical { texture_from_world: turned },
         "cylindrical" => Mapping::Cylindrical { texture_from_world: turned },
-        _ => Mapping::Planar {
-            texture_from_world,
-            axes: axes(),
-            offset: offset(table),
-        },
+        _ => Mapping::Planar { texture_from_world, axes: axes(), offset: offset(table) },
     })
 }
 

@@ -113,10 +113,11 @@ impl Reader<'_, '_> {
         }
         let emission_density =
             table.maybe("emission_density", |value| self.volume(value)).map(|volume| volume.placed);
-        medium.variation = varying(table, density, temperature, emission_density.is_some()).map(|variation| {
-            let bounds = table.or("bounds", variation.bounds, box_or_none);
-            Variation { emission_scale: emission_density, bounds, ..variation }
-        });
+        medium.variation =
+            varying(table, density, temperature, emission_density.is_some()).map(|variation| {
+                let bounds = table.or("bounds", variation.bounds, box_or_none);
+                Variation { emission_scale: emission_density, bounds, ..variation }
+            });
         medium
     }
 
@@ -167,7 +168,11 @@ impl Reader<'_, '_> {
                 self.placed(&table, |[r, g, b]: [f32; 3]| [r, g, b])
             })
         };
-        Ok(Density::Colors { absorption: of("absorption"), scattering: of("scattering"), emission: of("emission") })
+        Ok(Density::Colors {
+            absorption: of("absorption"),
+            scattering: of("scattering"),
+            emission: of("emission"),
+        })
     }
 
     /// The values of an array in a box: at least 0.

@@ -102,12 +102,18 @@ impl Reader<'_, '_> {
     }
 
     /// A mesh of a file that is displaced: each once.
-    pub(super) fn displaced(&mut self, table: &Table<'_>, mesh: MeshId, displacement: Scalar) -> Result<MeshId> {
+    pub(super) fn displaced(
+        &mut self,
+        table: &Table<'_>,
+        mesh: MeshId,
+        displacement: Scalar,
+    ) -> Result<MeshId> {
         if let Some((_, known)) = self.displaced.iter().find(|(of, _)| *of == (mesh, displacement)) {
             return Ok(*known);
         }
         let of_file = self.scene.meshes[mesh.index()].clone();
-        let Geometry::Mesh(id) = self.mesh(table, Mesh { displacement: Some(displacement), ..of_file })? else {
+        let Geometry::Mesh(id) = self.mesh(table, Mesh { displacement: Some(displacement), ..of_file })?
+        else {
             return Ok(mesh);
         };
         self.displaced.push(((mesh, displacement), id));

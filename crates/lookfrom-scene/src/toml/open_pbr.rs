@@ -6,8 +6,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::light::Power;
 use crate::material::{
-    BumpMapping, Color, Material, MaterialKind, OpenPbr, Roughness, Scalar, Subsurface,
-    SubsurfaceMedium, Tangent,
+    BumpMapping, Color, Material, MaterialKind, OpenPbr, Roughness, Scalar, Subsurface, SubsurfaceMedium,
+    Tangent,
 };
 use crate::medium::Medium;
 use crate::scene::{MaterialId, MediumId, TextureId};

@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
                 }
             }
             "shadow_catcher" => MaterialKind::ShadowCatcher {
-                normal: table.or("normal", Vec3::Y, |value| unit(value).map(|normal| normal.as_vec3())),
+                normal: table.or("normal", Vec3::Y, |value| Ok(unit(value)?.as_vec3())),
             },
             _ => MaterialKind::Interface,
         }

@@ -73,11 +73,7 @@ impl Reader<'_, '_> {
             base_color: self.color_or(table, "base_color", 0.8),
             metallic: self.share_or(table, "metallic", 0.0),
             roughness: self.share_or(table, "roughness", 0.5),
-            anisotropy: (strength > 0.0).then_some(Anisotropy {
-                strength,
-                rotation,
-                texture: along,
-            }),
+            anisotropy: (strength > 0.0).then_some(Anisotropy { strength, rotation, texture: along }),
             ior,
             dispersion,
             specular: self.share_or(table, "specular", 1.0),

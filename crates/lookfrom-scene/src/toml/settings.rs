@@ -6,8 +6,9 @@ use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::VertexNormals;
 use crate::settings::{
-    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
+    LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm,
+    Tonemap,
 };
 use crate::spectrum::CameraSensor;
 

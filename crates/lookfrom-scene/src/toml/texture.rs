@@ -199,15 +199,12 @@ impl Reader<'_, '_> {
             "direction_mix" => TextureKind::DirectionMix {
                 low: self.color_or(table, "low", 0.0),
                 high: self.color_or(table, "high", 1.0),
-                direction: table
-                    .need("direction", "[0, 1, 0]", DVec3::Y, unit)
-                    .as_vec3(),
+                direction: table.need("direction", "[0, 1, 0]", DVec3::Y, unit).as_vec3(),
             },
             "vertex_alpha" => TextureKind::VertexAlpha,
-            "product" => TextureKind::Product {
-                a: self.color_or(table, "a", 1.0),
-                b: self.color_or(table, "b", 1.0),
-            },
+            "product" => {
+                TextureKind::Product { a: self.color_or(table, "a", 1.0), b: self.color_or(table, "b", 1.0) }
+            }
             "threshold" => TextureKind::Threshold {
                 value: table.need("value", "\"the name of a texture\"", Scalar::Value(1.0), |value| {
                     self.scalar_where(value, "a number", |_| true)
@@ -231,15 +228,13 @@ impl Reader<'_, '_> {
             Some(value) if value.is_table() => Some(value.noting(gamma(value), 1.0)),
             _ => None,
         };
-        let is_data =
-            gamma.is_none() && table.or("encoding", false, |value| value.choice(ENCODINGS));
+        let is_data = gamma.is_none() && table.or("encoding", false, |value| value.choice(ENCODINGS));
         let layer = table.maybe("layer", |value| value.text("the name of a layer of an OpenEXR picture"));
         Ok(TextureKind::Image {
-            image: table
-                .need("file", "\"picture.png\"", ImageId(0), |value| match gamma {
-                    Some(gamma) => self.image_by_gamma(value, layer, gamma),
-                    None => self.image_as(value, layer, is_data),
-                }),
+            image: table.need("file", "\"picture.png\"", ImageId(0), |value| match gamma {
+                Some(gamma) => self.image_by_gamma(value, layer, gamma),
+                None => self.image_as(value, layer, is_data),
+            }),
             mapping: mapping(table, "uv")?,
             wrap: table.or("wrap", [Wrap::default(); 2], wraps),
             filter: filter(table),

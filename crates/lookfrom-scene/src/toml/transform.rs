@@ -134,7 +134,9 @@ pub(super) fn motion(value: Value<'_>) -> Result<Arc<Motion>> {
     let expected = "a list of 2, 3, 5, 9, … matrices, at equally spaced times while the shutter is open, of 16 numbers each";
     let maps = value.list(expected)?.map(from_rows).collect::<Result<_>>()?;
     Motion::of_maps(maps).map(Arc::new).ok_or_else(|| {
-        value.wrong(expected).hint("one of them has to differ from the first; what stands still has no `motion`")
+        value
+            .wrong(expected)
+            .hint("one of them has to differ from the first; what stands still has no `motion`")
     })
 }
 

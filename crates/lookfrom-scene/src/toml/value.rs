@@ -254,5 +254,9 @@ impl<'a> Value<'a> {
 pub(super) fn unit(value: Value<'_>) -> Result<DVec3> {
     let direction = value.direction()?;
     let is_single = direction == direction.as_vec3().as_dvec3();
-    Ok(if is_single && (direction.length_squared() - 1.0).abs() < 1e-6 { direction } else { direction.normalize() })
+    Ok(if is_single && (direction.length_squared() - 1.0).abs() < 1e-6 {
+        direction
+    } else {
+        direction.normalize()
+    })
 }

@@ -2,7 +2,8 @@
 
 use super::table::Kinds;
 use super::{
-    camera, color, keyframes, light, mapping, material, medium, physical, principled, settings, shape, spectrum, texture, transform,
+    camera, color, keyframes, light, mapping, material, medium, physical, principled, settings, shape,
+    spectrum, texture, transform,
 };
 
 /// The top-level keys of a file, except the kinds of shapes.
@@ -36,7 +37,10 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale", "ends"]].concat()),
         ("a picture".to_owned(), texture::PICTURE.to_vec()),
         ("[media.NAME]".to_owned(), [medium::KEYS, transform::KEYS].concat()),
-        ("numbers by the place".to_owned(), [medium::VOLUME, medium::FILE, medium::ARRAY, medium::KELVIN].concat()),
+        (
+            "numbers by the place".to_owned(),
+            [medium::VOLUME, medium::FILE, medium::ARRAY, medium::KELVIN].concat(),
+        ),
         ("densities of colours".to_owned(), medium::COLORS.to_vec()),
         ("a cloud of pbrt".to_owned(), medium::CLOUD.to_vec()),
         ("power".to_owned(), light::POWER.to_vec()),

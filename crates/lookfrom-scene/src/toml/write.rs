@@ -94,8 +94,11 @@ pub fn write(scene: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Writt
     scene.validate()?;
     let reached = Reached::of(scene);
     // Textures within others are named by the place where they are written, which is another one now.
-    let textures: Vec<String> =
-        scene.textures.iter().map(|texture| texture.name.replace(&format!(" at {}", texture.at), "")).collect();
+    let textures: Vec<String> = scene
+        .textures
+        .iter()
+        .map(|texture| texture.name.replace(&format!(" at {}", texture.at), ""))
+        .collect();
     let mut writer = Writer {
         scene,
         folder,

@@ -12,7 +12,9 @@ use lookfrom_scene::material::{Color, Material, MaterialKind, Roughness, Scalar}
 use lookfrom_scene::scene::{Instance, MaterialId, MeshId, Object, ObjectId};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
 use lookfrom_scene::toml::write::{Sources, Written, write};
-use lookfrom_scene::{Budget, Disk, ErrorKind, Files, Inputs, LoadContext, Location, Memory, Result, Scene, load};
+use lookfrom_scene::{
+    Budget, Disk, ErrorKind, Files, Inputs, LoadContext, Location, Memory, Result, Scene, load,
+};
 use proptest::prelude::*;
 
 /// The document of a scene without files.
@@ -44,8 +46,10 @@ fn converted(path: &Path, files: &dyn Files) -> Result<Written> {
 /// The files in a folder of the repository with one of these endings.
 fn files_in(folder: &str, endings: &[&str]) -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
-    let entries = std::fs::read_dir(&root).expect("the folder is there").map(|entry| entry.expect("an entry").path());
-    let has_ending = |path: &PathBuf| path.extension().is_some_and(|of| endings.iter().any(|ending| of == *ending));
+    let entries =
+        std::fs::read_dir(&root).expect("the folder is there").map(|entry| entry.expect("an entry").path());
+    let has_ending =
+        |path: &PathBuf| path.extension().is_some_and(|of| endings.iter().any(|ending| of == *ending));
     let mut paths: Vec<PathBuf> = entries.filter(has_ending).collect();
     paths.sort();
     paths
@@ -62,7 +66,11 @@ fn every_scene_of_the_repository_is_read_back() {
         let folder = written.check("s", &Budget::default());
         folder.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         // A camera of its own, or none: then one is added when it is rendered.
-        assert!(written.text.contains("[image]\n") && written.text.contains("[render]\n"), "{}", path.display());
+        assert!(
+            written.text.contains("[image]\n") && written.text.contains("[render]\n"),
+            "{}",
+            path.display()
+        );
     }
 }
 
@@ -110,7 +118,11 @@ fn a_small_scene_is_what_a_person_would_write() {
     scene.lights.push(Light {
         name: Some("lamp".to_owned()),
         at: Location::default(),
-        kind: LightKind::Point { position: DVec3::Y, intensity: Color::gray(20.0), falloff: Falloff::Quadratic },
+        kind: LightKind::Point {
+            position: DVec3::Y,
+            intensity: Color::gray(20.0),
+            falloff: Falloff::Quadratic,
+        },
         power: Power::AS_WRITTEN,
     });
     let text = written(&scene).expect("a document").text;
@@ -180,13 +192,27 @@ fn shapes_stay_in_their_order() {
     scene.shapes.rotate_left(1);
     let document = written(&scene).expect("a document");
     assert!(matches!(read_back(&document).shapes[0].geometry, Geometry::Sphere(_)));
-    assert!(document.text.contains("[[sphere]]") && !document.text.contains("[[shape]]"), "{}", document.text);
+    assert!(
+        document.text.contains("[[sphere]]") && !document.text.contains("[[shape]]"),
+        "{}",
+        document.text
+    );
 }
 
 #[test]
 fn hostile_names_are_names_and_nothing_else() {
-    let hostile =
-        ["a\"b", "a\nb", "../../etc/passwd", "a]\n[image]\nwidth = 1\n#", "= 1 + 1", "keyframes", "\0", "", "#fff", "red"];
+    let hostile = [
+        "a\"b",
+        "a\nb",
+        "../../etc/passwd",
+        "a]\n[image]\nwidth = 1\n#",
+        "= 1 + 1",
+        "keyframes",
+        "\0",
+        "",
+        "#fff",
+        "red",
+    ];
     let many = Mesh { positions: vec![Vec3::ONE; 13], ..triangle("") };
     let mut scene = of_shape(Shape::new(Location::default(), Geometry::Mesh(MeshId(0)), MaterialId(0)));
     (scene.shapes, scene.materials) = (Vec::new(), Vec::new());
@@ -201,7 +227,8 @@ fn hostile_names_are_names_and_nothing_else() {
     }
     let document = written(&scene).expect("a document");
     for (name, _) in &document.files {
-        let plain = name.strip_prefix("s/").and_then(|name| name.strip_suffix(".ply")).expect("a file of the folder");
+        let plain =
+            name.strip_prefix("s/").and_then(|name| name.strip_suffix(".ply")).expect("a file of the folder");
         let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
         assert!(!plain.is_empty() && plain.bytes().all(is_plain), "{name:?}");
     }

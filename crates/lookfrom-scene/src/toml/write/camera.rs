@@ -16,7 +16,8 @@ use crate::toml::word_of;
 
 impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) -> Result<Fields> {
-        let Camera { at: _, view, target, projection, lens, window, distance, medium, shutter, motion } = camera;
+        let Camera { at: _, view, target, projection, lens, window, distance, medium, shutter, motion } =
+            camera;
         let mut fields = Fields::default();
         match *view {
             View::Look { lookfrom, lookat, up } => {
@@ -91,7 +92,10 @@ impl Writer<'_> {
         }
         match shape {
             ApertureShape::Circle => {}
-            ApertureShape::Gaussian | ApertureShape::Square | ApertureShape::Pentagon | ApertureShape::Star => {
+            ApertureShape::Gaussian
+            | ApertureShape::Square
+            | ApertureShape::Pentagon
+            | ApertureShape::Star => {
                 fields.put("aperture_shape", shape.name());
             }
             ApertureShape::Image(image) => {

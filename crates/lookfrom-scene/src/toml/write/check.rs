@@ -20,7 +20,8 @@ impl Written {
         let scene = load::scene(Path::new(&name), &mut context)?;
         let paths = self.files.iter().map(|(name, _)| PathBuf::from(name)).collect();
         let again = write(&scene, folder, &Sources { files: &files, paths, budget: budget.clone() })?;
-        let differs = |message: String| Err(Error::new(ErrorKind::Unsupported, &Location::default(), message));
+        let differs =
+            |message: String| Err(Error::new(ErrorKind::Unsupported, &Location::default(), message));
         if self.text != again.text {
             let pairs = self.text.lines().zip(again.text.lines().chain(std::iter::repeat("")));
             let line = pairs.enumerate().find(|(_, (before, after))| before != after);
@@ -58,7 +59,9 @@ impl OfDocument<'_> {
 impl Files for OfDocument<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
         let found = self.find(path).filter(|bytes| bytes.len() as u64 <= limit);
-        found.map(<[u8]>::to_vec).ok_or_else(|| Error::new(ErrorKind::Io, &Location::file(path), "no such file"))
+        found
+            .map(<[u8]>::to_vec)
+            .ok_or_else(|| Error::new(ErrorKind::Io, &Location::file(path), "no such file"))
     }
 
     fn length(&self, path: &Path) -> Option<u64> {

@@ -28,9 +28,8 @@ pub(super) enum Of {
 }
 
 /// The spectra that have names.
-static NAMED: LazyLock<Vec<(&str, Curve)>> = LazyLock::new(|| {
-    spectrum::names().filter_map(|name| Some((name, spectrum::named(name)?))).collect()
-});
+static NAMED: LazyLock<Vec<(&str, Curve)>> =
+    LazyLock::new(|| spectrum::names().filter_map(|name| Some((name, spectrum::named(name)?))).collect());
 
 impl Writer<'_> {
     pub(super) fn color(&mut self, color: Color, of: Of) -> Result<Item> {
@@ -42,7 +41,13 @@ impl Writer<'_> {
     }
 
     /// A colour that is not the grey by default.
-    pub(super) fn put_color(&mut self, fields: &mut Fields, key: &str, color: Color, gray: f32) -> Result<()> {
+    pub(super) fn put_color(
+        &mut self,
+        fields: &mut Fields,
+        key: &str,
+        color: Color,
+        gray: f32,
+    ) -> Result<()> {
         if color != Color::gray(gray) {
             let item = self.color(color, Of::Color)?;
             fields.put(key, item);
@@ -86,9 +91,10 @@ impl Writer<'_> {
             Curve::Tabulated { .. } if illuminant(curve).is_some() => {
                 Fields::one("illuminant", illuminant(curve).unwrap_or_default())
             }
-            Curve::Tabulated { wavelengths, values } if values.len() <= MOST_ENTRIES => {
-                Fields::one("curve", Item::list(wavelengths.iter().zip(values).map(|(nm, value)| [*nm, *value])))
-            }
+            Curve::Tabulated { wavelengths, values } if values.len() <= MOST_ENTRIES => Fields::one(
+                "curve",
+                Item::list(wavelengths.iter().zip(values).map(|(nm, value)| [*nm, *value])),
+            ),
             Curve::Tabulated { wavelengths, values } => {
                 Fields::one("spd", self.spectrum_file(id, wavelengths, values))
             }
@@ -190,7 +196,9 @@ fn illuminant(curve: &Curve) -> Option<&'static str> {
     if spectrum::d50().as_ref() == Some(curve) {
         return Some("D50");
     }
-    known(curve, |name| name.strip_prefix("stdillum-").or(name.strip_prefix("illum-")).filter(|name| *name != "D50"))
+    known(curve, |name| {
+        name.strip_prefix("stdillum-").or(name.strip_prefix("illum-")).filter(|name| *name != "D50")
+    })
 }
 
 /// What a name stands for, of the spectra that are the same.

@@ -60,7 +60,10 @@ impl Writer<'_> {
             fields.put("clearcoat_normal_map", self.normals(*map));
         }
         self.put_color(fields, "sheen_color", *sheen_color, 0.0)?;
-        self.put_scalars(fields, &[("sheen_roughness", *sheen_roughness, 0.5), ("iridescence", *iridescence, 0.0)]);
+        self.put_scalars(
+            fields,
+            &[("sheen_roughness", *sheen_roughness, 0.5), ("iridescence", *iridescence, 0.0)],
+        );
         fields.put_unless("iridescence_ior", *iridescence_ior, usual.iridescence_ior);
         self.put_scalars(
             fields,
@@ -143,7 +146,10 @@ impl Writer<'_> {
             ],
         );
         fields.put_unless("coat_ior", *coat_ior, usual.coat_ior);
-        self.put_scalars(fields, &[("coat_darkening", *coat_darkening, 1.0), ("fuzz_weight", *fuzz_weight, 0.0)]);
+        self.put_scalars(
+            fields,
+            &[("coat_darkening", *coat_darkening, 1.0), ("fuzz_weight", *fuzz_weight, 0.0)],
+        );
         self.put_color(fields, "fuzz_color", *fuzz_color, 1.0)?;
         self.put_scalars(
             fields,

@@ -1,10 +1,10 @@
 //! Materials.
 
 use super::Writer;
+use super::cannot;
 use super::color::{Of, plain_color};
 use super::picture::For;
 use super::text::{Fields, Item};
-use super::cannot;
 use crate::error::Result;
 use crate::material::{
     BumpMapping, Coat, Energy, Hair, Ior, Material, MaterialKind, Metal, Pigment, Scalar, Subsurface,
@@ -89,17 +89,8 @@ impl Writer<'_> {
     }
 
     fn whitted(&mut self, fields: &mut Fields, whitted: &Whitted) -> Result<()> {
-        let Whitted {
-            ambient,
-            diffuse,
-            specular,
-            shininess,
-            mirror,
-            transmission,
-            ior,
-            fresnel,
-            absorption,
-        } = whitted;
+        let Whitted { ambient, diffuse, specular, shininess, mirror, transmission, ior, fresnel, absorption } =
+            whitted;
         let usual = Whitted::default();
         if let Some(color) = ambient {
             let item = self.color(*color, Of::Color)?;

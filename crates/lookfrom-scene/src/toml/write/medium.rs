@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::Writer;
+use super::cannot;
 use super::color::Of;
 use super::placing::put_transform;
 use super::text::Fields;
-use super::cannot;
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Scalar};
@@ -47,7 +47,9 @@ impl Writer<'_> {
         let is_hot = variation.as_ref().is_some_and(|variation| variation.temperature.is_some());
         if *emission != Color::BLACK {
             if is_hot {
-                return Err(cannot(format!("the medium {name:?}: it has both a temperature and an emission")));
+                return Err(cannot(format!(
+                    "the medium {name:?}: it has both a temperature and an emission"
+                )));
             }
             let item = self.color(*emission, Of::Color)?;
             fields.put("emission", item);
@@ -68,7 +70,9 @@ impl Writer<'_> {
             }
             Density::Colors { absorption, scattering, emission } => {
                 let mut table = Fields::default();
-                for (key, of) in [("absorption", absorption), ("scattering", scattering), ("emission", emission)] {
+                for (key, of) in
+                    [("absorption", absorption), ("scattering", scattering), ("emission", emission)]
+                {
                     if let Some(placed) = of {
                         let grid = self.colors(&format!("{name}-{key}"), placed)?;
                         table.put(key, grid);
@@ -87,9 +91,12 @@ impl Writer<'_> {
                 fields.put_unless("max_density", *most, 1.0);
             }
             Density::Texture { of: Scalar::Value(value), most } => {
-                let is_plain = (*value, *most) == (1.0, 1.0) && (temperature.is_some() || emission_scale.is_some());
+                let is_plain =
+                    (*value, *most) == (1.0, 1.0) && (temperature.is_some() || emission_scale.is_some());
                 if !is_plain {
-                    return Err(cannot(format!("the medium {name:?}: its density is a texture of one value")));
+                    return Err(cannot(format!(
+                        "the medium {name:?}: its density is a texture of one value"
+                    )));
                 }
             }
         }
@@ -103,8 +110,9 @@ impl Writer<'_> {
             table.put_unless("factor", *scale, 1.0);
             fields.put("temperature", table);
         }
-        let is_boundless = matches!(density, Density::Texture { .. } | Density::Cloud { .. } | Density::Colors { .. })
-            && temperature.is_none();
+        let is_boundless =
+            matches!(density, Density::Texture { .. } | Density::Cloud { .. } | Density::Colors { .. })
+                && temperature.is_none();
         match bounds {
             Some(corners) => fields.put("bounds", *corners),
             None if is_boundless => {}
@@ -141,7 +149,9 @@ impl Writer<'_> {
 fn cells<T: Copy + Default + PartialEq>(grid: &Arc<Grid<T>>, name: &str) -> Result<Vec<T>> {
     let count = grid.size().into_iter().map(u64::from).product::<u64>();
     if count > MOST_CELLS {
-        return Err(cannot(format!("the grid of {name:?}: it has {count} cells; at most {MOST_CELLS} are written")));
+        return Err(cannot(format!(
+            "the grid of {name:?}: it has {count} cells; at most {MOST_CELLS} are written"
+        )));
     }
     let [width, height, _] = grid.size().map(|cells| cells as usize);
     let mut values = vec![T::default(); count as usize];

@@ -92,16 +92,10 @@ mod tests {
         let used = [true, true, true, true, true, true, false, true];
         let names = Names::new("texture", given.into_iter(), &used);
         let found: Vec<&str> = (0..given.len()).map(|index| names.of(index)).collect();
-        assert_eq!(found, [
-            "red",
-            "texture",
-            "red 3",
-            "texture =x",
-            "texture keyframes",
-            "red 2",
-            "",
-            "texture #f00"
-        ]);
+        assert_eq!(
+            found,
+            ["red", "texture", "red 3", "texture =x", "texture keyframes", "red 2", "", "texture #f00"]
+        );
         assert_eq!(names.in_order(), [0, 5, 2, 1, 7, 3, 4]);
     }
 
@@ -111,7 +105,10 @@ mod tests {
         let mut of = |path: &str| names.new_name(path, "ply");
         assert_eq!(of("a/../../etc/pass wd.obj"), "pass-wd.ply");
         assert_eq!(of("..\\PASS wd.x"), "PASS-wd-2.ply");
-        assert_eq!([of(".."), of("a/"), of("\0\n\""), of("ä")], ["part.ply", "part-2.ply", "part-3.ply", "part-4.ply"]);
+        assert_eq!(
+            [of(".."), of("a/"), of("\0\n\""), of("ä")],
+            ["part.ply", "part-2.ply", "part-3.ply", "part-4.ply"]
+        );
         assert!(of(&"x".repeat(1000)).len() < 100);
     }
 }

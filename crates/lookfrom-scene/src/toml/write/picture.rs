@@ -76,7 +76,9 @@ impl Writer<'_> {
                 true => encode_png_of(size, Pixels::Rgba8(rgba), None)?,
                 false => encode_png_of(size, Pixels::Rgb8(&image::without_alpha(rgba)), None)?,
             };
-            if let Some(named) = encodings.iter().find(|named| self.is_read_as(&bytes, "new.png", **named, image)) {
+            if let Some(named) =
+                encodings.iter().find(|named| self.is_read_as(&bytes, "new.png", **named, image))
+            {
                 let file = self.file(&image.name, "png", bytes);
                 return Ok(picture(file, *named, None));
             }
@@ -87,14 +89,20 @@ impl Writer<'_> {
             (0..image.len()).map(value).collect()
         };
         let channels = [0, 1, 2].map(channel);
-        let named: Vec<(String, &[f32])> =
-            ["R", "G", "B"].into_iter().zip(&channels).map(|(name, values)| (name.to_owned(), &values[..])).collect();
+        let named: Vec<(String, &[f32])> = ["R", "G", "B"]
+            .into_iter()
+            .zip(&channels)
+            .map(|(name, values)| (name.to_owned(), &values[..]))
+            .collect();
         let bytes = encode_exr(image.width, image.height, &named, &[])?;
         let texels: Vec<[f32; 3]> =
             (0..image.len()).map(|index| [0, 1, 2].map(|channel: usize| channels[channel][index])).collect();
         let written = Image::from_linear(image.name.clone(), image.width, image.height, texels);
         if !self.is_read_as(&bytes, "new.exr", Named::Srgb, &written) {
-            return Err(super::cannot(format!("the picture {:?}: it has values that are not finite", image.name)));
+            return Err(super::cannot(format!(
+                "the picture {:?}: it has values that are not finite",
+                image.name
+            )));
         }
         let file = self.file(&image.name, "exr", bytes);
         Ok(picture(file, Named::Srgb, opacity.then_some(Channel::Red)))

@@ -22,7 +22,8 @@ pub(super) fn put_transform(fields: &mut Fields, matrix: &DMat4) {
     let scale = DVec3::new(matrix.x_axis.x, matrix.y_axis.y, matrix.z_axis.z);
     // As the reader computes them, one step after the other, and then after the shape's own space.
     let [of_scale, of_translate] = [DMat4::from_scale(scale), DMat4::from_translation(translate)];
-    let placed = |steps: &[DMat4]| steps.iter().fold(DMat4::IDENTITY, |before, step| *step * before) * DMat4::IDENTITY;
+    let placed =
+        |steps: &[DMat4]| steps.iter().fold(DMat4::IDENTITY, |before, step| *step * before) * DMat4::IDENTITY;
     if same_bits(matrix, &DMat4::IDENTITY) {
         return;
     }

@@ -6,8 +6,8 @@ use super::text::{Fields, Item};
 use crate::light::{Light, LightKind};
 use crate::scene::{Scene, VertexNormals};
 use crate::settings::{
-    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
+    LightPathLayer, LightSampler, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
 };
 use crate::toml::settings::{BACKGROUNDS, VERTEX_NORMALS};
 use crate::toml::word_of;

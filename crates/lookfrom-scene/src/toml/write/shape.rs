@@ -1,12 +1,12 @@
 //! Shapes: their geometry, their look and their place.
 
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use super::Writer;
+use super::cannot;
 use super::names::allowed;
 use super::placing::{put_transform, same_bits};
 use super::text::{Fields, Item};
-use super::cannot;
 use crate::composite::{sphereflake, sphereflake_count};
 use crate::error::Result;
 use crate::material::Scalar;
@@ -129,8 +129,7 @@ impl Writer<'_> {
                 let to = from + matrix.z_axis.truncate() * *high;
                 let length = (to - from).length();
                 let own = along(from, (to - from) / length);
-                let is_placed =
-                    *low == 0.0 && length == *high && same_bits(matrix, &(DMat4::IDENTITY * own));
+                let is_placed = *low == 0.0 && length == *high && same_bits(matrix, &(DMat4::IDENTITY * own));
                 match is_placed {
                     true => {
                         fields.put("from", from);
@@ -154,7 +153,8 @@ impl Writer<'_> {
     }
 
     fn spheres(&mut self, fields: &mut Fields, spheres: &[Sphere]) -> &'static str {
-        let depth = (0..=DEEPEST_FLAKE as u32).find(|depth| sphereflake_count(*depth) == spheres.len() as u64);
+        let depth =
+            (0..=DEEPEST_FLAKE as u32).find(|depth| sphereflake_count(*depth) == spheres.len() as u64);
         if let (Some(depth), Some(&Sphere { center, radius })) = (depth, spheres.first())
             && sphereflake(center, radius, depth) == spheres
         {
@@ -207,7 +207,7 @@ impl Writer<'_> {
             0 => {}
             few if few <= MOST_INLINE => fields.put("uvs", Item::list(uvs.iter().copied())),
             many => {
-                let bytes = npy::write_f32(&[many, 2], uvs.iter().flat_map(|uv| uv.to_array()));
+                let bytes = npy::write_f32(&[many, 2], uvs.iter().flat_map(Vec2::to_array));
                 fields.put("uvs", self.array("uvs", bytes));
             }
         }
@@ -273,7 +273,7 @@ impl Writer<'_> {
 
     /// The table of an array of vectors.
     fn vectors(&mut self, name: &str, vectors: &[Vec3]) -> Fields {
-        let bytes = npy::write_f32(&[vectors.len(), 3], vectors.iter().flat_map(|vector| vector.to_array()));
+        let bytes = npy::write_f32(&[vectors.len(), 3], vectors.iter().flat_map(Vec3::to_array));
         self.array(name, bytes)
     }
 

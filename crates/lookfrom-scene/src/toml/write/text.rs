@@ -29,7 +29,7 @@ impl Fields {
     }
 
     /// A value that is not the default.
-    pub(super) fn put_unless<T: PartialEq + Into<Item>>(&mut self, key: &str, value: T, default: T) {
+    pub(super) fn put_unless<T: Copy + PartialEq + Into<Item>>(&mut self, key: &str, value: T, default: T) {
         if value != default {
             self.put(key, value);
         }
@@ -104,7 +104,8 @@ impl Item {
             }
             Self::Table(Fields(fields)) => {
                 // A table within a line has no lines of its own, but lists in it have.
-                let fields = fields.iter().map(|(name, item)| format!("{} = {}", key(name), item.long(indent)));
+                let fields =
+                    fields.iter().map(|(name, item)| format!("{} = {}", key(name), item.long(indent)));
                 format!("{{ {} }}", fields.collect::<Vec<_>>().join(", "))
             }
         }
@@ -270,18 +271,17 @@ mod tests {
             let Item::Word(text) = Item::from(number) else { panic!() };
             assert_eq!((text.parse::<f64>().unwrap() as f32).to_bits(), number.to_bits(), "{text}");
         }
-        for (number, text) in [(1.0, "1"), (-0.0, "-0.0"), (0.1, "0.1"), (1e30, "1e30"), (-2.5e-9, "-2.5e-9")] {
+        for (number, text) in [(1.0, "1"), (-0.0, "-0.0"), (0.1, "0.1"), (1e30, "1e30"), (-2.5e-9, "-2.5e-9")]
+        {
             assert_eq!(Item::from(number), Item::Word(text.to_owned()));
         }
     }
 
     #[test]
     fn names_are_quoted_where_they_have_to_be() {
-        assert_eq!([key("a-b_1"), key(""), key("a b"), key("a\"\\\n\u{1}ä")], [
-            "a-b_1",
-            "\"\"",
-            "\"a b\"",
-            "\"a\\\"\\\\\\n\\u0001ä\""
-        ]);
+        assert_eq!(
+            [key("a-b_1"), key(""), key("a b"), key("a\"\\\n\u{1}ä")],
+            ["a-b_1", "\"\"", "\"a b\"", "\"a\\\"\\\\\\n\\u0001ä\""]
+        );
     }
 }

@@ -60,8 +60,10 @@ impl Writer<'_> {
             }
             TextureKind::Bilinear { corners, mapping } => {
                 fields.put("type", "bilinear");
-                let corners =
-                    corners.iter().map(|corner| self.color(*corner, Of::Color)).collect::<Result<Vec<_>>>()?;
+                let corners = corners
+                    .iter()
+                    .map(|corner| self.color(*corner, Of::Color))
+                    .collect::<Result<Vec<_>>>()?;
                 fields.put("corners", Item::List(corners));
                 put_mapping(&mut fields, mapping, "uv");
             }
@@ -95,7 +97,9 @@ impl Writer<'_> {
                 }
             }
             TextureKind::VertexAlpha => fields.put("type", "vertex_alpha"),
-            TextureKind::Product { a, b } => self.two(&mut fields, "product", [("a", *a, 1.0), ("b", *b, 1.0)])?,
+            TextureKind::Product { a, b } => {
+                self.two(&mut fields, "product", [("a", *a, 1.0), ("b", *b, 1.0)])?;
+            }
             TextureKind::Threshold { value, edge } => {
                 fields.put("type", "threshold");
                 fields.put("value", self.scalar(*value));

@@ -10,7 +10,8 @@ use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSurface, LensSyste
 use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
 use lookfrom_scene::material::{
     Anisotropy, BumpMapping, Coat, CoatEstimate, Color, Energy, Hair, Ior, Material, MaterialKind, Metal,
-    NormalTexture, OpenPbr, Pigment, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
+    NormalTexture, OpenPbr, Pigment, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent,
+    Whitted,
 };
 use lookfrom_scene::medium::{Density, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -21,9 +22,7 @@ use lookfrom_scene::settings::{
     Allocation, Background, ColorMode, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
     LightSampler, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
 };
-use lookfrom_scene::shape::{
-    Emission, Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand,
-};
+use lookfrom_scene::shape::{Emission, Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
 use lookfrom_scene::texture::{Channel, Mapping, MipFilter, TexelFilter, Texture, TextureKind, Wrap};
 use lookfrom_scene::{Location, Scene};
@@ -59,7 +58,10 @@ fn base() -> Scene {
     let opaque: Vec<[u8; 4]> = bytes.iter().map(|[r, g, b, _]| [*r, *g, *b, 255]).collect();
     let floats: Vec<[f32; 3]> = (0..16).map(|k| [k as f32 * 0.37, 1e-8, 5000.0]).collect();
     let gamma = |x: f32| libm::powf(x, 1.8);
-    let curve = |first: f32| Curve::Tabulated { wavelengths: vec![first, 500.0, 650.5], values: vec![1.5, 1.25, 1.75] };
+    let curve = |first: f32| Curve::Tabulated {
+        wavelengths: vec![first, 500.0, 650.5],
+        values: vec![1.5, 1.25, 1.75],
+    };
     let long = Curve::Tabulated {
         wavelengths: (0..40).map(|k| 355.0 + 12.5 * k as f32).collect(),
         values: (0..40).map(|k| 1.0 + 1.0 / (k as f32 + 3.0)).collect(),
@@ -70,7 +72,8 @@ fn base() -> Scene {
         media.push(Medium { scattering: value(0.5), g: 0.25, ..Medium::clear(name, here()) });
     }
     let kind = MaterialKind::Diffuse { reflectance: value(0.5) };
-    let shape = Shape::new(here(), Geometry::Sphere(Sphere { center: DVec3::ZERO, radius: 1.0 }), MaterialId(0));
+    let shape =
+        Shape::new(here(), Geometry::Sphere(Sphere { center: DVec3::ZERO, radius: 1.0 }), MaterialId(0));
     Scene {
         camera: Some(Camera::default()),
         materials: vec![Material::new("grey", here(), kind)],
@@ -156,7 +159,13 @@ fn materials() -> Vec<(String, Scene)> {
     let gold = Metal::Indices { eta: Color::Curve(CurveId(5)), k: Color::Curve(CurveId(6)) };
     let odd = Metal::Indices { eta: Color::Curve(TABLE), k: Color::Curve(CurveId(1)) };
     let below = |medium| {
-        MaterialKind::Subsurface(Box::new(Subsurface { medium, scale: 2.0, g: 0.5, eta: 1.4, roughness: alpha }))
+        MaterialKind::Subsurface(Box::new(Subsurface {
+            medium,
+            scale: 2.0,
+            g: 0.5,
+            eta: 1.4,
+            roughness: alpha,
+        }))
     };
     let hair = |pigment| {
         MaterialKind::Hair(Box::new(Hair {
@@ -359,7 +368,14 @@ fn textures() -> Vec<(String, Scene)> {
         TextureKind::Fbm { octaves: 3, roughness: 0.25, footprint: 0.5, mapping },
         TextureKind::Wrinkled { octaves: 3, roughness: 0.25, footprint: 0.5, mapping },
         TextureKind::Windy { footprint: 0.5, mapping },
-        TextureKind::PbrtMarble { octaves: 3, roughness: 0.25, scale: 2.0, variation: 0.5, footprint: 0.5, mapping },
+        TextureKind::PbrtMarble {
+            octaves: 3,
+            roughness: 0.25,
+            scale: 2.0,
+            variation: 0.5,
+            footprint: 0.5,
+            mapping,
+        },
         TextureKind::VertexColor { tint: [0.5, 0.25, 1.0] },
         TextureKind::VertexAlpha,
         TextureKind::Product { a: low, b: high },
@@ -453,7 +469,12 @@ fn lights() -> Vec<(String, Scene)> {
         LightKind::Environment { sky: Sky::Octahedral { .. }, .. } => 9,
     };
     each("light", variants, index, |scene, kind| {
-        scene.lights.push(Light { name: Some("a lamp".to_owned()), at: here(), kind, power: Power::AS_WRITTEN });
+        scene.lights.push(Light {
+            name: Some("a lamp".to_owned()),
+            at: here(),
+            kind,
+            power: Power::AS_WRITTEN,
+        });
     })
 }
 
@@ -488,12 +509,16 @@ fn strands(profile: impl Fn(usize) -> Profile, count: usize, is_chain: bool) -> 
 
 fn geometries() -> Vec<(String, Scene)> {
     let spheres = |count: usize, radius: f64| {
-        let sphere = |k: usize| Sphere { center: DVec3::new(k as f64 / 3.0, 0.1, -0.0), radius: radius * (1 + k % 2) as f64 };
+        let sphere = |k: usize| Sphere {
+            center: DVec3::new(k as f64 / 3.0, 0.1, -0.0),
+            radius: radius * (1 + k % 2) as f64,
+        };
         Geometry::Spheres((0..count).map(sphere).collect())
     };
     let patches = |count: u32| {
         let vertices = 4 * count;
-        let positions = (0..vertices).map(|k| Vec3::new((k % 2) as f32, (k / 2) as f32, (k as f32).sqrt())).collect();
+        let positions =
+            (0..vertices).map(|k| Vec3::new((k % 2) as f32, (k / 2) as f32, (k as f32).sqrt())).collect();
         Geometry::Bilinear(Arc::new(Patches {
             positions,
             patches: (0..count).map(|k| [0, 1, 2, 3].map(|corner| 4 * k + corner)).collect(),
@@ -622,7 +647,11 @@ fn media() -> Vec<(String, Scene)> {
     let even = Density::Texture { of: Scalar::Value(1.0), most: 1.0 };
     let mut variants = vec![
         variation(Density::Grid(numbers(0))),
-        variation(Density::Colors { absorption: Some(colors(1)), scattering: Some(colors(2)), emission: Some(colors(3)) }),
+        variation(Density::Colors {
+            absorption: Some(colors(1)),
+            scattering: Some(colors(2)),
+            emission: Some(colors(3)),
+        }),
         variation(Density::Colors { absorption: None, scattering: Some(colors(2)), emission: None }),
         variation(Density::Cloud { density: 2.0, wispiness: 0.5, frequency: 4.0 }),
         variation(Density::Texture { of: TEXTURE, most: 2.0 }),
@@ -651,7 +680,8 @@ fn media() -> Vec<(String, Scene)> {
         scene.shapes[0].sides = Some(sides);
     });
     let mut homogeneous = base();
-    homogeneous.media[0] = Medium { droplets: Some(12.5), g: 0.0, scale: 2.0, ..homogeneous.media[0].clone() };
+    homogeneous.media[0] =
+        Medium { droplets: Some(12.5), g: 0.0, scale: 2.0, ..homogeneous.media[0].clone() };
     homogeneous.shapes[0].sides = Some(Sides { inside: Some(MediumId(1)), outside: Some(MediumId(0)) });
     scenes.push(("medium of droplets".to_owned(), homogeneous));
     let mut vacuum = base();
@@ -661,7 +691,8 @@ fn media() -> Vec<(String, Scene)> {
 }
 
 fn cameras() -> Vec<(String, Scene)> {
-    let surface = |curvature_radius, index| LensSurface { curvature_radius, thickness: 1.25, index, diameter: 10.1 };
+    let surface =
+        |curvature_radius, index| LensSurface { curvature_radius, thickness: 1.25, index, diameter: 10.1 };
     let system = |shape, convention| {
         Projection::LensSystem(Arc::new(LensSystem {
             name: "lens".to_owned(),
@@ -715,7 +746,8 @@ fn cameras() -> Vec<(String, Scene)> {
     let mut scenes = Vec::new();
     for (view, target) in views {
         scenes.extend(each("camera", variants.clone(), index, |scene, projection| {
-            let is_flat = matches!(projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
+            let is_flat =
+                matches!(projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
             let lens = Lens { radius: 0.1, focus_distance: 1.0 / 3.0 };
             scene.camera = Some(Camera {
                 at: here(),
@@ -755,7 +787,8 @@ fn settings() -> Vec<(String, Scene)> {
         filter.radius[1] *= 0.5;
         scene.image.filter = filter;
     });
-    let mut integrators: Vec<Integrator> = Integrator::WORDS.iter().map(|(_, integrator)| *integrator).collect();
+    let mut integrators: Vec<Integrator> =
+        Integrator::WORDS.iter().map(|(_, integrator)| *integrator).collect();
     integrators.push(Integrator::AmbientOcclusion { cosine: false });
     let of_integrator = |integrator: &Integrator| match integrator {
         Integrator::Raycast => 0,
@@ -789,15 +822,19 @@ fn settings() -> Vec<(String, Scene)> {
         };
         scene.vertex_normals = VertexNormals::AsGiven;
     }));
-    let backgrounds = vec![Background::Environment, Background::Transparent, Background::Color([0.1, 0.2, 0.3])];
+    let backgrounds =
+        vec![Background::Environment, Background::Transparent, Background::Color([0.1, 0.2, 0.3])];
     let of_background = |background: &Background| match background {
         Background::Environment => 0,
         Background::Transparent => 1,
         Background::Color(_) => 2,
     };
     scenes.extend(each("background", backgrounds, of_background, |scene, background| {
-        let layer =
-            LightPathLayer { name: "a b".to_owned(), expression: "C<RD>L".to_owned(), at: Location::default() };
+        let layer = LightPathLayer {
+            name: "a b".to_owned(),
+            expression: "C<RD>L".to_owned(),
+            at: Location::default(),
+        };
         scene.image = ImageSettings {
             width: 33,
             height: 21,
@@ -846,7 +883,9 @@ pub(super) fn same(before: &Scene, after: &Scene) -> Result<(), String> {
     let (before, after) = (told(before), told(after));
     match before.iter().zip(&after).find(|(before, after)| before != after) {
         Some((before, after)) => Err(format!("{before}\nhas become\n{after}")),
-        None if before.len() != after.len() => Err(format!("{} parts, and not {}", after.len(), before.len())),
+        None if before.len() != after.len() => {
+            Err(format!("{} parts, and not {}", after.len(), before.len()))
+        }
         None => Ok(()),
     }
 }
@@ -858,7 +897,7 @@ fn told(scene: &Scene) -> Vec<String> {
     let paths = image.light_paths.iter().map(|layer| LightPathLayer { at: here(), ..layer.clone() });
     told.push(format!("{:?}", ImageSettings { light_paths: paths.collect(), ..image.clone() }));
     let shape = |shape: &Shape| format!("{:?}", Shape { at: here(), ..shape.clone() });
-    told.push(camera.as_ref().map_or(String::new(), |camera| camera_in_words(camera)));
+    told.push(camera.as_ref().map_or(String::new(), camera_in_words));
     told.extend(shapes.iter().map(shape));
     for instance in instances {
         told.push(format!("{:?}", Instance { at: here(), ..instance.clone() }));
@@ -930,6 +969,8 @@ fn variation_in_words(variation: &Variation) -> String {
         other => format!("{other:?}"),
     };
     let emission = emission_scale.as_ref().map_or(String::new(), values);
-    let hot = temperature.as_ref().map_or(String::new(), |hot| format!("{} {} {}", values(&hot.grid), hot.offset, hot.scale));
+    let hot = temperature
+        .as_ref()
+        .map_or(String::new(), |hot| format!("{} {} {}", values(&hot.grid), hot.offset, hot.scale));
     format!("{world_from_medium:?} {bounds:?} {density} {emission} {hot}")
 }
