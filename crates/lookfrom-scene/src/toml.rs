@@ -1,4 +1,4 @@
-//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
+//! Reader and [writer](mod@write) for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
 //!
 //! This file reads files and merges what they import. Beside it: `document`, `table` and `value` (the parsed text with
 //! locations, and recorded errors), `variables` and `scope` (variables, which are replaced by their values before anything is decoded; with
@@ -49,6 +49,7 @@ mod transform;
 mod value;
 mod variables;
 mod vocabulary;
+mod volume;
 pub mod write;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -3,7 +3,7 @@
 use super::table::Kinds;
 use super::{
     camera, color, keyframes, light, mapping, material, medium, physical, principled, settings, shape,
-    spectrum, texture, transform,
+    spectrum, texture, transform, volume,
 };
 
 /// The top-level keys of a file, except the kinds of shapes.
@@ -39,10 +39,10 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("[media.NAME]".to_owned(), [medium::KEYS, transform::KEYS].concat()),
         (
             "numbers by the place".to_owned(),
-            [medium::VOLUME, medium::FILE, medium::ARRAY, medium::KELVIN].concat(),
+            [volume::VOLUME, volume::FILE, volume::ARRAY, volume::KELVIN].concat(),
         ),
-        ("densities of colours".to_owned(), medium::COLORS.to_vec()),
-        ("a cloud of pbrt".to_owned(), medium::CLOUD.to_vec()),
+        ("densities of colours".to_owned(), volume::COLORS.to_vec()),
+        ("a cloud of pbrt".to_owned(), volume::CLOUD.to_vec()),
         ("power".to_owned(), light::POWER.to_vec()),
         ("roughness".to_owned(), physical::ROUGHNESS.to_vec()),
         ("a texture of normals".to_owned(), color::NORMALS.to_vec()),

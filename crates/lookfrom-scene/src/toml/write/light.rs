@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::Writer;
 use super::color::{plain_color, put_power};
-use super::names::allowed;
+use super::names::spoken;
 use super::picture::For;
 use super::placing::{put_matrix, same_bits};
 use super::text::Fields;
@@ -21,7 +21,7 @@ impl Writer<'_> {
         let Light { name, kind, power, .. } = light;
         fields.put("type", word(kind));
         if let Some(name) = name {
-            fields.put("name", allowed("light", name));
+            fields.put("name", spoken("light", name));
         }
         match kind {
             LightKind::Ambient { color } => fields.put("color", plain_color(*color)),

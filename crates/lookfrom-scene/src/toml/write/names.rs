@@ -1,6 +1,6 @@
 //! Names of what a document defines, each once, and of the files beside it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The longest name of a file in bytes, without its ending.
 const LONGEST: usize = 60;
@@ -21,9 +21,16 @@ impl Names {
                 names[index] = Some(allowed);
             }
         }
+        let mut last = BTreeMap::new();
         for (index, name) in given.iter().enumerate().filter(|(index, _)| used[*index]) {
             if names[index].is_none() {
-                names[index] = Some(unused(&allowed(kind, name), &mut taken));
+                let name = allowed(kind, name);
+                let last = last.entry(name.clone()).or_insert(1);
+                names[index] = Some(first(
+                    last,
+                    |number| numbered(&name, " ", number),
+                    |name| taken.insert(name.to_owned()),
+                ));
             }
         }
         Self(names)
@@ -42,28 +49,48 @@ impl Names {
     }
 }
 
-/// A name that a document can have where an expression, keyframes or a colour could stand, too.
-pub(super) fn allowed(kind: &str, name: &str) -> String {
+/// A name that a table of a document can have, where keyframes or, of textures, a colour could stand, too.
+fn allowed(kind: &str, name: &str) -> String {
+    match name {
+        "keyframes" => format!("{kind} {name}"),
+        _ if name.starts_with('#') && kind == "texture" => format!("{kind} {name}"),
+        _ => spoken(kind, name),
+    }
+}
+
+/// A name that a value of a document can be, where an expression could stand, too.
+pub(super) fn spoken(kind: &str, name: &str) -> String {
     match name {
         "" => kind.to_owned(),
-        "keyframes" => format!("{kind} {name}"),
-        _ if name.starts_with(['=', '#']) => format!("{kind} {name}"),
+        _ if name.starts_with('=') => format!("{kind} {name}"),
         _ => name.to_owned(),
     }
 }
 
-/// The name, with a number where it is taken.
-fn unused(name: &str, taken: &mut BTreeSet<String>) -> String {
-    let numbered = (2..).map(|number| format!("{name} {number}"));
-    let found = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken.contains(name));
-    let found = found.unwrap_or_default();
-    taken.insert(found.clone());
-    found
+/// The name with a number from 2 on.
+fn numbered(name: &str, between: &str, number: u32) -> String {
+    if number == 1 { name.to_owned() } else { format!("{name}{between}{number}") }
+}
+
+/// The first name of a series that can be taken, from the last number on.
+fn first(last: &mut u32, series: impl Fn(u32) -> String, mut take: impl FnMut(&str) -> bool) -> String {
+    loop {
+        let name = series(*last);
+        *last += 1;
+        if take(&name) {
+            return name;
+        }
+    }
 }
 
 /// Names of files in one folder, whatever the case of letters means there.
 #[derive(Default)]
-pub(super) struct FileNames(BTreeSet<String>);
+pub(super) struct FileNames {
+    /// In lower case.
+    taken: BTreeSet<String>,
+    /// By name without a number, the one after the last.
+    last: BTreeMap<String, u32>,
+}
 
 impl FileNames {
     /// A new name with this ending: the last part of a path, in letters that every system has, with a number where it is taken.
@@ -76,9 +103,10 @@ impl FileNames {
         let stem: String = stem.chars().map(plain).take(LONGEST).collect();
         let stem = stem.trim_matches('-');
         let stem = if stem.is_empty() { "part" } else { stem };
-        let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
-        let mut names = std::iter::once(format!("{stem}.{ending}")).chain(numbered);
-        names.find(|name| self.0.insert(name.to_lowercase())).unwrap_or_default()
+        let last = self.last.entry(format!("{stem}.{ending}").to_lowercase()).or_insert(1);
+        let taken = &mut self.taken;
+        let series = |number| format!("{}.{ending}", numbered(stem, "-", number));
+        first(last, series, |name| taken.insert(name.to_lowercase()))
     }
 }
 

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 
 use super::Writer;
 use super::cannot;
-use super::names::allowed;
+use super::names::spoken;
 use super::placing::{put_transform, same_bits};
 use super::text::{Fields, Item};
 use crate::composite::{sphereflake, sphereflake_count};
@@ -36,7 +36,7 @@ impl Writer<'_> {
         } = shape;
         let mut fields = Fields::default();
         if let Some(name) = name {
-            fields.put("name", allowed("shape", name));
+            fields.put("name", spoken("shape", name));
         }
         let (kind, is_placed) = self.geometry(&mut fields, geometry, world_from_object)?;
         fields.put("material", self.materials.of(material.index()));
