@@ -38,6 +38,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Files, Limits, LoadContext};
 use crate::scene::{CurveId, ImageId, Instance, MeshId, Scene};
 use crate::shape::{Geometry, Shape};
+use crate::texture::Texture;
 
 /// A document and the files beside it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,12 +94,7 @@ impl Sources<'_> {
 pub fn write(scene: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Written> {
     scene.validate()?;
     let reached = Reached::of(scene);
-    // Textures within others are named by the place where they are written, which is another one now.
-    let textures: Vec<String> = scene
-        .textures
-        .iter()
-        .map(|texture| texture.name.replace(&format!(" at {}", texture.at), ""))
-        .collect();
+    let textures: Vec<String> = scene.textures.iter().map(name_of).collect();
     let mut writer = Writer {
         scene,
         folder,
@@ -111,6 +107,7 @@ pub fn write(scene: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Writt
         file_names: FileNames::default(),
         files: Vec::new(),
         pictures: BTreeMap::new(),
+        copies: BTreeMap::new(),
         meshes: BTreeMap::new(),
         spectra: BTreeMap::new(),
         measured: BTreeMap::new(),
@@ -133,6 +130,8 @@ struct Writer<'a> {
     file_names: FileNames,
     files: Vec<(String, Vec<u8>)>,
     pictures: BTreeMap<(ImageId, For), Picture>,
+    /// Files of pictures, by the paths of those that they are copies of.
+    copies: BTreeMap<String, String>,
     meshes: BTreeMap<MeshId, String>,
     spectra: BTreeMap<CurveId, String>,
     /// By digest.
@@ -209,6 +208,19 @@ impl<'a> Writer<'a> {
         let name = format!("{}/{}", self.folder, self.file_names.new_name(name, ending));
         self.files.push((name.clone(), bytes));
         name
+    }
+}
+
+/// The name of a texture: its own, but for names that are places in files, which are others now.
+fn name_of(texture: &Texture) -> String {
+    let Texture { name, at, kind: _ } = texture;
+    match name.split('/').collect::<Vec<_>>()[..] {
+        // A JSON pointer to a texture of a material of glTF.
+        ["", "materials", material, .., last] if **name == *at.pointer => {
+            format!("material {material} {}", last.strip_suffix("Texture").unwrap_or(last))
+        }
+        // A texture within a table is named by its key and its place.
+        _ => name.replace(&format!(" at {at}"), ""),
     }
 }
 

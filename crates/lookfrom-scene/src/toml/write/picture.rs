@@ -64,9 +64,10 @@ impl Writer<'_> {
         if let Some((path, bytes)) = self.sources.file_of(&image.name)
             && let Some(named) = encodings.iter().find(|named| self.is_read_as(&bytes, &path, **named, image))
         {
-            let ending = path.rsplit_once('.').map_or("png", |(_, ending)| ending);
-            let is_plain = ending.len() <= 8 && ending.bytes().all(|byte| byte.is_ascii_alphanumeric());
-            let file = self.file(&path, if is_plain { ending } else { "png" }, bytes);
+            let file = match self.copies.get(&path) {
+                Some(file) => file.clone(),
+                None => self.copy(&path, bytes),
+            };
             return Ok(picture(file, *named, None));
         }
         let size = [image.width, image.height];
@@ -79,7 +80,7 @@ impl Writer<'_> {
             if let Some(named) =
                 encodings.iter().find(|named| self.is_read_as(&bytes, "new.png", **named, image))
             {
-                let file = self.file(&image.name, "png", bytes);
+                let file = self.file(&name_of(image), "png", bytes);
                 return Ok(picture(file, *named, None));
             }
         }
@@ -104,8 +105,17 @@ impl Writer<'_> {
                 image.name
             )));
         }
-        let file = self.file(&image.name, "exr", bytes);
+        let file = self.file(&name_of(image), "exr", bytes);
         Ok(picture(file, Named::Srgb, opacity.then_some(Channel::Red)))
+    }
+
+    /// Adds a copy of a file of a picture.
+    fn copy(&mut self, path: &str, bytes: Vec<u8>) -> String {
+        let ending = path.rsplit_once('.').map_or("png", |(_, ending)| ending);
+        let is_plain = ending.len() <= 8 && ending.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        let file = self.file(path, if is_plain { ending } else { "png" }, bytes);
+        self.copies.insert(path.to_owned(), file.clone());
+        file
     }
 
     /// Whether the bytes of a file are read to the values of an image.
@@ -119,6 +129,14 @@ impl Writer<'_> {
             }
         };
         read.is_ok_and(|read| read.has_values_of(image))
+    }
+}
+
+/// The name of the file of an image: that of its own, or a number of one within another file.
+fn name_of(image: &Image) -> String {
+    match image.name.split_once("#/images/") {
+        Some((_, number)) => format!("picture-{number}"),
+        None => image.name.clone(),
     }
 }
 
