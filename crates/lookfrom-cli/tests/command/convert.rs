@@ -76,7 +76,7 @@ fn files_stay_in_the_folder_of_the_output() {
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 15, "type": "VEC3", "min": [0, 0, 0], "max": [9, 9, 9]}],
         "bufferViews": [{"buffer": 0, "byteLength": 180}], "buffers": [{"byteLength": 180, "uri": "mesh.bin"}]}"#;
     stage.write("model.gltf", gltf);
-    let numbers = (0..45_u8).flat_map(|k| f32::from(k * k % 10).to_le_bytes());
+    let numbers = (0..45_u32).flat_map(|k| ((k * k % 10) as f32).to_le_bytes());
     std::fs::write(stage.path("mesh.bin"), numbers.collect::<Vec<u8>>()).unwrap();
     stage.done("convert model.gltf -q -o new.toml --size 16 --samples 1");
     let mut names = std::fs::read_dir(stage.path("new")).unwrap().map(|entry| entry.unwrap().file_name());
