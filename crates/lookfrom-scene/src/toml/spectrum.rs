@@ -34,6 +34,8 @@ impl Reader<'_, '_> {
             ));
         };
         table.allow(&[KEYS, &["ends"], others]);
+        // Only indices and coefficients have any: `extended`.
+        table.maybe("ends", |ends| ends.choice(ENDS));
         match one.key() {
             "kelvin" => {
                 let kelvin = kelvin(one)?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::session::{Options, Session};
 use lookfrom_scene::toml::write::{Sources, write};
-use lookfrom_scene::{Budget, Disk, Inputs, Memory};
+use lookfrom_scene::{Budget, Disk, Files, Inputs, Memory};
 
 /// Small pictures, whose settings become those of the document.
 fn small() -> Options {
@@ -26,13 +26,18 @@ fn bits(session: &Session) -> Vec<u32> {
 
 /// Renders a file and its document, and compares.
 fn check(path: &Path, options: &Options) {
+    check_among(path, &Disk, options);
+}
+
+/// As [`check`], of a file among others.
+fn check_among(path: &Path, files: &dyn Files, options: &Options) {
     let name = path.display();
     let inputs = Inputs::default();
-    let files = inputs.record(&Disk, "");
-    let session = Session::read(path, &files, options).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let recorded = inputs.record(files, "");
+    let session = Session::read(path, &recorded, options).unwrap_or_else(|error| panic!("{name}: {error}"));
     let expected = bits(&session);
     let scene = session.into_scene().expect("the scene is kept");
-    let sources = Sources { files: &Disk, paths: inputs.paths(), budget: Budget::default() };
+    let sources = Sources { files, paths: inputs.paths(), budget: Budget::default() };
     let written = write(&scene, "s", &sources).unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut files = Memory::default();
     files.0.insert("s.toml".into(), written.text.into_bytes());
@@ -62,6 +67,16 @@ fn every_scene_of_the_repository_has_the_same_picture() {
     for path in ["scenes", "scenes/models", "docs/guide/scenes"].into_iter().flat_map(files_in) {
         check(&path, &small());
     }
+}
+
+/// What only scenes of pbrt say: encodings, spectra that end, parts of quadrics, totals with factors, media on sides, motion.
+#[test]
+fn a_scene_of_pbrt_with_much_in_it_has_the_same_picture() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let scene = std::fs::read(root.join("tests/library/converted/odd.pbrt")).expect("our own scene");
+    let tiles = std::fs::read(root.join("../../scenes/images/tiles.png")).expect("our own picture");
+    let files = Memory([("odd.pbrt".into(), scene), ("tiles.png".into(), tiles)].into());
+    check_among(Path::new("odd.pbrt"), &files, &Options { width: None, ..small() });
 }
 
 #[test]

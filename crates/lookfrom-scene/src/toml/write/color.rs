@@ -201,7 +201,7 @@ fn illuminant(curve: &Curve) -> Option<&'static str> {
     })
 }
 
-/// What a name stands for, of the spectra that are the same.
+/// What a name stands for, of the spectra that are the same: of several, the last, since makers' names of glasses follow pbrt's.
 fn known(curve: &Curve, of: impl Fn(&'static str) -> Option<&'static str>) -> Option<&'static str> {
-    NAMED.iter().filter(|(_, named)| named == curve).find_map(|(name, _)| of(name))
+    NAMED.iter().rev().filter(|(_, named)| named == curve).find_map(|(name, _)| of(name))
 }
