@@ -2,6 +2,7 @@
 //!
 //! The doc comments of the fields are the help texts.
 
+mod convert;
 mod encoding;
 mod farm;
 mod film;
@@ -29,6 +30,7 @@ use lookfrom_scene::settings::{
 use crate::terminal::{Show, Way};
 use crate::values;
 
+pub(crate) use convert::ConvertArguments;
 pub(crate) use encoding::EncodingArguments;
 pub(crate) use farm::{FarmArguments, Scheduler};
 pub(crate) use film::{DevelopArguments, FilesArguments, KeepArguments, MergeArguments, ResumeArguments};
@@ -49,6 +51,7 @@ Examples:
   lookfrom resume a.exr --samples 4096           more samples for a picture that was rendered with --film
   lookfrom compare p.exr reference.exr           differences between a picture and its reference
   lookfrom info scene.toml                       contents of a scene
+  lookfrom convert scene.pbrt -o scene.toml      the same scene as a text to edit
 
 Exit codes:
   0    done
@@ -143,6 +146,9 @@ pub(crate) enum Command {
     /// Make pictures from films and other linear pictures, with another exposure, tone map or denoising, without rendering
     #[command(after_help = film::DEVELOP_EXAMPLES)]
     Develop(DevelopArguments),
+    /// Write a scene or model of any format as a scene in our own, to edit: with meshes and pictures beside it, and the same picture
+    #[command(after_help = convert::EXAMPLES)]
+    Convert(ConvertArguments),
     /// List all files that scenes are read from
     Files(FilesArguments),
     /// Write the files by which a scheduler renders pictures on many machines: OpenJD, Slurm, Dask, HyperQueue

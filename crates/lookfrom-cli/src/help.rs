@@ -74,6 +74,7 @@ const BORROWERS: &[(&str, &[&str])] = &[
     ("view", &["layers", "light_path"]),
     ("bench", &["denoise", "exposure", "tonemap"]),
     ("farm", &[]),
+    ("convert", &["turn"]),
 ];
 
 /// The command with its help arranged.

@@ -11,6 +11,7 @@ mod args;
 mod bench;
 mod compare;
 mod completions;
+mod convert;
 mod develop;
 mod diagnostic;
 mod exit;
@@ -77,6 +78,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             let typed = matches.subcommand_matches("farm").unwrap_or(&matches);
             farm::run(&arguments, typed)
         }
+        Command::Convert(arguments) => convert::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Inspect(arguments) => {
             let typed = matches.subcommand_matches("inspect").map(film::arguments).unwrap_or_default();

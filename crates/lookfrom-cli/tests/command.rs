@@ -2,6 +2,7 @@
 
 mod command {
     mod compare;
+    mod convert;
     mod denoise;
     mod enough;
     mod errors;

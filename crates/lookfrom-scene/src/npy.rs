@@ -1,4 +1,4 @@
-//! Reader for arrays of NumPy: `.npy` files (NumPy Enhancement Proposal 1), versions 1 to 3, of integers and floating-point numbers in
+//! Reader and writer for arrays of NumPy: `.npy` files (NumPy Enhancement Proposal 1), versions 1 to 3, of integers and floating-point numbers in
 //! little-endian order.
 
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -28,20 +28,83 @@ const TYPES: &[(&str, usize, Decode)] = &[
 /// `Syntax` for bytes that are no such file, or of another length than their header says; `Invalid` for an array of another shape;
 /// `Unsupported` for other types of numbers; `Limit` for more rows.
 pub fn rows<const N: usize>(bytes: &[u8], at: &Location, limit: u64) -> Result<Vec<[f64; N]>> {
-    let Header { kind, is_by_columns, shape, data } = header(bytes, at)?;
+    let header = header(bytes, at)?;
+    match *header.shape {
+        [count, columns] if columns == N as u64 => rows_of(&header, Some(count), at, limit),
+        [count] if N == 1 => rows_of(&header, Some(count), at, limit),
+        _ => Err(header.misshaped(&format!("(n, {N})"), at)),
+    }
+}
+
+/// The size along x, y and z of an array of the shape `(z, y, x)`, or `(z, y, x, N)` of N numbers, and its values, x fastest; at most
+/// `limit` of them.
+///
+/// # Errors
+/// As [`rows`].
+pub fn grid<const N: usize>(bytes: &[u8], at: &Location, limit: u64) -> Result<([u32; 3], Vec<[f64; N]>)> {
+    let header = header(bytes, at)?;
+    let [z, y, x] = match *header.shape {
+        [z, y, x] if N == 1 => [z, y, x],
+        [z, y, x, columns] if columns == N as u64 => [z, y, x],
+        _ => {
+            let expected = if N == 1 { "(z, y, x)".to_owned() } else { format!("(z, y, x, {N})") };
+            return Err(header.misshaped(&expected, at));
+        }
+    };
+    if header.is_by_columns {
+        let message = "an array in the order of Fortran; expected that of C";
+        return Err(Error::new(ErrorKind::Unsupported, at, message)
+            .hint("`numpy.ascontiguousarray(array)` converts it"));
+    }
+    let side = |cells: u64| u32::try_from(cells).unwrap_or(u32::MAX);
+    let count = z.checked_mul(y).and_then(|plane| plane.checked_mul(x));
+    Ok(([x, y, z].map(side), rows_of(&header, count, at, limit)?))
+}
+
+/// The bytes of a file of an array of this shape, of numbers of single precision.
+pub fn write_f32(shape: &[usize], numbers: impl Iterator<Item = f32>) -> Vec<u8> {
+    written("<f4", shape, numbers.flat_map(f32::to_le_bytes))
+}
+
+/// As [`write_f32`], of double precision.
+pub fn write_f64(shape: &[usize], numbers: impl Iterator<Item = f64>) -> Vec<u8> {
+    written("<f8", shape, numbers.flat_map(f64::to_le_bytes))
+}
+
+/// As [`write_f32`], of whole numbers.
+pub fn write_u32(shape: &[usize], numbers: impl Iterator<Item = u32>) -> Vec<u8> {
+    written("<u4", shape, numbers.flat_map(u32::to_le_bytes))
+}
+
+fn written(kind: &str, shape: &[usize], data: impl Iterator<Item = u8>) -> Vec<u8> {
+    let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sides}), }}");
+    // Numbers begin at a multiple of 64 bytes.
+    let length = (MAGIC.len() + 4 + header.len() + 1).next_multiple_of(64) - MAGIC.len() - 4;
+    header.extend(std::iter::repeat_n(' ', length - 1 - header.len()));
+    header.push('\n');
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// The numbers of an array in rows of N, of so many rows; `None` for more than can be counted.
+fn rows_of<const N: usize>(
+    header: &Header<'_>,
+    count: Option<u64>,
+    at: &Location,
+    limit: u64,
+) -> Result<Vec<[f64; N]>> {
+    let &Header { kind, is_by_columns, data, .. } = header;
     let &(_, size, decode) = TYPES.iter().find(|(name, ..)| *name == kind).ok_or_else(|| {
         let known: Vec<&str> = TYPES.iter().map(|(name, ..)| *name).collect();
         let message = format!("numbers of the type {kind:?}; expected one of {}", known.join(", "));
         Error::new(ErrorKind::Unsupported, at, message).hint("`array.astype('<f4')` converts them")
     })?;
-    let count = match *shape {
-        [count, columns] if columns == N as u64 => count,
-        _ => {
-            let found: Vec<String> = shape.iter().map(u64::to_string).collect();
-            let message = format!("an array of the shape ({}); expected (n, {N})", found.join(", "));
-            return Err(Error::invalid(at, message));
-        }
-    };
+    let count = count.unwrap_or(u64::MAX);
     if count > limit {
         let message = format!("{count} rows are more than the limit of {limit}");
         return Err(Error::new(ErrorKind::Limit, at, message));
@@ -65,6 +128,13 @@ struct Header<'a> {
     is_by_columns: bool,
     shape: Vec<u64>,
     data: &'a [u8],
+}
+
+impl Header<'_> {
+    fn misshaped(&self, expected: &str, at: &Location) -> Error {
+        let found: Vec<String> = self.shape.iter().map(u64::to_string).collect();
+        Error::invalid(at, format!("an array of the shape ({}); expected {expected}", found.join(", ")))
+    }
 }
 
 fn header<'a>(bytes: &'a [u8], at: &Location) -> Result<Header<'a>> {

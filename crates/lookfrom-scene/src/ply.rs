@@ -1,12 +1,13 @@
 //! Reader and writer for PLY files: meshes and point clouds.
 //!
-//! `header` parses the header, `body` (with `values`) the elements, `build` makes the mesh, `edges` wires, and
-//! [`write`](fn@write) writes a mesh.
+//! `header` parses the header, `body` (with `values`) the elements, `build` makes the mesh, `edges` wires;
+//! [`write`](fn@write) writes a mesh, which `exact` reads.
 //! The format: Turk 1994, "The PLY Polygon File Format"; property names as they are in common use.
 
 mod body;
 mod build;
 mod edges;
+mod exact;
 mod header;
 mod values;
 mod write;
@@ -43,6 +44,9 @@ pub fn from_bytes(
 ) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let header = header::parse(bytes, &file, context)?;
+    if let Some(is_of_solid) = header.own {
+        return exact::read(&bytes[header.length..], &header, is_of_solid, &file, context, scene);
+    }
     let mut content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
     content.settle_colors(&file, context);
     placed(content, &header, path, context, scene)

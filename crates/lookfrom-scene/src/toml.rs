@@ -1,4 +1,4 @@
-//! Reader for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
+//! Reader and [writer](mod@write) for our own scene format (`docs/guide/scene-format.md`). Errors have the location of the invalid value.
 //!
 //! This file reads files and merges what they import. Beside it: `document`, `table` and `value` (the parsed text with
 //! locations, and recorded errors), `variables` and `scope` (variables, which are replaced by their values before anything is decoded; with
@@ -13,6 +13,7 @@ mod curve;
 mod directional;
 mod disney;
 mod document;
+mod elements;
 mod evaluate;
 mod expression;
 mod function;
@@ -49,6 +50,8 @@ mod transform;
 mod value;
 mod variables;
 mod vocabulary;
+mod volume;
+pub mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -70,7 +73,9 @@ use crate::image::{self, Encoding, Reading};
 use crate::load;
 use crate::load::Model;
 use crate::material::{MaterialKind, Scalar};
-use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId};
+use crate::scene::{
+    CurveId, ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals,
+};
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
@@ -109,6 +114,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         opacities: BTreeMap::new(),
         unwritten_default: None,
         black: None,
+        displaced: Vec::new(),
         open: Vec::new(),
         done: BTreeSet::new(),
         flake_spheres: 0,
@@ -168,6 +174,8 @@ struct Reader<'s, 'f> {
     /// The material "default", if it has been used but is not defined in a file (yet).
     unwritten_default: Option<MaterialId>,
     black: Option<MaterialId>,
+    /// Meshes that are those of files but for their displacement.
+    displaced: Vec<((MeshId, Scalar), MeshId)>,
     /// The open files: each is imported by the previous one.
     open: Vec<PathBuf>,
     /// The files that have been read.
@@ -269,6 +277,10 @@ impl Reader<'_, '_> {
         }
         if let Some(table) = top.maybe("render", |value| value.table("[render]")) {
             self.scene.render = settings::render(&table);
+            self.scene.vertex_normals = table.or("vertex_normals", VertexNormals::default(), |value| {
+                value.choice(settings::VERTEX_NORMALS)
+            });
+            self.scene.is_complete = !table.or("add_light", true, Value::boolean);
             self.has_render = true;
             self.names_integrator = table.has("integrator");
         }
@@ -294,6 +306,14 @@ impl Reader<'_, '_> {
         let file =
             file.ok_or_else(|| value.wrong("a picture, such as { file = \"sky.exr\", layer = \"beauty\" }"))?;
         self.image_as(file, layer.as_deref(), is_data)
+    }
+
+    /// An image whose 8- and 16-bit values are encoded by an exponent.
+    fn image_by_gamma(&mut self, value: Value<'_>, layer: Option<&str>, gamma: f32) -> Result<ImageId> {
+        let curve = |value: f32| libm::powf(value, gamma);
+        let reading = Reading { layer, ..Reading::new(Encoding::Curve(&curve)) };
+        let key = format!("{} gamma {gamma}", layer.unwrap_or_default());
+        self.image_by(value, Some(&key), false, |path, context| image::read_as(path, &reading, context))
     }
 
     /// The image that a file becomes, which is read once.
@@ -384,6 +404,11 @@ impl Reader<'_, '_> {
             }
         })
     }
+}
+
+/// The word for a value, of those that have one.
+fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static str {
+    words.iter().find(|(_, of_word)| of_word == value).map_or("?", |(word, _)| word)
 }
 
 /// The error that a name is defined twice.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::stage::Stage;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "render",
     "resume",
     "merge",
@@ -14,6 +14,7 @@ const COMMANDS: [&str; 13] = [
     "inspect",
     "view",
     "info",
+    "convert",
     "compare",
     "bench",
     "man",

@@ -58,7 +58,7 @@ fn braces_are_shown_as_they_are_typed() {
 #[test]
 fn options_of_a_picture_are_explained_once() {
     let stage = Stage::new("help-once");
-    for command in ["inspect", "view", "bench", "farm"] {
+    for command in ["inspect", "view", "bench", "farm", "convert"] {
         let text = help(&stage, &format!("{command} --help"));
         assert!(text.lines().count() < 110, "{command}: {}", text.lines().count());
         assert!(text.contains("render --help") && text.contains("--min-contribution"), "{command}");

@@ -250,8 +250,10 @@ fn picture(
         (Some(uri), _) => match document.uri(uri, &format!("{pointer}/uri"))? {
             Uri::Data(bytes) => decoded(&bytes, &pointer, meaning, document, context)?,
             Uri::Names(names) => {
-                let (_, bytes) = document.first_of(&names, &pointer, |path| context.read(path))?;
-                decoded(&bytes, &pointer, meaning, document, context)?
+                let (path, bytes) = document.first_of(&names, &pointer, |path| context.read(path))?;
+                let mut image = decoded(&bytes, &pointer, meaning, document, context)?;
+                image.name = path.display().to_string();
+                image
             }
         },
         (None, None) => {

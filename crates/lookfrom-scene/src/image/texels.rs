@@ -227,6 +227,37 @@ impl Image {
         sums.map(|sum| (sum / self.len().max(1) as f64) as f32)
     }
 
+    /// Red, green, blue and alpha of all texels, row by row, of an image that is stored in bytes.
+    pub(crate) fn bytes_of_texels(&self) -> Option<&[[u8; 4]]> {
+        match &self.texels {
+            Texels::Bytes { texels, .. } => Some(texels),
+            Texels::Floats { .. } => None,
+        }
+    }
+
+    /// What a byte of a colour stands for, of an image that is stored in bytes.
+    pub(crate) fn decoded_byte(&self, byte: u8) -> Option<f32> {
+        match &self.texels {
+            Texels::Bytes { table, .. } => Some(table[usize::from(byte)]),
+            Texels::Floats { .. } => None,
+        }
+    }
+
+    /// Whether it has the size, the texels and the opacity of another image, bit by bit and stored alike. The name may differ.
+    pub fn has_values_of(&self, other: &Self) -> bool {
+        let bits = |values: &[f32]| -> Vec<u32> { values.iter().map(|value| value.to_bits()).collect() };
+        let are_same = match (&self.texels, &other.texels) {
+            (Texels::Bytes { texels: a, table: s }, Texels::Bytes { texels: b, table: t }) => {
+                a == b && bits(&s[..]) == bits(&t[..])
+            }
+            (Texels::Floats { texels: a, alpha: s }, Texels::Floats { texels: b, alpha: t }) => {
+                bits(a.as_flattened()) == bits(b.as_flattened()) && bits(s) == bits(t)
+            }
+            _ => false,
+        };
+        are_same && (self.width, self.height, self.has_alpha) == (other.width, other.height, other.has_alpha)
+    }
+
     /// A copy of the image with other colours, each made of the linear one.
     pub fn with_colors(&self, color: impl Fn([f32; 3]) -> [f32; 3]) -> Self {
         let texels = self.texels().map(color).collect();

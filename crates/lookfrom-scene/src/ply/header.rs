@@ -54,6 +54,8 @@ pub(super) struct Header {
     pub(super) textures: Vec<String>,
     /// Whether a single number stands for the three channels of colours.
     pub(super) is_gray: bool,
+    /// Whether it is a file of our own ([`MARK`]), and then whether its mesh is one of a solid ([`SOLID`]).
+    pub(super) own: Option<bool>,
     /// Length of the header in bytes and lines.
     pub(super) length: usize,
     pub(super) lines: u32,
@@ -101,6 +103,12 @@ impl Element {
     }
 }
 
+/// The first word of the comment in files of our own, which hold everything that a mesh has, bit by bit.
+pub(super) const MARK: &[u8] = b"lookfrom-mesh";
+
+/// The word after it for the surface of a solid.
+pub(super) const SOLID: &[u8] = b"solid";
+
 /// Parses the header.
 ///
 /// # Errors
@@ -113,6 +121,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let mut format = None;
     let mut elements: Vec<Element> = Vec::new();
     let mut textures = Vec::new();
+    let mut own = None;
     let mut strays = Tally::default();
     loop {
         if !scanner.next_line() {
@@ -123,11 +132,13 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
         let at = scanner.at(file);
         match keyword {
             b"" | b"obj_info" => {}
-            b"comment" => {
-                if scanner.word() == b"TextureFile" {
+            b"comment" => match scanner.word() {
+                b"TextureFile" => {
                     textures.push(String::from_utf8_lossy(scanner.rest_of_line()).replace('\\', "/"));
                 }
-            }
+                MARK => own = Some(scanner.word() == SOLID),
+                _ => {}
+            },
             b"format" => {
                 let word = scanner.word();
                 format = Some(match word {
@@ -166,7 +177,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let before = scanner.position();
     scanner.next_line();
     let length = if lone_returns { (before + 1).min(bytes.len()) } else { scanner.position() };
-    Ok(Header { format, elements, textures, is_gray: false, length, lines: scanner.line() })
+    Ok(Header { format, elements, textures, is_gray: false, own, length, lines: scanner.line() })
 }
 
 impl Header {

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
-use super::Reader;
 use super::table::Table;
 use super::value::Value;
-use crate::camera::{Camera, Lens, Projection, View, Window, up_across};
+use super::{Reader, transform};
+use crate::camera::{Camera, Lens, Projection, Target, View, Window, up_across};
 use crate::error::Result;
 use crate::image;
 use crate::lens::{self, ApertureShape, LensConvention, LensSurface, LensSystem};
@@ -31,9 +31,16 @@ pub(super) const KEYS: &[&str] = &[
     "distance",
     "medium",
     "shutter",
+    "matrix",
+    "stop",
+    "lens_convention",
+    "motion",
 ];
 /// Those that only a lens system has.
-const OF_LENS: [&str; 3] = ["film", "aperture_shape", "millimetre"];
+const OF_LENS: [&str; 5] = ["film", "aperture_shape", "millimetre", "stop", "lens_convention"];
+/// The words for conventions of lens systems.
+pub(super) const CONVENTIONS: &[(&str, LensConvention)] =
+    &[("pinhole", LensConvention::AsPinhole), ("pbrt", LensConvention::Pbrt)];
 /// The keys of `window`.
 pub(super) const WINDOW: &[&str] = &["x", "y"];
 
@@ -51,7 +58,11 @@ impl Reader<'_, '_> {
             let message = format!("`{}` has no meaning with a `lens`", value.key());
             return Err(value.error(message).hint("a lens sees as much as its `film` is large"));
         }
-        let stop_diameter = table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre);
+        table.one_of(&["aperture", "stop"]);
+        let stop_diameter = match table.has("stop") {
+            true => table.maybe("stop", Value::positive),
+            false => table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre),
+        };
         let system = LensSystem {
             name,
             surfaces,
@@ -60,7 +71,8 @@ impl Reader<'_, '_> {
             focus_distance: camera.lens.map_or(1.0, |lens| lens.focus_distance),
             film_diagonal,
             millimetre,
-            convention: LensConvention::AsPinhole,
+            convention: table
+                .or("lens_convention", LensConvention::AsPinhole, |value| value.choice(CONVENTIONS)),
         };
         Ok(Camera { projection: Projection::LensSystem(Arc::new(system)), lens: None, ..camera })
     }
@@ -93,6 +105,9 @@ impl Reader<'_, '_> {
 /// The camera without a lens system.
 fn camera(table: &Table<'_>) -> Result<Camera> {
     table.allow(&[KEYS]);
+    if table.has("matrix") {
+        return camera_by_matrix(table);
+    }
     let lookfrom = table.need("lookfrom", "[0, 1, 5]", DVec3::Z, Value::vector);
     let lookat = table.need("lookat", "[0, 0, 0]", DVec3::ZERO, Value::vector);
     let up = table.or("up", DVec3::Y, Value::direction);
@@ -126,6 +141,22 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         Some(Focus::Point(point)) => w.dot(point - lookfrom),
         None => w.dot(lookat - lookfrom),
     };
+    Ok(Camera {
+        at: table.at(),
+        view: View::Look { lookfrom, lookat, up },
+        target: None,
+        projection,
+        lens: thin_lens(table, aperture, focus_distance)?,
+        window,
+        distance,
+        medium: None,
+        shutter,
+        motion: table.maybe("motion", transform::motion),
+    })
+}
+
+/// A thin lens, or the focus of a lens system.
+fn thin_lens(table: &Table<'_>, aperture: Option<f64>, focus_distance: f64) -> Result<Option<Lens>> {
     if !(focus_distance > 0.0 && focus_distance.is_finite()) {
         return Err(table
             .error_at("focus", "`focus` is behind the camera")
@@ -133,23 +164,40 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
     }
     // A lens system is focused as a thin lens is.
     let radius = aperture.filter(|&radius| radius > 0.0).or(table.has("lens").then_some(0.0));
-    let lens = radius.map(|radius| Lens { radius, focus_distance });
+    Ok(radius.map(|radius| Lens { radius, focus_distance }))
+}
+
+/// The camera of a `matrix`, for which `lookat` and `up` are the target of a turntable.
+fn camera_by_matrix(table: &Table<'_>) -> Result<Camera> {
+    table.one_of(&["matrix", "lookfrom"]);
+    table.one_of(&["matrix", "focus"]);
+    let matrix = table.or("matrix", DMat4::IDENTITY, transform::invertible_rows);
+    let lookat = table.maybe("lookat", Value::vector);
+    let up = table.or("up", DVec3::Y, Value::direction);
+    let projection = projection(table);
+    let window = table.maybe("window", window);
+    let distance = table.or("distance", 1.0, Value::positive);
+    let aperture = table.maybe("aperture", Value::not_negative);
+    focus(table);
+    let focus_distance = table.or("focus_distance", 1.0, Value::positive);
+    let shutter = table.or("shutter", 0.0, Value::not_negative);
+    table.sound(&["matrix", "aperture", "focus_distance"])?;
     Ok(Camera {
         at: table.at(),
-        view: View::Look { lookfrom, lookat, up },
-        target: None,
+        view: View::Matrix(matrix),
+        target: lookat.map(|lookat| Target { lookat, up }),
         projection,
-        lens,
+        lens: thin_lens(table, aperture, focus_distance)?,
         window,
         distance,
         medium: None,
         shutter,
-        motion: None,
+        motion: table.maybe("motion", transform::motion),
     })
 }
 
 /// The words for projections, each with those of its keys that not all projections have.
-pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
+pub(super) const PROJECTIONS: [(&str, &[&str]); 5] = [
     (
         "perspective",
         &[
@@ -162,10 +210,13 @@ pub(super) const PROJECTIONS: [(&str, &[&str]); 4] = [
             "film",
             "aperture_shape",
             "millimetre",
+            "stop",
+            "lens_convention",
         ],
     ),
     ("orthographic", &["height", "aperture", "focus", "focus_distance", "window"]),
     ("equirectangular", &[]),
+    ("equirectangular_pbrt", &[]),
     ("octahedral", &[]),
 ];
 
@@ -185,9 +236,10 @@ fn projection(table: &Table<'_>) -> Projection {
         table.assume(if word == "orthographic" { &["height"] } else { &[] });
         value.note(error.hint(match (word, key) {
             ("perspective", _) => "give `fov` here, or the picture's `height` in [image]",
-            ("orthographic", "lens" | "film" | "aperture_shape" | "millimetre") => {
-                "a lens makes the projection \"perspective\""
-            }
+            (
+                "orthographic",
+                "lens" | "film" | "aperture_shape" | "millimetre" | "stop" | "lens_convention",
+            ) => "a lens makes the projection \"perspective\"",
             ("orthographic", _) => "give `height`, the height of the picture in the world",
             _ => "a panoramic camera has no lens: leave it out",
         }));
@@ -211,6 +263,7 @@ fn projection(table: &Table<'_>) -> Projection {
             Projection::Orthographic { height: table.need("height", "4", 4.0, Value::positive) }
         }
         "equirectangular" => Projection::Equirectangular,
+        "equirectangular_pbrt" => Projection::EquirectangularPbrt,
         _ => Projection::Octahedral,
     }
 }

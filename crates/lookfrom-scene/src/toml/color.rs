@@ -6,10 +6,13 @@ use super::value::Value;
 use super::{Reader, color_names};
 use crate::error::Result;
 use crate::image::linear_from_srgb;
-use crate::material::{Color, Scalar};
+use crate::material::{Color, NormalTexture, Scalar};
 use crate::scene::TextureId;
 use crate::spectrum::{Curve, observer, space};
 use crate::texture::Texture;
+
+/// The keys of a texture of normals with a scale.
+pub(super) const NORMALS: &[&str] = &["texture", "scale"];
 
 /// Minimum luminance of a light's spectrum, which is divided by.
 const DARKEST: f64 = 1e-30;
@@ -123,6 +126,22 @@ impl Reader<'_, '_> {
             (Color::Curve(id), scale) => Ok(rgb(&self.scene.curves[id.index()]).map(|c| c * scale)),
             (Color::Value(rgb), _) => Ok(rgb),
             (Color::Texture(_), _) => Err(value.wrong("a colour")),
+        }
+    }
+
+    /// A texture of normals: by name or inline, or a table of it and a `scale` of what it tilts.
+    pub(super) fn normals(&mut self, value: Value<'_>) -> Result<NormalTexture> {
+        let table = if value.is_table() { Some(value.table("normals")?) } else { None };
+        let (of, scale) = match &table {
+            Some(table) if table.has("texture") => {
+                table.allow(&[NORMALS]);
+                (table.find("texture").unwrap_or(value), table.or("scale", 1.0, Value::single))
+            }
+            _ => (value, 1.0),
+        };
+        match self.color(of)? {
+            Color::Texture(texture) => Ok(NormalTexture { texture, scale }),
+            _ => Err(value.wrong("a texture of normals")),
         }
     }
 

@@ -7,9 +7,13 @@ use glam::{DVec3, Vec2, Vec3};
 use super::mesh::too_many;
 use super::shape::point;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, unit};
 use crate::error::Result;
 use crate::shape::{Geometry, Patches, Profile, Strand};
+
+/// The words for profiles; normals of ribbons are given besides.
+pub(super) const PROFILES: &[(&str, Profile)] =
+    &[("flat", Profile::Flat), ("cylinder", Profile::Cylinder), ("ribbon", Profile::Ribbon([Vec3::Z; 2]))];
 
 /// A bilinear patch with four corners.
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
@@ -109,7 +113,7 @@ fn ribbon(table: &Table<'_>, joints: usize) -> Result<Option<Vec<Vec3>>> {
             if items.len() != joints {
                 return Err(value.wrong(&expected));
             }
-            items.map(|item| Ok(item.direction()?.normalize().as_vec3())).collect::<Result<_>>().map(Some)
+            items.map(|item| Ok(unit(item)?.as_vec3())).collect::<Result<_>>().map(Some)
         }
     }
 }

@@ -6,6 +6,7 @@ use super::Reader;
 use super::light::{aim, falloff, position, power, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
+use super::transform::invertible_rows;
 use super::value::Value;
 use crate::camera::up_across;
 use crate::error::Result;
@@ -17,7 +18,7 @@ use crate::texture::TexelFilter;
 /// The words for the edges of spot lights.
 pub(super) const EDGES: &[(&str, Edge)] = &[("smooth", Edge::Smooth), ("linear", Edge::Linear)];
 /// The words for the interpolation of projected images.
-const PROJECTED_FILTERS: &[(&str, TexelFilter)] =
+pub(super) const PROJECTED_FILTERS: &[(&str, TexelFilter)] =
     &[("nearest", TexelFilter::Nearest), ("bilinear", TexelFilter::Bilinear)];
 /// The words for the quantities of projected images.
 pub(super) const QUANTITIES: &[(&str, Projected)] =
@@ -47,18 +48,13 @@ impl Reader<'_, '_> {
 
     /// A projection light.
     pub(super) fn projection(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
+        if table.has("matrix") {
+            return self.projection_by_matrix(table);
+        }
         let position = position(table);
         let forward = aim(table, position).normalize();
         let up = table.maybe("up", Value::direction);
-        let expected = "degrees between 0 and 180, exclusive";
-        let fov = table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0));
-        let intensity = table.or("intensity", 1.0, |value| {
-            value.single_where("a number of at least 0: the colours are in the picture", |number| {
-                number >= 0.0
-            })
-        });
-        let power = power(table, "power", 1.0);
-        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
+        let picture = self.projected(table)?;
         table.sound(&["position", "target", "direction", "up"])?;
         let up = match up {
             Some(up) => {
@@ -80,29 +76,34 @@ impl Reader<'_, '_> {
             forward.extend(0.0),
             position.extend(1.0),
         );
-        let filter = table.or("filter", TexelFilter::Nearest, |value| value.choice(PROJECTED_FILTERS));
-        let quantity = table.or("quantity", Projected::default(), |value| value.choice(QUANTITIES));
-        let cone = self.projected_cone(table)?;
-        let kind = LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light };
-        Ok((kind, power))
+        Ok(picture.placed(world_from_light))
     }
 
-    /// The half-angles of the cone of a projection light, if it has one.
-    fn projected_cone(&mut self, table: &Table<'_>) -> Result<Option<[f64; 2]>> {
-        let expected = "degrees, more than 0 and less than 90";
-        let outer = table
-            .maybe("cone_angle", |value| value.number_where(expected, |angle| angle > 0.0 && angle < 90.0));
-        table.sound(&["cone_angle"])?;
-        let Some(outer) = outer else {
-            if let Some(inner) = table.find("inner_angle") {
-                inner.note(inner.error("`inner_angle` needs a `cone_angle`"));
-            }
-            return Ok(None);
-        };
-        let inner = table.or("inner_angle", outer, |value| {
-            value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=outer).contains(&angle))
-        });
-        Ok(Some([outer, inner]))
+    /// A projection light whose space a matrix places.
+    fn projection_by_matrix(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
+        for key in ["position", "target", "direction", "up"] {
+            table.one_of(&["matrix", key]);
+        }
+        let world_from_light = table.or("matrix", DMat4::IDENTITY, invertible_rows);
+        Ok(self.projected(table)?.placed(world_from_light))
+    }
+
+    /// What a projection light projects.
+    fn projected(&mut self, table: &Table<'_>) -> Result<Picture> {
+        let expected = "degrees between 0 and 180, exclusive";
+        Ok(Picture {
+            filter: table.or("filter", TexelFilter::Nearest, |value| value.choice(PROJECTED_FILTERS)),
+            quantity: table.or("quantity", Projected::default(), |value| value.choice(QUANTITIES)),
+            cone: projected_cone(table)?,
+            fov: table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0)),
+            intensity: table.or("intensity", 1.0, |value| {
+                value.single_where("a number of at least 0: the colours are in the picture", |number| {
+                    number >= 0.0
+                })
+            }),
+            power: power(table, "power", 1.0),
+            image: table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value)),
+        })
     }
 
     /// The octahedral map of a luminaire's photometric file, or of a picture.
@@ -116,10 +117,53 @@ impl Reader<'_, '_> {
 
     /// A goniometric light.
     pub(super) fn goniometric(&mut self, table: &Table<'_>) -> (LightKind, Power) {
-        let position = position(table);
+        let world_from_light = match table.has("matrix") {
+            true => {
+                table.one_of(&["matrix", "position"]);
+                table.one_of(&["matrix", "rotate"]);
+                table.or("matrix", DMat4::IDENTITY, invertible_rows)
+            }
+            false => DMat4::from_translation(position(table)) * turned(table) * up_from_pole(),
+        };
         let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.intensities(value));
         let (intensity, power) = self.intensity(table, "power");
-        let world_from_light = DMat4::from_translation(position) * turned(table) * up_from_pole();
         (LightKind::Goniometric { intensity, image, world_from_light }, power)
     }
+}
+
+/// A picture and its light, before it is placed.
+struct Picture {
+    image: ImageId,
+    filter: TexelFilter,
+    quantity: Projected,
+    intensity: f32,
+    cone: Option<[f64; 2]>,
+    fov: f32,
+    power: Power,
+}
+
+impl Picture {
+    fn placed(self, world_from_light: DMat4) -> (LightKind, Power) {
+        let Self { image, filter, quantity, intensity, cone, fov, power } = self;
+        let kind = LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light };
+        (kind, power)
+    }
+}
+
+/// The half-angles of the cone of a projection light, if it has one.
+fn projected_cone(table: &Table<'_>) -> Result<Option<[f64; 2]>> {
+    let expected = "degrees, more than 0 and less than 90";
+    let outer =
+        table.maybe("cone_angle", |value| value.number_where(expected, |angle| angle > 0.0 && angle < 90.0));
+    table.sound(&["cone_angle"])?;
+    let Some(outer) = outer else {
+        if let Some(inner) = table.find("inner_angle") {
+            inner.note(inner.error("`inner_angle` needs a `cone_angle`"));
+        }
+        return Ok(None);
+    };
+    let inner = table.or("inner_angle", outer, |value| {
+        value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=outer).contains(&angle))
+    });
+    Ok(Some([outer, inner]))
 }

@@ -46,9 +46,10 @@ pub(super) const KEYS: Kinds = &[
             "fov",
             "cone_angle",
             "inner_angle",
+            "matrix",
         ],
     ),
-    ("goniometric", &["position", "image", "intensity", "power", "rotate"]),
+    ("goniometric", &["position", "image", "intensity", "power", "rotate", "matrix"]),
     (
         "rectangle",
         &[
@@ -77,6 +78,7 @@ pub(super) const KEYS: Kinds = &[
             "layout",
             "scale",
             "rotate",
+            "matrix",
             "illuminance",
             "portal",
             "illuminates",
@@ -178,14 +180,32 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The power: the total in the key `total`, or else that of the colour, times `scale`.
+/// The keys of a power that is a table.
+pub(super) const POWER: &[&str] = &["total", "scale", "absolute"];
+
+/// The power: the total in the key `total`, or else that of the colour, times `scale`; or a table of all that there is.
 pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
+    if let Some(value) = table.find(total).filter(|value| value.is_table()) {
+        return value
+            .noting(value.table(format!("`{total}`")).map(|table| written_power(&table)), Power::AS_WRITTEN);
+    }
     let total = table.or(total, None, |value| {
         value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
     });
     // The total replaces the brightness of the colour, so `scale` has no effect.
     let scale = if total.is_some() { 1.0 } else { scale };
     Power { scale, total, absolute: false }
+}
+
+/// A total, a factor of it or of the colour, and whether the brightness of a spectrum counts.
+fn written_power(table: &Table<'_>) -> Power {
+    table.allow(&[POWER]);
+    let number = |value: Value<'_>| value.single_where("a number of at least 0", |number| number >= 0.0);
+    Power {
+        scale: table.or("scale", 1.0, number),
+        total: table.maybe("total", number),
+        absolute: table.or("absolute", false, Value::boolean),
+    }
 }
 
 /// `rotate`: degrees about y, or a rotation as of shapes.

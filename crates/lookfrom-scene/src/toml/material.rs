@@ -30,7 +30,7 @@ pub(super) const KEYS: Kinds = &[
         ],
     ),
     ("diffuse", &["reflectance", "normal_map", "bump"]),
-    ("diffuse_transmission", &["reflectance", "transmittance", "normal_map", "bump"]),
+    ("diffuse_transmission", &["reflectance", "transmittance", "scale", "normal_map", "bump"]),
     (
         "conductor",
         &[
@@ -50,7 +50,19 @@ pub(super) const KEYS: Kinds = &[
     ("thin_dielectric", &["ior", "normal_map", "bump"]),
     (
         "coated_diffuse",
-        &["reflectance", "roughness", "ior", "thickness", "coat_albedo", "g", "normal_map", "bump"],
+        &[
+            "reflectance",
+            "roughness",
+            "ior",
+            "thickness",
+            "coat_albedo",
+            "g",
+            "coat_depth",
+            "coat_samples",
+            "coat_estimate",
+            "normal_map",
+            "bump",
+        ],
     ),
     (
         "coated_conductor",
@@ -65,6 +77,9 @@ pub(super) const KEYS: Kinds = &[
             "thickness",
             "coat_albedo",
             "g",
+            "coat_depth",
+            "coat_samples",
+            "coat_estimate",
             "normal_map",
             "bump",
         ],
@@ -91,6 +106,7 @@ pub(super) const KEYS: Kinds = &[
     ("disney", disney::KEYS),
     ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),
+    ("shadow_catcher", &["normal"]),
     ("interface", &[]),
 ];
 /// Keys of all materials.
@@ -187,13 +203,21 @@ impl Reader<'_, '_> {
 
     pub(super) fn bump_mapping(&mut self, table: &Table<'_>) -> BumpMapping {
         table.one_of(&["normal_map", "bump"]);
-        let normal_map = table.maybe("normal_map", |value| self.image_as(value, None, true));
+        let normal_map = table.maybe("normal_map", |value| self.normal_map(value));
         let bump = table.maybe("bump", |value| self.scalar_where(value, "a number", |_| true));
         match (normal_map, bump) {
-            (Some(image), _) => BumpMapping::NormalMap(image),
+            (Some(map), _) => map,
             (None, Some(height)) => BumpMapping::Bump(height),
             (None, None) => BumpMapping::None,
         }
+    }
+
+    /// A picture of normals, or a table of a texture of them and a scale.
+    fn normal_map(&mut self, value: Value<'_>) -> Result<BumpMapping> {
+        if value.is_table() && value.table("normals")?.has("texture") {
+            return self.normals(value).map(BumpMapping::NormalTexture);
+        }
+        self.image_as(value, None, true).map(BumpMapping::NormalMap)
     }
 
     /// `emission`, `power` and `two_sided` of a material or shape.

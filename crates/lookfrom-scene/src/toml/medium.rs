@@ -1,20 +1,15 @@
 //! `[media]`: participating media, and the bodies that they fill.
 
-use std::sync::Arc;
+use glam::{DMat4, Vec3};
 
-use glam::{DMat4, DVec3, IVec3, Vec3};
-
-use super::evaluate::{Allowance, evaluate};
-use super::expression::{Fault, parse};
-use super::quantity::Quantity;
 use super::table::Table;
 use super::value::Value;
+use super::volume::{CLOUD, COLORS, Hot, Volume, cloud};
 use super::{Reader, transform};
 use crate::error::Result;
-use crate::grid::{Grid, Placed};
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
-use crate::medium::{DROPLETS, Density, Medium, Temperature, Variation};
+use crate::medium::{DROPLETS, Density, Medium, Variation};
 use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
 
@@ -29,19 +24,11 @@ pub(super) const KEYS: &[&str] = &[
     "max_density",
     "emission",
     "temperature",
+    "density_scale",
+    "emission_scale",
+    "emission_density",
+    "bounds",
 ];
-
-/// The keys of numbers by the place.
-pub(super) const VOLUME: &[&str] = &["formula", "min", "max", "cells"];
-
-/// The keys of numbers that are those of a file.
-pub(super) const FILE: &[&str] = &["file", "grid"];
-
-/// Number of cells along the longest side of a box where a file does not set it.
-const CELLS: u64 = 64;
-
-/// The names of coordinates in formulas.
-const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 impl Reader<'_, '_> {
     /// Reads `[media]`.
@@ -79,7 +66,7 @@ impl Reader<'_, '_> {
             value.single_where(what, |diameter| DROPLETS.contains(&diameter))
         });
         let density = table.maybe("density", |value| self.density(value, table));
-        let temperature = table.maybe("temperature", |value| self.volume(value));
+        let temperature = table.maybe("temperature", |value| self.temperature(value));
         (medium.emission, medium.emission_scale) = match temperature {
             None => table.or("emission", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
             Some(_) => {
@@ -89,29 +76,19 @@ impl Reader<'_, '_> {
                 (Color::BLACK, factor * Medium::ABSOLUTE)
             }
         };
-        let density = match density {
-            Some(Number::Volume(volume)) => {
-                medium.variation = Some(variation(table, volume, temperature));
-                return medium;
-            }
-            Some(Number::Varying(density)) => Some(density),
-            Some(Number::Even(density)) => {
-                medium.scale = density;
-                None
-            }
-            None => None,
-        };
-        if density.is_none() && temperature.is_none() {
-            return medium;
+        let factor = |value: Value<'_>| value.single_where("a number of at least 0", |factor| factor >= 0.0);
+        medium.emission_scale = table.or("emission_scale", medium.emission_scale, factor);
+        medium.scale = table.or("density_scale", 1.0, factor);
+        if let Some(Number::Even(density)) = density {
+            medium.scale *= density;
         }
-        let own = temperature.as_ref().map_or(DMat4::IDENTITY, |volume| volume.world_from_medium);
-        medium.variation = Some(Variation {
-            world_from_medium: transform::world_from_object(table) * own,
-            bounds: temperature.as_ref().map(|volume| volume.bounds),
-            density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
-            emission_scale: None,
-            temperature: temperature.map(Volume::temperature),
-        });
+        let emission_density =
+            table.maybe("emission_density", |value| self.volume(value)).map(|volume| volume.placed);
+        medium.variation =
+            varying(table, density, temperature, emission_density.is_some()).map(|variation| {
+                let bounds = table.or("bounds", variation.bounds, box_or_none);
+                Variation { emission_scale: emission_density, bounds, ..variation }
+            });
         medium
     }
 
@@ -128,7 +105,13 @@ impl Reader<'_, '_> {
     /// A density: a number, a texture, or numbers by the place.
     fn density(&mut self, value: Value<'_>, table: &Table<'_>) -> Result<Number> {
         if value.is_table() && !value.table("a density")?.has("type") {
-            return Ok(Number::Volume(self.volume(value)?));
+            let of = value.table("a density")?;
+            let has = |keys: &[&str]| keys.iter().any(|key| of.has(key));
+            return Ok(match () {
+                () if has(CLOUD) => Number::Varying(cloud(&of)),
+                () if has(COLORS) => Number::Varying(self.colors(&of)?),
+                () => Number::Volume(self.volume(value)?),
+            });
         }
         let most = table.or("max_density", 1.0, |value| {
             value.single_where("a number greater than 0", |most| most > 0.0 && most.is_finite())
@@ -136,28 +119,6 @@ impl Reader<'_, '_> {
         Ok(match self.scalar_where(value, "a number of at least 0", |density| density >= 0.0)? {
             Scalar::Value(density) => Number::Even(density),
             of => Number::Varying(Density::Texture { of, most }),
-        })
-    }
-
-    /// Numbers by the place: by a formula, or a grid of a file.
-    fn volume(&mut self, value: Value<'_>) -> Result<Volume> {
-        let table = value.table("numbers by the place")?;
-        let Some(file) = table.find("file") else {
-            table.allow(&[VOLUME]);
-            let placed = formula(&table)?;
-            return Ok(Volume { bounds: placed.bounds, placed, world_from_medium: DMat4::IDENTITY });
-        };
-        table.allow(&[FILE]);
-        let path = self.resolve(file, "the name of a NanoVDB file")?;
-        let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
-        let volume = nanovdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
-        let (faces, bounds) = (volume.faces(), volume.bounds.map(IVec3::as_vec3));
-        // What is negative is nothing.
-        let grid = Arc::new(volume.grid.map(|number| number.max(0.0)));
-        Ok(Volume {
-            placed: Placed { grid, bounds: faces },
-            world_from_medium: volume.world_from_index,
-            bounds,
         })
     }
 
@@ -199,91 +160,66 @@ enum Number {
     Volume(Volume),
 }
 
-/// Numbers by the place, in a space of their own.
-struct Volume {
-    placed: Placed<f32>,
-    world_from_medium: DMat4,
-    /// The box outside of which there are none.
-    bounds: [Vec3; 2],
+/// Two corners, or `"none"`.
+fn box_or_none(value: Value<'_>) -> Result<Option<[Vec3; 2]>> {
+    if value.as_text() == Some("none") {
+        return Ok(None);
+    }
+    let expected = "two corners, the lower and the upper one, or \"none\"";
+    let [low, high] = value.list_of(expected)?;
+    let [low, high] = [super::shape::point(low)?, super::shape::point(high)?];
+    if low.cmple(high).all() { Ok(Some([low, high])) } else { Err(value.wrong(expected)) }
 }
 
-impl Volume {
-    /// As temperatures.
-    fn temperature(self) -> Temperature {
-        Temperature { grid: self.placed, offset: 0.0, scale: 1.0 }
+/// What varies of a medium, if anything does.
+fn varying(
+    table: &Table<'_>,
+    density: Option<Number>,
+    temperature: Option<Hot>,
+    emits_by_place: bool,
+) -> Option<Variation> {
+    let density = match density {
+        Some(Number::Volume(volume)) => return Some(variation(table, volume, temperature)),
+        Some(Number::Varying(density)) => Some(density),
+        Some(Number::Even(_)) | None => None,
+    };
+    if density.is_none() && temperature.is_none() && !emits_by_place {
+        return None;
     }
+    let own = temperature.as_ref().map_or(DMat4::IDENTITY, |hot| hot.volume.world_from_medium);
+    Some(Variation {
+        world_from_medium: transform::after(table, &transform::world_from_object(table), &own),
+        bounds: temperature.as_ref().map(|hot| hot.volume.bounds),
+        density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
+        emission_scale: None,
+        temperature: temperature.map(Hot::temperature),
+    })
 }
 
 /// Densities of a grid, and temperatures of another.
-fn variation(table: &Table<'_>, density: Volume, temperature: Option<Volume>) -> Variation {
+fn variation(table: &Table<'_>, density: Volume, temperature: Option<Hot>) -> Variation {
     let mut bounds = density.bounds;
     let temperature = temperature.and_then(|mut hot| {
-        let place = nanovdb::placement(&density.world_from_medium, &hot.world_from_medium, hot.bounds);
+        let of = &mut hot.volume;
+        let place = nanovdb::placement(&density.world_from_medium, &of.world_from_medium, of.bounds);
         if place.is_none() {
             table.note(table.error_at("temperature", "its axes are not those of `density`"));
         }
         let place = place?;
-        let [low, high] = hot.bounds.map(&place);
+        let [low, high] = of.bounds.map(&place);
         bounds = [bounds[0].min(low), bounds[1].max(high)];
-        hot.placed.bounds = hot.placed.bounds.map(&place);
+        of.placed.bounds = of.placed.bounds.map(&place);
         Some(hot.temperature())
     });
     Variation {
-        world_from_medium: transform::world_from_object(table) * density.world_from_medium,
+        world_from_medium: transform::after(
+            table,
+            &transform::world_from_object(table),
+            &density.world_from_medium,
+        ),
         bounds: Some(bounds),
         density: Density::Grid(density.placed),
         emission_scale: None,
         temperature,
     }
-}
-
-/// A formula in a box, at the centres of its cells.
-fn formula(table: &Table<'_>) -> Result<Placed<f32>> {
-    let min = table.or("min", DVec3::NEG_ONE, Value::vector);
-    let max = table.or("max", DVec3::ONE, Value::vector);
-    let cells = table.or("cells", CELLS, |value| value.integer(1, 256));
-    let formula =
-        table.need("formula", "\"1 - sqrt(x*x + y*y + z*z)\"", "0", |value| value.text("a formula"));
-    table.sound(&["min", "max", "cells", "formula"])?;
-    if min.cmpge(max).any() {
-        return Err(table.error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis")));
-    }
-    let size = max - min;
-    let side = size.max_element() / cells as f64;
-    let count = size.to_array().map(|length| (length / side).ceil().clamp(1.0, cells as f64) as u32);
-    let fault = |Fault { at, message, hint }| {
-        let error = table.error_at("formula", format!("at byte {at}: {message}"));
-        match hint {
-            Some(hint) => error.hint(hint),
-            None => error.hint("x, y and z are the coordinates; functions are those of variables"),
-        }
-    };
-    let expression = parse(formula, 0).map_err(fault)?;
-    let mut values = Vec::with_capacity(count.iter().product::<u32>() as usize);
-    for z in 0..count[2] {
-        for y in 0..count[1] {
-            for x in 0..count[0] {
-                let cell = [x, y, z];
-                let place: [f64; 3] = std::array::from_fn(|axis| {
-                    min[axis] + size[axis] * (f64::from(cell[axis]) + 0.5) / f64::from(count[axis])
-                });
-                let named = |name: &str, at: usize| match COORDINATES.iter().position(|axis| *axis == name) {
-                    Some(axis) => Ok(Quantity::Number(place[axis])),
-                    None => Err(Fault::new(at, format!("{name:?} is no coordinate"))),
-                };
-                match evaluate(&expression, &named, &Allowance::default()).map_err(fault)? {
-                    // What is negative, or no number, is nothing.
-                    Quantity::Number(number) if number > 0.0 => values.push((number as f32).min(f32::MAX)),
-                    Quantity::Number(_) => values.push(0.0),
-                    other => {
-                        let message = format!("it is {}; expected a number", other.what());
-                        return Err(table.error_at("formula", message));
-                    }
-                }
-            }
-        }
-    }
-    let grid = Grid::from_values(count, &values)
-        .ok_or_else(|| table.error_at("cells", "the box has too many cells".to_owned()))?;
-    Ok(Placed { grid: Arc::new(grid), bounds: [min.as_vec3(), max.as_vec3()] })
 }

@@ -8,6 +8,7 @@ use super::table::Table;
 use super::value::Value;
 use super::{Reader, color};
 use crate::error::{Error, ErrorKind, Location, Result};
+use crate::material::Scalar;
 use crate::npy;
 use crate::scene::MeshId;
 use crate::shape::{Geometry, Mesh};
@@ -95,6 +96,30 @@ impl Reader<'_, '_> {
         Ok(mesh)
     }
 
+    /// The displacement of a mesh's vertices along their normals.
+    pub(super) fn displacement(&mut self, table: &Table<'_>) -> Option<Scalar> {
+        table.maybe("displacement", |value| self.scalar_where(value, "a number", |_| true))
+    }
+
+    /// A mesh of a file that is displaced: each once.
+    pub(super) fn displaced(
+        &mut self,
+        table: &Table<'_>,
+        mesh: MeshId,
+        displacement: Scalar,
+    ) -> Result<MeshId> {
+        if let Some((_, known)) = self.displaced.iter().find(|(of, _)| *of == (mesh, displacement)) {
+            return Ok(*known);
+        }
+        let of_file = self.scene.meshes[mesh.index()].clone();
+        let Geometry::Mesh(id) = self.mesh(table, Mesh { displacement: Some(displacement), ..of_file })?
+        else {
+            return Ok(mesh);
+        };
+        self.displaced.push(((mesh, displacement), id));
+        Ok(id)
+    }
+
     /// Normals, texture coordinates and colours: one each per vertex.
     pub(super) fn vertex_data(&mut self, table: &Table<'_>, mesh: &mut Mesh) {
         let expected = mesh.positions.len();
@@ -113,7 +138,7 @@ impl Reader<'_, '_> {
     }
 
     /// The values of a key, one per vertex, if the key is present.
-    fn for_vertices<'a, T, const N: usize>(
+    pub(super) fn for_vertices<'a, T, const N: usize>(
         &self,
         table: &Table<'a>,
         key: &str,
@@ -143,7 +168,7 @@ impl Reader<'_, '_> {
     }
 
     /// The rows of `{ npy = "FILE" }`, an array in a file; `None` for a value that is no table.
-    fn array<const N: usize>(&self, value: Value<'_>) -> Result<Option<Vec<[f64; N]>>> {
+    pub(super) fn array<const N: usize>(&self, value: Value<'_>) -> Result<Option<Vec<[f64; N]>>> {
         if !value.is_table() {
             return Ok(None);
         }
@@ -160,7 +185,7 @@ impl Reader<'_, '_> {
 }
 
 /// The numbers of a row of an array, which are finite as `f32`.
-fn finite<const N: usize>(value: Value<'_>, row: [f64; N]) -> Result<[f32; N]> {
+pub(super) fn finite<const N: usize>(value: Value<'_>, row: [f64; N]) -> Result<[f32; N]> {
     let row = row.map(|number| number as f32);
     if row.iter().all(|number| number.is_finite()) {
         return Ok(row);

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::files::{CameraChoice, ImportOptions};
 use crate::format::Format;
 use crate::light::{Light, LightKind};
-use crate::shape::Part;
+use crate::shape::{Geometry, Part};
 use crate::subdivision::MOST_LEVELS;
 
 /// The keys that select the contents of a glTF file.
@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
             triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
         table.allow(&[
-            &["file", "positions", "triangles", "subdivision"],
+            &["file", "positions", "triangles", "subdivision", "displacement"],
             CHOICE,
             COMMON,
             OPERAND,
@@ -67,7 +67,15 @@ impl Reader<'_, '_> {
         if has_camera && self.scene.camera.is_none() {
             self.scene.camera = model.camera.and_then(|camera| moved_camera(camera, world_from_model));
         }
-        Ok(model.parts)
+        let mut parts = model.parts;
+        if let Some(displacement) = self.displacement(table) {
+            for part in &mut parts {
+                if let Geometry::Mesh(mesh) = &mut part.geometry {
+                    *mesh = self.displaced(table, *mesh, displacement)?;
+                }
+            }
+        }
+        Ok(parts)
     }
 
     /// Levels of subdivision of a mesh.

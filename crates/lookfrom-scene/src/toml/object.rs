@@ -58,7 +58,7 @@ impl Reader<'_, '_> {
                 object,
                 world_from_object,
                 material,
-                motion: None,
+                motion: table.maybe("motion", transform::motion),
             });
         }
     }

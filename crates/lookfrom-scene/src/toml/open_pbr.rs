@@ -6,8 +6,8 @@ use super::table::Table;
 use super::value::Value;
 use crate::light::Power;
 use crate::material::{
-    BumpMapping, Color, Material, MaterialKind, NormalTexture, OpenPbr, Roughness, Scalar, Subsurface,
-    SubsurfaceMedium, Tangent,
+    BumpMapping, Color, Material, MaterialKind, OpenPbr, Roughness, Scalar, Subsurface, SubsurfaceMedium,
+    Tangent,
 };
 use crate::medium::Medium;
 use crate::scene::{MaterialId, MediumId, TextureId};
@@ -32,6 +32,7 @@ pub(super) const KEYS: &[&str] = &[
     "transmission_scatter_anisotropy",
     "transmission_dispersion_scale",
     "transmission_dispersion_abbe_number",
+    "dispersion",
     "subsurface_weight",
     "subsurface_color",
     "subsurface_radius",
@@ -102,6 +103,12 @@ impl Reader<'_, '_> {
         let abbe = table.or("transmission_dispersion_abbe_number", OpenPbr::ABBE_NUMBER, |value| {
             value.single_where("a number greater than 0", |number| number > 0.0)
         });
+        for key in ["transmission_dispersion_scale", "transmission_dispersion_abbe_number"] {
+            table.one_of(&["dispersion", key]);
+        }
+        let dispersion = table.maybe("dispersion", |value| {
+            value.single_where("a number of at least 0", |dispersion| dispersion >= 0.0)
+        });
         let (specular_ior, coat_ior, thin_film_ior) = (
             index("specular_ior", usual.specular_ior),
             index("coat_ior", usual.coat_ior),
@@ -125,7 +132,7 @@ impl Reader<'_, '_> {
             specular_ior,
             transmission_weight: self.share_or(table, "transmission_weight", 0.0),
             transmission_color: self.color_or(table, "transmission_color", 1.0),
-            dispersion: 20.0 * scale / abbe,
+            dispersion: dispersion.unwrap_or(20.0 * scale / abbe),
             subsurface_weight: self.share_or(table, "subsurface_weight", 0.0),
             subsurface_color: self.color_or(table, "subsurface_color", 0.8),
             subsurface_scatter_anisotropy: asymmetry(table, "subsurface_scatter_anisotropy"),
@@ -145,13 +152,6 @@ impl Reader<'_, '_> {
             geometry_coat_normal: table.maybe("geometry_coat_normal", |value| self.normals(value)),
             geometry_tangent: self.tangent(table, "geometry_tangent"),
             geometry_coat_tangent: self.tangent(table, "geometry_coat_tangent"),
-        }
-    }
-
-    fn normals(&mut self, value: Value<'_>) -> crate::error::Result<NormalTexture> {
-        match self.color(value)? {
-            Color::Texture(texture) => Ok(NormalTexture { texture, scale: 1.0 }),
-            _ => Err(value.wrong("a texture of normals")),
         }
     }
 

@@ -5,18 +5,20 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::Reader;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, unit};
 use crate::error::Result;
 use crate::material::{
-    Coat, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic, Roughness,
-    Scalar,
+    Coat, CoatEstimate, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic,
+    Roughness, Scalar,
 };
 use crate::measured::Measured;
 
 /// Reflectance of a diffuse surface, or base, where a scene does not set it: that of white paint, as of Whitted's `diffuse`.
-const REFLECTANCE: f32 = 0.8;
+pub(super) const REFLECTANCE: f32 = 0.8;
 
 /// The words for what becomes of light between microfacets.
 pub(super) const ENERGIES: &[(&str, Energy)] =
@@ -29,6 +31,13 @@ pub(super) const DISTRIBUTIONS: &[(&str, Distribution)] =
 /// The words for masking-shadowing functions.
 pub(super) const MASKINGS: &[(&str, Masking)] =
     &[("correlated", Masking::Correlated), ("separable", Masking::Separable)];
+
+/// The words for estimates of coats.
+pub(super) const ESTIMATES: &[(&str, CoatEstimate)] =
+    &[("unbiased", CoatEstimate::Unbiased), ("pbrt", CoatEstimate::Pbrt)];
+
+/// The keys of a roughness that is not perceptual.
+pub(super) const ROUGHNESS: &[&str] = &["alpha", "alpha_squared"];
 
 fn energy(table: &Table<'_>) -> Energy {
     table.or("energy", Energy::default(), |value| value.choice(ENERGIES))
@@ -65,7 +74,9 @@ impl Reader<'_, '_> {
             "diffuse_transmission" => MaterialKind::DiffuseTransmission {
                 reflectance: self.color_or(table, "reflectance", MaterialKind::DIFFUSE_SHEET),
                 transmittance: self.color_or(table, "transmittance", MaterialKind::DIFFUSE_SHEET),
-                scale: 1.0,
+                scale: table.or("scale", 1.0, |value| {
+                    value.single_where("a number of at least 0", |scale| scale >= 0.0)
+                }),
             },
             "conductor" => {
                 let roughness = self.rough_microfacets(table);
@@ -113,6 +124,9 @@ impl Reader<'_, '_> {
                     None => MaterialKind::Interface,
                 }
             }
+            "shadow_catcher" => MaterialKind::ShadowCatcher {
+                normal: table.or("normal", Vec3::Y, |value| Ok(unit(value)?.as_vec3())),
+            },
             _ => MaterialKind::Interface,
         }
     }
@@ -155,15 +169,25 @@ impl Reader<'_, '_> {
     }
 
     fn plastic(&mut self, table: &Table<'_>) -> Plastic {
-        let roughness = table.or("roughness", 0.0, |value| {
-            value.single_where("a number from 0 to 1", |roughness| (0.0..=1.0).contains(&roughness))
+        let alpha = table.or("roughness", 0.0, |value| {
+            let expected = "a number from 0 to 1, or a table such as { alpha = 0.04 }";
+            if !value.is_table() {
+                let is_share = |roughness: f32| (0.0..=1.0).contains(&roughness);
+                return value.single_where(expected, is_share).map(|roughness| roughness * roughness);
+            }
+            match self.microfacets(value)? {
+                Roughness { u: Scalar::Value(alpha), v, remap: false, .. } if v == Scalar::Value(alpha) => {
+                    Ok(alpha)
+                }
+                _ => Err(value.wrong(expected)),
+            }
         });
         Plastic {
             reflectance: self.color_or(table, "reflectance", REFLECTANCE),
             specular_reflectance: self.color_or(table, "specular_reflectance", 1.0),
             eta: table
                 .or("ior", Plastic::ETA, |value| value.single_where("a number greater than 0", |n| n > 0.0)),
-            alpha: roughness * roughness,
+            alpha,
             microfacets: microfacets(table),
             is_nonlinear: table.or("nonlinear", true, Value::boolean),
         }
@@ -177,13 +201,16 @@ impl Reader<'_, '_> {
         let g = table.or("g", usual.g, |value| {
             self.scalar_where(value, "a number between -1 and 1", |g| g > -1.0 && g < 1.0)
         });
+        let whole = |value: Value<'_>| Ok(value.integer(1, u32::MAX.into())? as u32);
         Coat {
+            max_depth: table.or("coat_depth", usual.max_depth, whole),
+            samples: table.or("coat_samples", usual.samples, whole),
+            estimate: table.or("coat_estimate", usual.estimate, |value| value.choice(ESTIMATES)),
             eta: self.ior_of(table),
             roughness: self.roughness(table, "roughness"),
             thickness,
             albedo: table.or("coat_albedo", usual.albedo, |value| self.color(value)),
             g,
-            ..usual
         }
     }
 
@@ -195,6 +222,9 @@ impl Reader<'_, '_> {
     /// One roughness for all directions, or a list of two along u and v; smooth by default.
     pub(super) fn roughness(&mut self, table: &Table<'_>, key: &str) -> Roughness {
         table.or(key, Roughness { remap: false, ..Roughness::SMOOTH }, |value| {
+            if value.is_table() && !value.table("a roughness")?.has("type") {
+                return self.microfacets(value);
+            }
             let [u, v] = if value.is_list() {
                 let [u, v] = value.list_of("a number from 0 to 1, a texture, or two of them, [u, v]")?;
                 [self.alpha_of(u)?, self.alpha_of(v)?]
@@ -203,6 +233,23 @@ impl Reader<'_, '_> {
             };
             Ok(Roughness::of_alphas(u, v))
         })
+    }
+
+    /// A roughness as the microfacet model has it, α, or its square, as pbrt's scenes have.
+    fn microfacets(&mut self, value: Value<'_>) -> Result<Roughness> {
+        let table = value.table("a roughness")?;
+        table.allow(&[ROUGHNESS]);
+        let one = table.one_of(ROUGHNESS).ok_or_else(|| {
+            value.wrong("a number from 0 to 1, a texture, or a table such as { alpha = 0.04 }")
+        })?;
+        let mut scalar = |value| self.scalar_where(value, "a number of at least 0", |alpha| alpha >= 0.0);
+        let [u, v] = if one.is_list() {
+            let [u, v] = one.list_of("a number of at least 0, a texture, or two of them, [u, v]")?;
+            [scalar(u)?, scalar(v)?]
+        } else {
+            [scalar(one)?; 2]
+        };
+        Ok(Roughness { remap: one.key() == "alpha_squared", ..Roughness::of_alphas(u, v) })
     }
 
     fn alpha_of(&mut self, value: Value<'_>) -> Result<Scalar> {

@@ -4,7 +4,8 @@ use super::Reader;
 use super::color::plain_color;
 use super::table::Table;
 use super::value::Value;
-use crate::material::{Anisotropy, Color, NormalTexture, Principled};
+use crate::error::Result;
+use crate::material::{Anisotropy, Color, Principled};
 
 /// The keys of the type.
 pub(super) const KEYS: &[&str] = &[
@@ -13,6 +14,7 @@ pub(super) const KEYS: &[&str] = &[
     "roughness",
     "anisotropy",
     "anisotropy_rotation",
+    "anisotropy_map",
     "ior",
     "dispersion",
     "specular",
@@ -34,6 +36,9 @@ pub(super) const KEYS: &[&str] = &[
     "bump",
 ];
 
+/// The key of an angle that is not in degrees.
+pub(super) const ANGLE: &[&str] = &["radians"];
+
 impl Reader<'_, '_> {
     pub(super) fn principled(&mut self, table: &Table<'_>) -> Principled {
         let usual = Principled::default();
@@ -42,8 +47,10 @@ impl Reader<'_, '_> {
         };
         let share = |key| number(key, 0.0, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share));
         let strength = share("anisotropy");
-        let rotation = number("anisotropy_rotation", 0.0, "an angle in degrees", |_| true);
-        let ior = number("ior", usual.ior, "a number of at least 1", |ior| ior >= 1.0);
+        let rotation = table.or("anisotropy_rotation", 0.0, angle);
+        let ior = number("ior", usual.ior, "a number of at least 1, or 0 for infinity", |ior| {
+            ior >= 1.0 || ior == 0.0
+        });
         let iridescence_ior =
             number("iridescence_ior", usual.iridescence_ior, "a number of at least 1", |ior| ior >= 1.0);
         let dispersion =
@@ -51,9 +58,10 @@ impl Reader<'_, '_> {
         let thickness = table.or("iridescence_thickness", usual.iridescence_thickness, |value| {
             self.scalar_where(value, "a thickness in nm", |nm| nm >= 0.0)
         });
-        let clearcoat_normal = table.maybe("clearcoat_normal_map", |value| match self.color(value)? {
-            Color::Texture(texture) => Ok(NormalTexture { texture, scale: 1.0 }),
-            _ => Err(value.wrong("a texture")),
+        let clearcoat_normal = table.maybe("clearcoat_normal_map", |value| self.normals(value));
+        let along = table.maybe("anisotropy_map", |value| match self.color(value)? {
+            Color::Texture(texture) => Ok(texture),
+            _ => Err(value.wrong("a texture of directions")),
         });
         let is_solid = table.or("solid", usual.is_solid, Value::boolean);
         let absorption = table.or("absorption", usual.absorption, plain_color);
@@ -65,11 +73,7 @@ impl Reader<'_, '_> {
             base_color: self.color_or(table, "base_color", 0.8),
             metallic: self.share_or(table, "metallic", 0.0),
             roughness: self.share_or(table, "roughness", 0.5),
-            anisotropy: (strength > 0.0).then_some(Anisotropy {
-                strength,
-                rotation: rotation.to_radians(),
-                texture: None,
-            }),
+            anisotropy: (strength > 0.0).then_some(Anisotropy { strength, rotation, texture: along }),
             ior,
             dispersion,
             specular: self.share_or(table, "specular", 1.0),
@@ -89,4 +93,14 @@ impl Reader<'_, '_> {
             iridescence_thickness: thickness,
         }
     }
+}
+
+/// An angle in degrees, or a table of `radians`; in radians.
+fn angle(value: Value<'_>) -> Result<f32> {
+    if !value.is_table() {
+        return value.single_where("an angle in degrees", |_| true).map(f32::to_radians);
+    }
+    let table = value.table("an angle")?;
+    table.allow(&[ANGLE]);
+    table.find("radians").ok_or_else(|| value.wrong("degrees, or { radians = 1.5 }"))?.single()
 }

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::shape::{Geometry, Sphere};
 
 /// Maximum depth of a sphereflake: 5.4 million spheres.
-const DEEPEST_FLAKE: u64 = 7;
+pub(super) const DEEPEST_FLAKE: u64 = 7;
 
 impl Reader<'_, '_> {
     pub(super) fn sphereflake(&mut self, table: &Table<'_>) -> Result<Geometry> {
@@ -74,7 +74,7 @@ pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     let radius = table.need("radius", "1", 1.0, Value::positive);
     let phi_max = phi_max(table);
     table.sound(&["radius"])?;
-    if !table.has("inner_radius") && !table.has("phi_max") {
+    if !["inner_radius", "phi_max", "height"].iter().any(|key| table.has(key)) {
         return Ok((Geometry::Disk { center, normal, radius }, DMat4::IDENTITY));
     }
     let inner_radius = table.or("inner_radius", 0.0, |value| {
@@ -82,16 +82,29 @@ pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
             (0.0..radius).contains(&inner)
         })
     });
-    let part = Geometry::PartialDisk { height: 0.0, radius, inner_radius, phi_max };
-    Ok((part, along(center, normal.normalize())))
+    let height = table.or("height", 0.0, Value::number);
+    let part = Geometry::PartialDisk { height, radius, inner_radius, phi_max };
+    let is_upright = center == DVec3::ZERO && normal == DVec3::Z;
+    Ok((part, if is_upright { DMat4::IDENTITY } else { along(center, normal.normalize()) }))
 }
 
 /// A cylinder between two points, and the transform from its own space.
 pub(super) fn cylinder(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
-    let from = table.need("from", "[0, 0, 0]", DVec3::ZERO, Value::vector);
-    let to = table.need("to", "[0, 1, 0]", DVec3::Y, Value::vector);
     let radius = table.need("radius", "0.5", 1.0, Value::positive);
     let phi_max = phi_max(table);
+    if table.has("z") {
+        for key in ["from", "to"] {
+            table.one_of(&["z", key]);
+        }
+        let z = table.or("z", [0.0, 1.0], |value| {
+            let expected = "two numbers, from the lower to the higher";
+            let z: [f64; 2] = value.numbers(expected)?;
+            if z[0] < z[1] { Ok(z) } else { Err(value.wrong(expected)) }
+        });
+        return Ok((Geometry::Cylinder { radius, z, phi_max }, DMat4::IDENTITY));
+    }
+    let from = table.need("from", "[0, 0, 0]", DVec3::ZERO, Value::vector);
+    let to = table.need("to", "[0, 1, 0]", DVec3::Y, Value::vector);
     table.sound(&["from", "to"])?;
     let axis = to - from;
     let length = axis.length();

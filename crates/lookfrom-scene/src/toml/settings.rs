@@ -1,11 +1,14 @@
 //! `[image]` and `[render]`: settings of the image and of the integrator.
 
+use super::color::plain_color;
 use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
+use crate::scene::VertexNormals;
 use crate::settings::{
-    Allocation, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
+    LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm,
+    Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -25,10 +28,11 @@ pub(super) const IMAGE: &[&str] = &[
     "light_paths",
     "spectral_buckets",
     "wavelengths",
+    "background",
     "denoise",
 ];
 /// The keys of `filter` as a table.
-pub(super) const FILTER: &[&str] = &["type", "radius", "sigma", "b", "c"];
+pub(super) const FILTER: &[&str] = &["type", "radius", "sigma", "b", "c", "tau"];
 /// The keys of `[render]`.
 pub(super) const RENDER: &[&str] = &[
     "integrator",
@@ -44,8 +48,20 @@ pub(super) const RENDER: &[&str] = &[
     "regularize",
     "occlusion_distance",
     "thin_passages_count",
+    "occlusion_directions",
     "open_fronts",
+    "media",
+    "vertex_normals",
+    "add_light",
 ];
+/// The words for the background, besides colours.
+pub(super) const BACKGROUNDS: &[(&str, Background)] =
+    &[("environment", Background::Environment), ("transparent", Background::Transparent)];
+/// The words for the directions of ambient occlusion, and whether they are weighted by their cosine.
+pub(super) const OCCLUSION_DIRECTIONS: &[(&str, bool)] = &[("cosine", true), ("uniform", false)];
+/// The words for the use of vertex normals.
+pub(super) const VERTEX_NORMALS: &[(&str, VertexNormals)] =
+    &[("smooth", VertexNormals::Smooth), ("as_given", VertexNormals::AsGiven)];
 
 /// Resolution, filter, sensor and tone mapping.
 pub(super) fn image(table: &Table<'_>) -> ImageSettings {
@@ -79,9 +95,15 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
         layers: table.or("layers", default.layers, layers),
         light_paths: table.or("light_paths", Vec::new(), light_paths),
         spectral_film: spectral_film(table),
-        background: default.background,
+        background: table.or("background", default.background, background),
         denoise: table.or("denoise", default.denoise, Value::boolean),
     }
+}
+
+/// A word, or a colour.
+fn background(value: Value<'_>) -> Result<Background> {
+    let word = BACKGROUNDS.iter().find(|(word, _)| value.as_text() == Some(word));
+    word.map_or_else(|| plain_color(value).map(Background::Color), |(_, background)| Ok(*background))
 }
 
 /// AOVs by a word; `true` is for those of the geometry.
@@ -195,11 +217,15 @@ fn pixels(value: Value<'_>) -> Result<f32> {
 pub(super) fn render(table: &Table<'_>) -> RenderSettings {
     table.allow(&[RENDER]);
     let default = RenderSettings::default();
+    let mut integrator = table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS));
+    if let Integrator::AmbientOcclusion { cosine } = &mut integrator {
+        *cosine = table.or("occlusion_directions", *cosine, |value| value.choice(OCCLUSION_DIRECTIONS));
+    }
     RenderSettings {
-        integrator: table.or("integrator", default.integrator, |value| value.choice(Integrator::WORDS)),
+        integrator,
         samples: table.or("samples", default.samples.into(), |value| value.integer(1, 1 << 24)) as u32,
         allocation: table.or("allocation", default.allocation, |value| value.choice(Allocation::WORDS)),
-        depth: table.or("depth", default.depth.into(), |value| value.integer(0, 256)) as u32,
+        depth: table.or("depth", default.depth.into(), |value| value.integer(0, i32::MAX as u64)) as u32,
         min_contribution: table.or("min_contribution", default.min_contribution, |value| {
             value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
         }),
@@ -211,8 +237,8 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
             .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS)),
         regularize: table.or("regularize", default.regularize, Value::boolean),
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
-        media: default.media,
         thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),
+        media: table.or("media", default.media, Value::boolean),
         open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
     }
 }

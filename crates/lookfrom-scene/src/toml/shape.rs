@@ -8,8 +8,9 @@ use super::{Reader, curve, light, quadric, transform};
 use crate::composite;
 use crate::error::Result;
 use crate::material::Scalar;
+use crate::medium::Sides;
 use crate::scene::MaterialId;
-use crate::shape::{Emission, Geometry, Part, Shape};
+use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
 
 /// The keys of shapes, by kind, in addition to [`COMMON`] and those of transforms.
 pub(super) const KEYS: Kinds = &[
@@ -17,8 +18,8 @@ pub(super) const KEYS: Kinds = &[
     ("triangle", &["vertices", "normals", "uvs"]),
     ("quad", &["corner", "edge_u", "edge_v"]),
     ("plane", &["point", "normal", "size"]),
-    ("disk", &["center", "normal", "radius", "inner_radius", "phi_max"]),
-    ("cylinder", &["from", "to", "radius", "phi_max"]),
+    ("disk", &["center", "normal", "radius", "inner_radius", "phi_max", "height"]),
+    ("cylinder", &["from", "to", "radius", "phi_max", "z"]),
     ("cone", &["from", "to", "radius", "tip_radius", "closed", "segments"]),
     ("torus", &["center", "axis", "radius", "tube", "segments"]),
     ("lathe", &["from", "axis", "profile", "smooth", "segments"]),
@@ -42,19 +43,52 @@ pub(super) const KEYS: Kinds = &[
             "normals",
             "uvs",
             "colors",
+            "displacement",
         ],
     ),
-    ("patch", &["corners", "normals", "uvs"]),
-    ("curve", &["points", "width", "profile", "normals"]),
+    ("patch", &["corners", "positions", "patches", "normals", "uvs"]),
+    ("curve", &["points", "width", "profile", "normals", "separate"]),
     ("sphereflake", &["center", "radius", "depth"]),
+    ("spheres", &["centers", "radii"]),
 ];
+/// The array of shapes of any kind, which each name by its `type`.
+pub(super) const ANY: &str = "shape";
 /// Keys of all shapes.
-pub(super) const COMMON: &[&str] =
-    &["name", "material", "medium", "emission", "power", "two_sided", "alpha", "reverse_orientation"];
+pub(super) const COMMON: &[&str] = &[
+    "name",
+    "material",
+    "medium",
+    "sides",
+    "emission",
+    "power",
+    "two_sided",
+    "alpha",
+    "reverse_orientation",
+    "single_sided",
+];
+/// Those, and those of transforms.
+const OF_ANY: &[&str] = &[
+    "name",
+    "material",
+    "medium",
+    "sides",
+    "emission",
+    "power",
+    "two_sided",
+    "alpha",
+    "reverse_orientation",
+    "single_sided",
+    "scale",
+    "rotate",
+    "translate",
+    "transform",
+];
+/// The keys of the media on both sides of a surface.
+pub(super) const SIDES: &[&str] = &["inside", "outside"];
 /// Keys of all shapes that are parts of a solid.
 pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "power", "two_sided", "alpha"];
 /// The keys of `[[instance]]`.
-pub(super) const INSTANCE: &[&str] = &["object", "material"];
+pub(super) const INSTANCE: &[&str] = &["object", "material", "motion"];
 
 /// The keys of a shape's table besides its geometry.
 pub(super) struct ShapeAttributes {
@@ -66,7 +100,7 @@ pub(super) struct ShapeAttributes {
 
 /// The kinds of shapes.
 pub(super) fn kinds() -> Vec<&'static str> {
-    KEYS.iter().map(|&(kind, _)| kind).collect()
+    KEYS.iter().map(|&(kind, _)| kind).chain([ANY]).collect()
 }
 
 impl Reader<'_, '_> {
@@ -82,12 +116,29 @@ impl Reader<'_, '_> {
                 }
             }
         }
+        for table in table.find(ANY).into_iter().flat_map(Value::tables) {
+            let Some(kind) = table.kind(KEYS, None, |_| OF_ANY) else { continue };
+            if let Err(error) = self.shape(kind, &table, &mut shapes) {
+                table.note(error);
+            }
+        }
         shapes
+    }
+
+    /// The media on both sides of a surface.
+    fn sides(&self, value: Value<'_>) -> Result<Sides> {
+        let table = value.table("`sides`")?;
+        table.allow(&[SIDES]);
+        let side = |key| table.maybe(key, |value| self.medium_named(value));
+        Ok(Sides { inside: side("inside"), outside: side("outside") })
     }
 
     fn shape(&mut self, kind: &str, table: &Table<'_>, shapes: &mut Vec<Shape>) -> Result<()> {
         let reverse_orientation = table.or("reverse_orientation", false, Value::boolean);
+        table.one_of(&["medium", "sides"]);
         let medium = table.maybe("medium", |value| self.medium_named(value));
+        let sides = table.maybe("sides", |value| self.sides(value));
+        let single_sided = table.maybe("single_sided", Value::boolean);
         for part in self.parts(kind, table)? {
             let material = match medium {
                 Some(medium) => self.filled(part.material, medium),
@@ -101,7 +152,8 @@ impl Reader<'_, '_> {
                 emission: part.emission.or_else(glow),
                 alpha: part.alpha.or_else(opacity),
                 reverse_orientation,
-                single_sided: part.single_sided,
+                single_sided: single_sided.unwrap_or(part.single_sided),
+                sides,
                 world_from_object: part.world_from_object,
                 ..Shape::new(table.at(), part.geometry, material)
             });
@@ -127,7 +179,7 @@ impl Reader<'_, '_> {
             }
         };
         for part in &mut parts {
-            part.world_from_object = world_from_object * part.world_from_object;
+            part.world_from_object = transform::after(table, &world_from_object, &part.world_from_object);
         }
         self.dress(&attributes, &mut parts);
         Ok(parts)
@@ -168,8 +220,11 @@ impl Reader<'_, '_> {
             "text" => self.text(table)?,
             "quad" => quad(table)?,
             "sphereflake" => self.sphereflake(table)?,
+            "patch" if table.has("positions") => self.patches(table)?,
             "patch" => curve::patch(table)?,
+            "curve" if table.has("separate") => self.separate_curves(table)?,
             "curve" => curve::curve(table, self.context.limits.elements)?,
+            "spheres" => self.spheres(table)?,
             "plane" => {
                 let point = table.or("point", DVec3::ZERO, Value::vector);
                 let normal = table.or("normal", DVec3::Y, Value::direction);
@@ -205,7 +260,8 @@ impl Reader<'_, '_> {
             }
             _ => {
                 let mesh = self.inline_mesh(table)?;
-                self.mesh(table, mesh)?
+                let displacement = self.displacement(table);
+                self.mesh(table, Mesh { displacement, ..mesh })?
             }
         };
         Ok((geometry, DMat4::IDENTITY))

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3, DVec4};
 use super::Reader;
 use super::light::{COMMON, power, turned};
 use super::table::Table;
+use super::transform::invertible_rows;
 use super::value::Value;
 use crate::error::{Error, Result};
 use crate::light::{LightKind, MapRows, Power, Sky, is_rectangle, panorama_fault};
@@ -40,7 +41,7 @@ impl Reader<'_, '_> {
         let groups: [(&str, &[&str]); 3] = [
             ("color", &["color"]),
             ("zenith", &["zenith", "horizon", "nadir"]),
-            ("image", &["image", "layout", "scale", "rotate"]),
+            ("image", &["image", "layout", "scale", "rotate", "matrix"]),
         ];
         for (word, keys) in groups {
             if word == value.key() {
@@ -64,15 +65,17 @@ impl Reader<'_, '_> {
     fn sky_picture(&mut self, table: &Table<'_>, value: Value<'_>) -> Result<Sky> {
         let rows = table.or("layout", Some(MapRows::Bands), |value| value.choice(LAYOUTS));
         let scale = table.or("scale", [1.0; 3], |value| self.light_rgb(value));
-        let turn = turned(table);
+        table.one_of(&["rotate", "matrix"]);
+        let (turn, matrix) = (turned(table), table.maybe("matrix", invertible_rows));
         let image = if rows.is_none() { self.octahedral_image(value)? } else { self.image(value)? };
         if let Some(rows) = rows {
             if let Some(fault) = panorama_fault(&self.scene.images[image.index()]) {
                 self.context.warn(&value.at(), fault);
             }
-            return Ok(Sky::Image { image, scale, world_from_light: turn, rows });
+            return Ok(Sky::Image { image, scale, world_from_light: matrix.unwrap_or(turn), rows });
         }
-        Ok(Sky::Octahedral { image, scale, world_from_light: turn * up_from_pole() })
+        let world_from_light = matrix.unwrap_or_else(|| turn * up_from_pole());
+        Ok(Sky::Octahedral { image, scale, world_from_light })
     }
 
     /// A square octahedral map of all directions.

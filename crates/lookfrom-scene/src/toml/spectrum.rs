@@ -9,7 +9,10 @@ use crate::scene::CurveId;
 use crate::spectrum::{self, Curve};
 
 /// The keys of a spectrum; lights also have `scale`.
-pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant"];
+pub(super) const KEYS: &[&str] = &["kelvin", "curve", "spd", "illuminant", "constant"];
+
+/// The words for what is beyond the ends of a table, and whether that is its first and its last value.
+pub(super) const ENDS: &[(&str, bool)] = &[("extended", true), ("zero", false)];
 
 /// Names of metals, in addition to their chemical symbols.
 const METALS: &[(&str, &str)] = &[
@@ -27,10 +30,12 @@ impl Reader<'_, '_> {
         let table = value.table("a colour by wavelength")?;
         let Some(one) = table.one_of(KEYS) else {
             return Err(value.error(format!("`{}` is a table without a `type`, so it is not a texture", value.key())).hint(
-                "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd` or `illuminant`",
+                "add `type = \"checker\"` or another; a colour by wavelength has `kelvin`, `curve`, `spd`, `illuminant` or `constant`",
             ));
         };
-        table.allow(&[KEYS, others]);
+        table.allow(&[KEYS, &["ends"], others]);
+        // Only indices and coefficients have any: `extended`.
+        table.maybe("ends", |ends| ends.choice(ENDS));
         match one.key() {
             "kelvin" => {
                 let kelvin = kelvin(one)?;
@@ -41,6 +46,10 @@ impl Reader<'_, '_> {
                 Ok(self.add_curve(curve))
             }
             "spd" => self.spd(one),
+            "constant" => {
+                let value = one.single_where("a number of at least 0", |value| value >= 0.0)?;
+                Ok(self.keep_curve(format!("constant {value}"), Curve::Constant(value)))
+            }
             _ => {
                 let short =
                     |name: &'static str| name.strip_prefix("stdillum-").or(name.strip_prefix("illum-"));
@@ -83,7 +92,7 @@ impl Reader<'_, '_> {
     pub(super) fn optical_color(&mut self, value: Value<'_>) -> Result<Color> {
         match self.color(value)? {
             Color::Curve(id) if value.key() == "eta" => self.optical(value, id).map(Color::Curve),
-            Color::Curve(id) => Ok(Color::Curve(self.extended(id))),
+            Color::Curve(id) => Ok(Color::Curve(self.extended(value, id)?)),
             color => Ok(color),
         }
     }
@@ -92,7 +101,8 @@ impl Reader<'_, '_> {
     fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
         let is_usable = match &self.scene.curves[id.index()] {
             Curve::Tabulated { values, .. } => values.iter().all(|&eta| eta > 0.0),
-            _ => false,
+            Curve::Constant(eta) => *eta > 0.0,
+            Curve::Blackbody { .. } => false,
         };
         if !is_usable {
             return Err(value
@@ -102,18 +112,23 @@ impl Reader<'_, '_> {
                 ))
                 .hint("give a number, or a curve of numbers such as 1.5"));
         }
-        Ok(self.extended(id))
+        self.extended(value, id)
     }
 
-    /// A spectrum with its first and last values extended to the ends of the visible range.
-    fn extended(&mut self, id: CurveId) -> CurveId {
-        match &self.scene.curves[id.index()] {
-            curve @ Curve::Tabulated { .. } => {
+    /// A spectrum with its first and last values extended to the ends of the visible range, unless the value says that it is 0 beyond
+    /// them.
+    fn extended(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
+        let is_extended = match value.is_table() {
+            true => value.table("a colour by wavelength")?.or("ends", true, |ends| ends.choice(ENDS)),
+            false => true,
+        };
+        Ok(match &self.scene.curves[id.index()] {
+            curve @ Curve::Tabulated { .. } if is_extended => {
                 let extended = curve.clone().extended();
                 self.keep_curve(format!("extended {}", id.0), extended)
             }
             _ => id,
-        }
+        })
     }
 
     /// A spectrum from a file; each is read once.

@@ -6,7 +6,7 @@ use super::Reader;
 use super::color::plain_color;
 use super::mapping::mapping;
 use super::table::{Kinds, Table};
-use super::value::Value;
+use super::value::{Value, unit};
 use crate::chain;
 use crate::error::{Error, Result};
 use crate::material::{Color, Scalar};
@@ -17,7 +17,18 @@ use crate::texture::{Channel, MipFilter, TexelFilter, Texture, TextureKind, Wrap
 pub(super) const KEYS: Kinds = &[
     (
         "image",
-        &["file", "layer", "encoding", "wrap", "filter", "footprint", "anisotropy", "multiply", "invert"],
+        &[
+            "file",
+            "layer",
+            "encoding",
+            "channel",
+            "wrap",
+            "filter",
+            "footprint",
+            "anisotropy",
+            "multiply",
+            "invert",
+        ],
     ),
     ("checker", &["even", "odd", "footprint"]),
     ("noise", &["low", "high", "octaves"]),
@@ -31,6 +42,10 @@ pub(super) const KEYS: Kinds = &[
     ("mix", &["low", "high", "amount"]),
     ("direction_mix", &["low", "high", "direction"]),
     ("vertex_color", &["tint"]),
+    ("vertex_alpha", &[]),
+    ("product", &["a", "b"]),
+    ("threshold", &["value", "edge"]),
+    ("pbrt_marble", &["octaves", "roughness", "frequency", "variation", "footprint"]),
 ];
 
 /// The keys of a picture with the name of its layer.
@@ -38,13 +53,25 @@ pub(super) const PICTURE: &[&str] = &["file", "layer"];
 
 /// The words for encodings of an image, and whether they are linear.
 pub(super) const ENCODINGS: &[(&str, bool)] = &[("srgb", false), ("linear", true)];
+/// The key of an encoding by an exponent.
+pub(super) const GAMMA: &[&str] = &["gamma"];
 /// The words for wrap modes.
 pub(super) const WRAPS: &[(&str, Wrap)] =
     &[("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp), ("black", Wrap::Black)];
+/// The words for channels of an image.
+pub(super) const CHANNELS: &[(&str, Channel)] = &[
+    ("rgb", Channel::Rgb),
+    ("red", Channel::Red),
+    ("green", Channel::Green),
+    ("blue", Channel::Blue),
+    ("alpha", Channel::Alpha),
+];
 /// The words for filters of images.
 pub(super) const FILTERS: &[(&str, TexelFilter)] = &[
     ("bilinear", TexelFilter::Bilinear),
     ("nearest", TexelFilter::Nearest),
+    ("mip_nearest", mip(MipFilter::Nearest)),
+    ("mip_bilinear", mip(MipFilter::Bilinear)),
     ("trilinear", mip(MipFilter::Trilinear)),
     ("ewa", mip(MipFilter::Ewa { anisotropy: MipFilter::ANISOTROPY })),
 ];
@@ -55,7 +82,7 @@ const fn mip(filter: MipFilter) -> TexelFilter {
 
 /// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
-    !["scale", "mix", "direction_mix", "vertex_color"].contains(&kind)
+    !["scale", "mix", "direction_mix", "vertex_color", "vertex_alpha", "product", "threshold"].contains(&kind)
 }
 
 impl Reader<'_, '_> {
@@ -172,25 +199,46 @@ impl Reader<'_, '_> {
             "direction_mix" => TextureKind::DirectionMix {
                 low: self.color_or(table, "low", 0.0),
                 high: self.color_or(table, "high", 1.0),
-                direction: table
-                    .need("direction", "[0, 1, 0]", DVec3::Y, Value::direction)
-                    .normalize()
-                    .as_vec3(),
+                direction: table.need("direction", "[0, 1, 0]", DVec3::Y, unit).as_vec3(),
+            },
+            "vertex_alpha" => TextureKind::VertexAlpha,
+            "product" => {
+                TextureKind::Product { a: self.color_or(table, "a", 1.0), b: self.color_or(table, "b", 1.0) }
+            }
+            "threshold" => TextureKind::Threshold {
+                value: table.need("value", "\"the name of a texture\"", Scalar::Value(1.0), |value| {
+                    self.scalar_where(value, "a number", |_| true)
+                }),
+                edge: table.or("edge", 0.5, Value::single),
+            },
+            "pbrt_marble" => TextureKind::PbrtMarble {
+                octaves: octaves(TextureKind::OCTAVES),
+                roughness: roughness(),
+                scale: table.or("frequency", 1.0, Value::single),
+                variation: table.or("variation", 0.2, Value::single),
+                footprint: footprint(table),
+                mapping: mapping(table, "world")?,
             },
             _ => TextureKind::VertexColor { tint: table.or("tint", [1.0; 3], plain_color) },
         })
     }
 
     fn picture(&mut self, table: &Table<'_>) -> Result<TextureKind> {
-        let is_data = table.or("encoding", false, |value| value.choice(ENCODINGS));
+        let gamma = match table.find("encoding") {
+            Some(value) if value.is_table() => Some(value.noting(gamma(value), 1.0)),
+            _ => None,
+        };
+        let is_data = gamma.is_none() && table.or("encoding", false, |value| value.choice(ENCODINGS));
         let layer = table.maybe("layer", |value| value.text("the name of a layer of an OpenEXR picture"));
         Ok(TextureKind::Image {
-            image: table
-                .need("file", "\"picture.png\"", ImageId(0), |value| self.image_as(value, layer, is_data)),
+            image: table.need("file", "\"picture.png\"", ImageId(0), |value| match gamma {
+                Some(gamma) => self.image_by_gamma(value, layer, gamma),
+                None => self.image_as(value, layer, is_data),
+            }),
             mapping: mapping(table, "uv")?,
-            wrap: [table.or("wrap", Wrap::default(), |value| value.choice(WRAPS)); 2],
+            wrap: table.or("wrap", [Wrap::default(); 2], wraps),
             filter: filter(table),
-            channel: Channel::Rgb,
+            channel: table.or("channel", Channel::Rgb, |value| value.choice(CHANNELS)),
             scale: table.or("multiply", 1.0, |value| {
                 value.single_where("a number of at least 0", |number| number >= 0.0)
             }),
@@ -203,6 +251,23 @@ impl Reader<'_, '_> {
         let (color, by) = (Color::Texture(id), Scalar::Texture(id));
         Scalar::Texture(self.add_texture(value, TextureKind::Scale { color, by }))
     }
+}
+
+/// The exponent of `{ gamma = 2.2 }`.
+fn gamma(value: Value<'_>) -> Result<f32> {
+    let table = value.table("an encoding")?;
+    table.allow(&[GAMMA]);
+    let one = table.find("gamma").ok_or_else(|| value.wrong("\"srgb\", \"linear\" or { gamma = 2.2 }"))?;
+    one.single_where("an exponent greater than 0", |gamma| gamma > 0.0)
+}
+
+/// One word for all edges, or one for the left and right, and one for the upper and lower ones.
+fn wraps(value: Value<'_>) -> Result<[Wrap; 2]> {
+    if !value.is_list() {
+        return value.choice(WRAPS).map(|wrap| [wrap; 2]);
+    }
+    let [across, along] = value.list_of("a wrap mode, or two of them, [u, v]")?;
+    Ok([across.choice(WRAPS)?, along.choice(WRAPS)?])
 }
 
 /// The width that a pattern is averaged over, in pixels.

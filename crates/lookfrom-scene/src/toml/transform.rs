@@ -1,10 +1,13 @@
 //! Transforms: `scale`, `rotate`, `translate` in this order, or a list `transform` of such steps in any order.
 
+use std::sync::Arc;
+
 use glam::{DMat4, DVec3, DVec4};
 
 use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, Result};
+use crate::motion::Motion;
 
 /// The keys of transforms.
 pub(super) const KEYS: &[&str] = &["scale", "rotate", "translate", "transform"];
@@ -12,6 +15,9 @@ pub(super) const KEYS: &[&str] = &["scale", "rotate", "translate", "transform"];
 pub(super) const STEPS: &[&str] = &["scale", "rotate", "translate", "matrix"];
 /// The keys of a rotation about an axis.
 pub(super) const ROTATION: &[&str] = &["axis", "angle"];
+
+/// The most that the last row of a matrix may differ from 0, 0, 0, 1: other programs compute it.
+const ROUNDING: f64 = 1e-6;
 
 /// The matrix from object space to the parent space: affine, finite and invertible.
 pub(super) fn world_from_object(table: &Table<'_>) -> DMat4 {
@@ -44,7 +50,8 @@ fn transform(steps: Value<'_>) -> Result<DMat4> {
             "translate" => DMat4::from_translation(one.vector()?),
             _ => from_rows(one)?,
         };
-        matrix = step_matrix * matrix;
+        // A matrix alone stays as it is: multiplied, −0 becomes 0.
+        matrix = if is_matrix(steps) { step_matrix } else { step_matrix * matrix };
     }
     invertible(matrix, steps)
 }
@@ -108,12 +115,41 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-fn from_rows(value: Value<'_>) -> Result<DMat4> {
+pub(super) fn from_rows(value: Value<'_>) -> Result<DMat4> {
     let numbers: [f64; 16] = value.numbers("16 numbers, row by row")?;
-    if numbers[12..] != [0.0, 0.0, 0.0, 1.0] {
+    let is_last = |(number, expected): (&f64, f64)| (number - expected).abs() <= ROUNDING;
+    if !numbers[12..].iter().zip([0.0, 0.0, 0.0, 1.0]).all(is_last) {
         return Err(value.error("the last row of `matrix` must be 0, 0, 0, 1").hint("write it row by row"));
     }
     Ok(DMat4::from_cols_array(&numbers).transpose())
+}
+
+/// 16 numbers, row by row, of a matrix that has an inverse.
+pub(super) fn invertible_rows(value: Value<'_>) -> Result<DMat4> {
+    invertible(from_rows(value)?, value)
+}
+
+/// Matrices at equally spaced times while the shutter is open.
+pub(super) fn motion(value: Value<'_>) -> Result<Arc<Motion>> {
+    let expected = "a list of 2, 3, 5, 9, … matrices, at equally spaced times while the shutter is open, of 16 numbers each";
+    let maps = value.list(expected)?.map(from_rows).collect::<Result<_>>()?;
+    Motion::of_maps(maps).map(Arc::new).ok_or_else(|| {
+        value
+            .wrong(expected)
+            .hint("one of them has to differ from the first; what stands still has no `motion`")
+    })
+}
+
+/// The map of a table after an inner one. A matrix stays as it is, bit by bit, where the inner one is none.
+pub(super) fn after(table: &Table<'_>, outer: &DMat4, inner: &DMat4) -> DMat4 {
+    let stays = *inner == DMat4::IDENTITY && table.find("transform").is_some_and(is_matrix);
+    if stays { *outer } else { *outer * *inner }
+}
+
+/// Whether a list of steps is a single matrix.
+fn is_matrix(steps: Value<'_>) -> bool {
+    let only = steps.list_of::<1>("");
+    only.is_ok_and(|[step]| step.table("").is_ok_and(|table| table.has("matrix")))
 }
 
 fn invertible(matrix: DMat4, value: Value<'_>) -> Result<DMat4> {

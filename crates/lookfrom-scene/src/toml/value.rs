@@ -249,3 +249,14 @@ impl<'a> Value<'a> {
         entries.take_while(move |_| !self.document.is_full())
     }
 }
+
+/// A direction of unit length. One that has it already, to single precision, stays as it is.
+pub(super) fn unit(value: Value<'_>) -> Result<DVec3> {
+    let direction = value.direction()?;
+    let is_single = direction == direction.as_vec3().as_dvec3();
+    Ok(if is_single && (direction.length_squared() - 1.0).abs() < 1e-6 {
+        direction
+    } else {
+        direction.normalize()
+    })
+}

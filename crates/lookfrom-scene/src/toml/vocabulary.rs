@@ -2,7 +2,8 @@
 
 use super::table::Kinds;
 use super::{
-    camera, keyframes, light, mapping, material, medium, settings, shape, spectrum, texture, transform,
+    camera, color, keyframes, light, mapping, material, medium, physical, principled, settings, shape,
+    spectrum, texture, transform, volume,
 };
 
 /// The top-level keys of a file, except the kinds of shapes.
@@ -33,10 +34,21 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("[image]".to_owned(), settings::IMAGE.to_vec()),
         ("filter".to_owned(), settings::FILTER.to_vec()),
         ("[render]".to_owned(), settings::RENDER.to_vec()),
-        ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale"]].concat()),
+        ("a colour by wavelength".to_owned(), [spectrum::KEYS, &["scale", "ends"]].concat()),
         ("a picture".to_owned(), texture::PICTURE.to_vec()),
         ("[media.NAME]".to_owned(), [medium::KEYS, transform::KEYS].concat()),
-        ("numbers by the place".to_owned(), [medium::VOLUME, medium::FILE].concat()),
+        (
+            "numbers by the place".to_owned(),
+            [volume::VOLUME, volume::FILE, volume::ARRAY, volume::KELVIN].concat(),
+        ),
+        ("densities of colours".to_owned(), volume::COLORS.to_vec()),
+        ("a cloud of pbrt".to_owned(), volume::CLOUD.to_vec()),
+        ("power".to_owned(), light::POWER.to_vec()),
+        ("roughness".to_owned(), physical::ROUGHNESS.to_vec()),
+        ("a texture of normals".to_owned(), color::NORMALS.to_vec()),
+        ("an angle".to_owned(), principled::ANGLE.to_vec()),
+        ("encoding".to_owned(), texture::GAMMA.to_vec()),
+        ("sides".to_owned(), shape::SIDES.to_vec()),
         ("[objects.NAME]".to_owned(), shape::kinds()),
         ("[[instance]]".to_owned(), [shape::INSTANCE, transform::KEYS].concat()),
         ("[[solid.of]]".to_owned(), [shape::OPERAND, transform::KEYS].concat()),
@@ -85,6 +97,13 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("energy", words(physical::ENERGIES)),
         ("distribution", words(physical::DISTRIBUTIONS)),
         ("masking", words(physical::MASKINGS)),
+        ("coat_estimate", words(physical::ESTIMATES)),
+        ("ends", words(spectrum::ENDS)),
+        ("channel", words(texture::CHANNELS)),
+        ("background", words(settings::BACKGROUNDS)),
+        ("occlusion_directions", words(settings::OCCLUSION_DIRECTIONS)),
+        ("vertex_normals", words(settings::VERTEX_NORMALS)),
+        ("lens_convention", words(camera::CONVENTIONS)),
         ("encoding", words(texture::ENCODINGS)),
         ("wrap", words(texture::WRAPS)),
         ("filter", words(texture::FILTERS)),

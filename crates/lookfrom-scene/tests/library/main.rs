@@ -3,6 +3,7 @@
 //! One program for all files, since each would link the readers for itself.
 
 mod arrays;
+mod convert;
 mod gltf;
 mod gltf_corpus;
 mod gltf_hostile;

@@ -43,6 +43,14 @@ impl Session {
         self.kept.as_deref()
     }
 
+    /// The scene as a file could have it that gives this session's picture without options: with what was added, the camera and all
+    /// settings. `None` where the scene is not kept. A turned turntable is not in it.
+    pub fn into_scene(self) -> Option<Scene> {
+        let (image, render) = (self.image().clone(), self.settings().clone());
+        let scene = Arc::unwrap_or_clone(self.kept?);
+        Some(Scene { camera: Some(self.camera), image, render, ..scene })
+    }
+
     /// Changes a material. All is compiled again but the trees, which stay; the picture has the bits of a scene with that
     /// material.
     ///

@@ -9,6 +9,7 @@ mod bump_maps;
 mod by_code;
 mod changed;
 mod coated_lamps;
+mod converted;
 mod curve_lights;
 mod denoise;
 mod dispersion;

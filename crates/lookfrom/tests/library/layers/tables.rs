@@ -186,7 +186,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "args naming",
             "compare develop files film help overrides prepare",
             "keywords",
-            "bench completions farm info inspect man merge progress view",
+            "bench completions convert farm info inspect man merge progress view",
             "picture",
             "render",
             "resume",
