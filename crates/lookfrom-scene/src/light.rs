@@ -10,6 +10,7 @@ use crate::error::Location;
 use crate::image::Image;
 use crate::material::Color;
 use crate::scene::ImageId;
+use crate::texture::TexelFilter;
 
 /// A light source.
 #[derive(Clone, Debug)]
@@ -83,8 +84,10 @@ pub enum LightKind {
         intensity: Color,
         /// Half-angle of the cone beyond which it is dark, in degrees, in (0, 180].
         cone_angle: f64,
-        /// Half-angle of the cone of full intensity, in degrees, in [0, cone_angle]; a smoothstep lies between.
+        /// Half-angle of the cone of full intensity, in degrees, in [0, cone_angle].
         inner_angle: f64,
+        /// The fading between both angles.
+        edge: Edge,
         /// The falloff with distance.
         falloff: Falloff,
     },
@@ -92,8 +95,15 @@ pub enum LightKind {
     Projection {
         /// The image.
         image: ImageId,
-        /// `I_j` of a white texel, at a distance of 1.
+        /// The interpolation between its texels; without levels of a MIP map.
+        filter: TexelFilter,
+        /// Its quantity.
+        quantity: Projected,
+        /// The factor of the image: `I_j` of a white texel, at a distance of 1.
         intensity: f32,
+        /// Half-angles in degrees of a cone around the axis, beyond which it is dark, and of one in which it has full intensity; it
+        /// fades by [`Edge::Linear`] between them. `None` without a cone.
+        cone: Option<[f64; 2]>,
         /// Field of view along the image's shorter side, in degrees, in (0, 180).
         fov: f32,
         /// From the light's space, which looks along +z with y up and x to the right of the image; any invertible matrix.
@@ -135,6 +145,26 @@ pub fn is_rectangle([a, b, c, d]: &[DVec3; 4]) -> bool {
     is_parallelogram && is_right && u.cross(v).length_squared() > 0.0 && u.cross(v).is_finite()
 }
 
+/// The fading of a spot light toward the edge of its cone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Edge {
+    /// A smoothstep of the cosine of the angle to the axis, as in pbrt.
+    #[default]
+    Smooth,
+    /// Linear in the angle, as in Mitsuba.
+    Linear,
+}
+
+/// The quantity that the image of a projection light tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projected {
+    /// Intensity by direction, as in pbrt.
+    #[default]
+    Intensity,
+    /// The light on a plane across the axis at a distance of 1, as in Mitsuba: the intensity is 1/cos³ times that on the axis.
+    Irradiance,
+}
+
 /// The falloff of light with the distance r from its source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Falloff {
@@ -170,6 +200,8 @@ pub enum Sky {
         scale: [f32; 3],
         /// The transform from the light's space to the world: a rotation.
         world_from_light: DMat4,
+        /// Where its rows are.
+        rows: MapRows,
     },
     /// A square environment map in the equal-area octahedral mapping (Clarberg 2008), as in pbrt-v4: z of the light's space
     /// is the centre of the square.
@@ -181,6 +213,16 @@ pub enum Sky {
         /// The transform from the light's space to the world: a rotation or reflection.
         world_from_light: DMat4,
     },
+}
+
+/// Latitudes of the rows of an equirectangular environment map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MapRows {
+    /// Each row is the middle of a band; the bands fill the sphere.
+    #[default]
+    Bands,
+    /// The first and last row are the poles, as in Mitsuba.
+    ToPoles,
 }
 
 /// The fault of a picture as a map in latitude and longitude, by its shape; `None` if it may be one.

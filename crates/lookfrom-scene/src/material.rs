@@ -1,5 +1,6 @@
 //! Materials: reflectance, transmission and emission of surfaces, and the values that textures may vary.
 
+mod disney;
 mod hair;
 mod inputs;
 mod open_pbr;
@@ -9,6 +10,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+pub use disney::Disney;
 pub use hair::{Hair, Pigment};
 pub use open_pbr::{OpenPbr, Tangent};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
@@ -88,6 +90,7 @@ impl Material {
                         || look.specular_roughness_anisotropy != Scalar::Value(0.0)
                         || look.coat_roughness_anisotropy != Scalar::Value(0.0)
                 }
+                MaterialKind::Disney(look) => look.anisotropic != Scalar::Value(0.0),
                 MaterialKind::Hair(_) => true,
                 MaterialKind::Measured(measured) => !measured.is_isotropic(),
                 _ => false,
@@ -194,6 +197,8 @@ pub enum MaterialKind {
     Principled(Box<Principled>),
     /// OpenPBR's surface.
     OpenPbr(Box<OpenPbr>),
+    /// Disney's principled surface.
+    Disney(Box<Disney>),
     /// A constant radiance, whatever the lighting; no light is reflected or transmitted (`KHR_materials_unlit`).
     Unlit {
         /// Its radiance.
@@ -242,6 +247,7 @@ impl MaterialKind {
                 vec![look.base_color, look.specular_color, look.sheen_color, look.diffuse_transmission_color]
             }
             Self::OpenPbr(look) => look.colors().map(|(_, color)| color).into(),
+            Self::Disney(look) => vec![look.base_color],
             Self::Subsurface(below) => below.medium.colors().into(),
             Self::Hair(hair) => hair.pigment.colors(),
             Self::Unlit { color } => vec![*color],
@@ -288,6 +294,7 @@ impl MaterialKind {
                 ("diffuse_transmission_color", look.diffuse_transmission_color),
             ],
             Self::OpenPbr(look) => look.colors().into(),
+            Self::Disney(look) => vec![("base_color", look.base_color)],
             Self::Subsurface(below) => match below.medium {
                 SubsurfaceMedium::Reflectance { reflectance, .. } => vec![("reflectance", reflectance)],
                 SubsurfaceMedium::Coefficients { .. } => Vec::new(),

@@ -5,14 +5,17 @@
 //! Colours are those of Mitsuba's variants with the colour mode `rgb`.
 
 mod bsdf;
+mod curve;
 mod emitter;
 mod medium;
 mod plugin;
 mod sensor;
+mod serialized;
 mod shape;
 mod texture;
 mod transform;
 mod value;
+mod volume;
 mod xml;
 
 use std::collections::{BTreeSet, HashMap};
@@ -59,6 +62,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         open: Vec::new(),
         surfaces: HashMap::new(),
         textures: HashMap::new(),
+        exchanged: HashMap::new(),
         images: HashMap::new(),
         media: HashMap::new(),
         meshes: HashMap::new(),
@@ -82,11 +86,12 @@ struct Reader<'s, 'f> {
     open: Vec<*const Plugin>,
     surfaces: HashMap<*const Plugin, Surface>,
     textures: HashMap<*const Plugin, TextureId>,
+    /// Checkerboards with exchanged fields, by those that have them as they are written.
+    exchanged: HashMap<TextureId, TextureId>,
     /// Images by path and whether their values are raw.
     images: HashMap<(PathBuf, bool), ImageId>,
     media: HashMap<*const Plugin, MediumId>,
-    /// Meshes by path and whether their normals are those of faces.
-    meshes: HashMap<(PathBuf, bool), Vec<MeshId>>,
+    meshes: HashMap<shape::MeshKey, Vec<MeshId>>,
     /// Meshes with the normals of their files.
     own_normals: BTreeSet<MeshId>,
     groups: HashMap<*const Plugin, ObjectId>,

@@ -49,8 +49,36 @@ pub fn from_bytes(
     }
     let mut content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
     content.settle_colors(&file, context);
+    placed(content, &header, path, context, scene)
+}
+
+/// As [`read`], with an attribute of vertices or faces, linear, for the colours; `None` if the file does not have it.
+pub(crate) fn read_with_attribute(
+    path: &Path,
+    (element, name): (&str, &str),
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Option<Vec<Part>>> {
+    let bytes = packed::read(path, context)?;
+    let file = Location::file(path);
+    let mut header = header::parse(&bytes, &file, context)?;
+    if !header.take_colors_from(element, name) {
+        return Ok(None);
+    }
+    let content = body::read(&bytes[header.length..], &header, &file, &context.limits)?;
+    placed(content, &header, path, context, scene).map(Some)
+}
+
+fn placed(
+    content: body::Content,
+    header: &header::Header,
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    let file = Location::file(path);
     let (place, first) = (content.place, scene.meshes.len());
-    let (mut parts, flat) = build::parts(content, &header, path, context, scene)?;
+    let (mut parts, flat) = build::parts(content, header, path, context, scene)?;
     place.put(&mut parts, &scene.meshes[first..], flat, &file, context);
     Ok(parts)
 }

@@ -356,6 +356,9 @@ pub struct RenderSettings {
     /// Otherwise interfaces block shadow rays, but no others, as in pbrt's integrators without media. Absorption inside
     /// materials is always rendered.
     pub media: bool,
+    /// Whether passing straight through a thin dielectric counts for the depth of a path, as in pbrt; in Mitsuba's integrators of media it
+    /// does not.
+    pub thin_passages_count: bool,
     /// Whether half of the light passes single-sided surfaces from their fronts, where most of what is seen of the scene from
     /// outside are their backs: rooms and domes that the camera looks into from outside.
     pub open_fronts: bool,
@@ -441,6 +444,7 @@ impl Default for RenderSettings {
             regularize: false,
             occlusion_distance: f32::INFINITY,
             media: true,
+            thin_passages_count: true,
             open_fronts: false,
         }
     }

@@ -162,6 +162,13 @@ pub struct Strand {
     pub profile: Profile,
 }
 
+/// The Bézier points of a segment of a uniform cubic B-spline.
+pub(crate) fn cubic_b_spline([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
+    let near = |p: Vec3, q: Vec3| p + (q - p) * (1.0 / 3.0);
+    let (bc, cb) = (near(b, c), near(c, b));
+    [(near(b, a) + bc) * 0.5, bc, cb, (cb + near(c, d)) * 0.5]
+}
+
 /// The cross-section of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Profile {

@@ -11,6 +11,7 @@ mod color;
 mod color_names;
 mod curve;
 mod directional;
+mod disney;
 mod document;
 mod elements;
 mod evaluate;

@@ -135,6 +135,7 @@ fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
         ),
         ("regularize", settings.regularize, "true".to_owned()),
         ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
+        ("thin_passages_count", !settings.thin_passages_count, "false".to_owned()),
         ("open_fronts", settings.open_fronts, "true".to_owned()),
         (
             "occlusion_distance",

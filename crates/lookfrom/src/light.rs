@@ -19,7 +19,7 @@ mod tests;
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::Point;
-use lookfrom_scene::light::Falloff;
+use lookfrom_scene::light::{Edge, Falloff};
 use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
 use crate::core::lanes::{LANES, by_lane};
@@ -75,6 +75,8 @@ pub enum Light {
         cos_outer: f32,
         /// Cosine of the angle up to which it has full intensity.
         cos_inner: f32,
+        /// The fading between both angles.
+        edge: Edge,
         /// Attenuation with distance.
         falloff: Falloff,
     },
@@ -214,9 +216,9 @@ impl Light {
                 let li = irradiance.even(textures, mode);
                 Some(LightSample { wi: *toward, li, pdf: 1.0, target: Target::Infinity })
             }
-            Self::Spot { position, axis, intensity, cos_outer, cos_inner, falloff } => {
+            Self::Spot { position, axis, intensity, cos_outer, cos_inner, edge, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
-                let cone = smooth_step(*cos_outer, *cos_inner, axis.dot(-wi));
+                let cone = in_cone(*edge, [*cos_outer, *cos_inner], axis.dot(-wi));
                 if cone <= 0.0 {
                     return None;
                 }
@@ -273,7 +275,7 @@ impl Light {
             }
             Self::Projection(light) => {
                 let rim = cone::angle(light.cos_corner()) + SLACK;
-                at_point(&light.position, Cone { axis: light.axis(), cos: 1.0 }, rim.min(WIDEST_RIM))
+                at_point(&light.position, Cone { axis: light.axis, cos: 1.0 }, rim.min(WIDEST_RIM))
             }
             Self::Spot { position, axis, cos_outer, cos_inner, .. } => {
                 let [outer, inner] = [cos_outer, cos_inner].map(|cos| cone::angle(*cos));
@@ -323,6 +325,19 @@ pub(crate) fn fade<R: Real>(falloff: Falloff, distance: R::Double) -> R {
         Falloff::Linear => one / distance,
         Falloff::Quadratic => one / (distance * distance),
     })
+}
+
+/// The factor of a spot light by the cosine of the angle to its axis: 0 outside of its cone, 1 within the inner one.
+fn in_cone(edge: Edge, [cos_outer, cos_inner]: [f32; 2], cos: f32) -> f32 {
+    match edge {
+        Edge::Smooth => smooth_step(cos_outer, cos_inner, cos),
+        Edge::Linear if cos >= cos_inner => 1.0,
+        Edge::Linear if cos <= cos_outer => 0.0,
+        Edge::Linear => {
+            let [outer, inner, angle] = [cos_outer, cos_inner, cos].map(cone::angle);
+            (outer - angle) / (outer - inner)
+        }
+    }
 }
 
 /// 0 up to `low`, 1 from `high`, a cubic between.

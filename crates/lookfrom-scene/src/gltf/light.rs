@@ -11,7 +11,7 @@ use super::json;
 use super::node::Tree;
 use crate::error::Result;
 use crate::files::LoadContext;
-use crate::light::{Falloff, Light, LightKind, Power};
+use crate::light::{Edge, Falloff, Light, LightKind, Power};
 use crate::material::Color;
 
 /// The punctual lights of the scene.
@@ -68,6 +68,7 @@ fn kind(light: &json::Light, world_from_node: &DMat4) -> Option<LightKind> {
                 intensity,
                 cone_angle,
                 inner_angle,
+                edge: Edge::Smooth,
                 falloff,
             })
         }

@@ -56,6 +56,7 @@ impl MaterialKind {
             Self::Mix { amount, .. } => vec![*amount],
             Self::Principled(look) => look.scalars().into(),
             Self::OpenPbr(look) => look.scalars().map(|(_, scalar)| scalar).into(),
+            Self::Disney(look) => look.scalars().map(|(_, scalar)| scalar).into(),
             Self::Whitted(_)
             | Self::Diffuse { .. }
             | Self::DiffuseTransmission { .. }

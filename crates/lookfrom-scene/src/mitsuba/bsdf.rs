@@ -1,14 +1,16 @@
 //! BSDFs, with their opacity.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
-    Anisotropy, BumpMapping, Coat, Color, Energy, Ior, Material, MaterialKind, Metal, NormalTexture,
-    Principled, Roughness, Scalar,
+    BumpMapping, Coat, Color, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal, NormalTexture,
+    Pigment, Roughness, Scalar,
 };
+use crate::measured::Measured;
 use crate::scene::MaterialId;
 use crate::spectrum;
 use crate::texture::TextureKind;
@@ -19,11 +21,14 @@ const KINDS: &[&str] = &[
     "conductor",
     "dielectric",
     "diffuse",
+    "hair",
     "mask",
+    "measured",
     "normalmap",
     "null",
     "plastic",
     "principled",
+    "principledthin",
     "roughconductor",
     "roughdielectric",
     "roughplastic",
@@ -219,11 +224,33 @@ impl Reader<'_, '_> {
                     return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message)
                         .hint("write the mask around it"));
                 }
-                MaterialKind::Mix { materials: surfaces.map(|surface| surface.material), amount }
+                let materials = surfaces.map(|surface| surface.material);
+                self.blend(plugin, materials, amount)
             }
-            "principled" => self.principled(plugin)?,
+            "hair" => self.hair(plugin)?,
+            "measured" => {
+                let (path, at) = self.file(plugin)?;
+                let read =
+                    Measured::read(&path, self.context).map_err(|error| super::xml::blame(error, &at))?;
+                MaterialKind::Measured(Arc::new(read))
+            }
+            "principled" | "principledthin" => self.principled(plugin, plugin.kind == "principledthin")?,
             _ => return Err(plugin.unsupported(KINDS)),
         })
+    }
+
+    /// A blend of two materials: of diffuse ones another diffuse one, which has less noise.
+    fn blend(&mut self, plugin: &Plugin, materials: [MaterialId; 2], amount: Scalar) -> MaterialKind {
+        let [first, second] = materials.map(|id| &self.scene.materials[id.index()]);
+        match (&first.kind, &second.kind) {
+            (&MaterialKind::Diffuse { reflectance: low }, &MaterialKind::Diffuse { reflectance: high })
+                if first.bump_mapping == BumpMapping::None && second.bump_mapping == BumpMapping::None =>
+            {
+                let mix = self.push_texture(plugin, TextureKind::Mix { low, high, amount });
+                MaterialKind::Diffuse { reflectance: Color::Texture(mix) }
+            }
+            _ => MaterialKind::Mix { materials, amount },
+        }
     }
 
     fn metal(&mut self, plugin: &Plugin) -> Result<Metal> {
@@ -270,54 +297,71 @@ impl Reader<'_, '_> {
         Ok(Roughness { u: along("alpha_u")?, v: along("alpha_v")?, remap: false })
     }
 
-    fn principled(&mut self, plugin: &Plugin) -> Result<MaterialKind> {
-        let message =
-            "principled is approximated by the layers of glTF's materials, which are not quite Disney's";
-        self.warn_once(&plugin.at, message);
-        let share = |name: &str, default: f64| {
-            plugin.float_where(name, default, "a number from 0 to 1", |value| (0.0..=1.0).contains(&value))
+    /// Chiang et al.'s hair.
+    fn hair(&mut self, plugin: &Plugin) -> Result<MaterialKind> {
+        plugin.ignore(&["ext_ior"]);
+        let roughness = |name: &str| {
+            plugin
+                .float_where(name, 0.3, "a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
+                .map(|share| Scalar::Value(share as f32))
         };
-        let ior = match plugin.float_or_none("eta")? {
-            Some(_) => plugin.positive("eta", 1.5)?,
+        let pigment = match plugin.find("sigma_a") {
+            Some(_) => Pigment::Absorption(self.color(plugin, "sigma_a", 0.0)?),
             None => {
-                // The index of refraction whose reflectance at normal incidence is 8 % of `specular`.
-                let root = (0.08 * share("specular", 0.5)?).sqrt();
-                (1.0 + root) / (1.0 - root)
+                let eumelanin = self.scalar(plugin, "eumelanin", 1.3)?;
+                let pheomelanin = self.scalar(plugin, "pheomelanin", 0.2)?;
+                Pigment::Melanin { eumelanin, pheomelanin }
             }
         };
-        let base_color = self.reflectance(plugin, "base_color", 0.5)?;
-        let sheen_color = match self.scalar(plugin, "sheen", 0.0)? {
-            Scalar::Value(value) => Color::gray(value),
-            Scalar::Texture(id) => Color::Texture(id),
-        };
-        // α of the coat from 0.1 to 0.001; its square root is the roughness.
-        let gloss = share("clearcoat_gloss", 0.0)?;
-        let clearcoat_roughness = (0.1 + (0.001 - 0.1) * gloss).sqrt() as f32;
-        let strength = match plugin.find("anisotropic") {
-            None => 0.0,
-            Some(Property { value: Value::Float(_) | Value::Integer(_), .. }) => share("anisotropic", 0.0)?,
-            Some(_) => {
-                self.warn_once(
-                    &plugin.at,
-                    "a texture of `anisotropic` is not supported: the highlight is round",
-                );
-                0.0
+        Ok(MaterialKind::Hair(Box::new(Hair {
+            pigment,
+            eta: Scalar::Value(eta(plugin, "amber")? as f32),
+            beta_m: roughness("longitudinal_roughness")?,
+            beta_n: roughness("azimuthal_roughness")?,
+            alpha: Scalar::Value(plugin.float("scale_tilt", 2.0)? as f32),
+        })))
+    }
+
+    fn principled(&mut self, plugin: &Plugin, is_thin: bool) -> Result<MaterialKind> {
+        plugin.ignore(&[
+            "diffuse_reflectance_sampling_rate",
+            "diffuse_transmittance_sampling_rate",
+            "main_specular_sampling_rate",
+            "specular_reflectance_sampling_rate",
+            "specular_transmittance_sampling_rate",
+            "clearcoat_sampling_rate",
+        ]);
+        let eta = match (is_thin, plugin.find("eta").is_some()) {
+            (true, _) => self.scalar(plugin, "eta", 1.5)?,
+            (false, true) => Scalar::Value(plugin.positive("eta", 1.5)? as f32),
+            (false, false) => {
+                // The index of refraction whose reflectance at normal incidence is 8 % of `specular`, which is not 0 in Mitsuba.
+                let specular = plugin.float_where("specular", 0.5, "a number from 0 to 1", |share| {
+                    (0.0..=1.0).contains(&share)
+                })?;
+                let root = (0.08 * if specular == 0.0 { 1e-3 } else { specular }).sqrt();
+                Scalar::Value(((1.0 + root) / (1.0 - root)) as f32)
             }
         };
-        let anisotropy = Anisotropy { strength: strength as f32, rotation: 0.0, texture: None };
-        Ok(MaterialKind::Principled(Box::new(Principled {
-            base_color,
-            metallic: self.scalar(plugin, "metallic", 0.0)?,
+        let of_solid = |reader: &mut Self, name| match is_thin {
+            true => Ok(Scalar::Value(0.0)),
+            false => reader.scalar(plugin, name, 0.0),
+        };
+        Ok(MaterialKind::Disney(Box::new(Disney {
+            base_color: self.reflectance(plugin, "base_color", 0.5)?,
             roughness: self.scalar(plugin, "roughness", 0.5)?,
-            anisotropy: (strength > 0.0).then_some(anisotropy),
-            ior: ior as f32,
-            transmission: self.scalar(plugin, "spec_trans", 0.0)?,
-            is_solid: plugin.find("spec_trans").is_some(),
-            clearcoat: self.scalar(plugin, "clearcoat", 0.0)?,
-            clearcoat_roughness: Scalar::Value(clearcoat_roughness),
-            sheen_color,
-            sheen_roughness: Scalar::Value(0.5),
-            ..Principled::default()
+            anisotropic: self.scalar(plugin, "anisotropic", 0.0)?,
+            metallic: of_solid(self, "metallic")?,
+            spec_trans: self.scalar(plugin, "spec_trans", 0.0)?,
+            eta,
+            spec_tint: self.scalar(plugin, "spec_tint", 0.0)?,
+            sheen: self.scalar(plugin, "sheen", 0.0)?,
+            sheen_tint: self.scalar(plugin, "sheen_tint", 0.0)?,
+            flatness: self.scalar(plugin, "flatness", 0.0)?,
+            clearcoat: of_solid(self, "clearcoat")?,
+            clearcoat_gloss: of_solid(self, "clearcoat_gloss")?,
+            diff_trans: if is_thin { self.scalar(plugin, "diff_trans", 0.0)? } else { Scalar::Value(0.0) },
+            is_thin,
         })))
     }
 }

@@ -1,12 +1,16 @@
 //! Media, and those on the sides of shapes.
 
 use std::rc::Rc;
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, Vec3};
 
 use super::Reader;
 use super::plugin::{Plugin, Property, Value};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Placed};
 use crate::material::Color;
-use crate::medium::{Medium, Sides};
+use crate::medium::{Density, Medium, Sides, Variation};
 use crate::scene::MediumId;
 use crate::spectrum::Curve;
 
@@ -30,17 +34,21 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.media.get(&Rc::as_ptr(plugin)) {
             return Ok(id);
         }
-        if plugin.kind != "homogeneous" {
-            return Err(plugin.unsupported(&["homogeneous"]));
-        }
         plugin.ignore(&["sample_emitters", "has_spectral_extinction"]);
-        let sigma_t = self.coefficient(plugin, "sigma_t", 1.0)?;
-        let albedo = self.coefficient(plugin, "albedo", 0.75)?;
-        if albedo.iter().any(|value| *value > 1.0) {
-            return Err(plugin.refuse("albedo", "numbers from 0 to 1"));
-        }
         let scale = plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
-        let part = |of: fn(f32) -> f32| Color::Value(std::array::from_fn(|i| sigma_t[i] * of(albedo[i])));
+        let name = plugin.id.clone().unwrap_or_else(|| plugin.kind.clone());
+        let own = Medium { scale: scale as f32, ..Medium::clear(name, plugin.at.clone()) };
+        let medium = match &*plugin.kind {
+            "homogeneous" => {
+                let sigma_t = self.coefficient(plugin, "sigma_t", 1.0)?;
+                let albedo = self.albedo(plugin)?;
+                let part =
+                    |of: fn(f32) -> f32| Color::Value(std::array::from_fn(|i| sigma_t[i] * of(albedo[i])));
+                Medium { absorption: part(|albedo| 1.0 - albedo), scattering: part(|albedo| albedo), ..own }
+            }
+            "heterogeneous" => self.heterogeneous(plugin, own)?,
+            _ => return Err(plugin.unsupported(&["heterogeneous", "homogeneous"])),
+        };
         let g = match plugin.part("phase", &self.ids)? {
             None => 0.0,
             Some(phase) => match &*phase.kind {
@@ -49,17 +57,92 @@ impl Reader<'_, '_> {
                 _ => return Err(phase.unsupported(&["hg", "isotropic"])),
             },
         };
-        let name = plugin.id.clone().unwrap_or_else(|| plugin.kind.clone());
-        self.scene.media.push(Medium {
-            absorption: part(|albedo| 1.0 - albedo),
-            scattering: part(|albedo| albedo),
-            scale: scale as f32,
-            g: g as f32,
-            ..Medium::clear(name, plugin.at.clone())
-        });
+        self.scene.media.push(Medium { g: g as f32, ..medium });
         let id = MediumId(self.scene.media.len() as u32 - 1);
         self.media.insert(Rc::as_ptr(plugin), id);
         Ok(id)
+    }
+
+    fn albedo(&mut self, plugin: &Plugin) -> Result<[f32; 3]> {
+        let albedo = self.coefficient(plugin, "albedo", 0.75)?;
+        check_albedo(plugin, albedo)?;
+        Ok(albedo)
+    }
+
+    /// A medium in the box of its extinction coefficient.
+    fn heterogeneous(&mut self, plugin: &Plugin, own: Medium) -> Result<Medium> {
+        let sigma_t = self.volume(plugin, "sigma_t", 1.0)?;
+        let albedo = self.volume(plugin, "albedo", 0.75)?;
+        let frame = sigma_t.world_from_cube;
+        let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
+        if axes.iter().any(|axis| axis.to_array().iter().filter(|part| part.abs() > 1e-6).count() > 1) {
+            let message = "a turned volume ends at its cube; in Mitsuba at the box around it, along the axes of the world";
+            self.warn_once(&plugin.at, message);
+        }
+        let variation = |density| {
+            let bounds = Some([Vec3::ZERO, Vec3::ONE]);
+            Some(Variation {
+                world_from_medium: frame,
+                bounds,
+                density,
+                emission_scale: None,
+                temperature: None,
+            })
+        };
+        if albedo.lattice.is_even() && (sigma_t.lattice.channels == 1 || sigma_t.lattice.is_even()) {
+            let albedo = albedo.lattice.cell([0; 3]);
+            check_albedo(plugin, albedo)?;
+            // What is even has its colour in the coefficients.
+            let of = if sigma_t.lattice.is_even() { sigma_t.lattice.cell([0; 3]) } else { [1.0; 3] };
+            let is_even = sigma_t.lattice.is_even();
+            let number = |rgb: [f32; 3]| if is_even { 1.0 } else { rgb[0] };
+            let density = padded(sigma_t.lattice.size, |cell| number(sigma_t.lattice.cell(cell)));
+            let density = density.ok_or_else(|| too_large(plugin))?;
+            return Ok(Medium {
+                absorption: Color::Value(std::array::from_fn(|c| of[c] * (1.0 - albedo[c]))),
+                scattering: Color::Value(std::array::from_fn(|c| of[c] * albedo[c])),
+                variation: variation(Density::Grid(density)),
+                ..own
+            });
+        }
+        let albedo_from_cube = albedo.world_from_cube.inverse() * frame;
+        let size = if sigma_t.lattice.is_even() { albedo.lattice.size } else { sigma_t.lattice.size };
+        let is_resampled =
+            !albedo.lattice.is_even() && (albedo_from_cube != DMat4::IDENTITY || size != albedo.lattice.size);
+        if is_resampled || !(albedo.lattice.is_even() || sigma_t.lattice.is_even()) {
+            let message = "the product of `albedo` and `sigma_t` is interpolated between cells of the latter, in Mitsuba each of them";
+            self.warn_once(&plugin.at, message);
+        }
+        let at = |cell: [i64; 3]| {
+            let center = DVec3::from_array(std::array::from_fn(|axis| {
+                (cell[axis].clamp(0, i64::from(size[axis]) - 1) as f64 + 0.5) / f64::from(size[axis])
+            }));
+            let albedo = albedo.lattice.at(albedo_from_cube.transform_point3(center));
+            (sigma_t.lattice.at(center), albedo)
+        };
+        for z in 0..i64::from(size[2]) {
+            for y in 0..i64::from(size[1]) {
+                for x in 0..i64::from(size[0]) {
+                    check_albedo(plugin, at([x, y, z]).1)?;
+                }
+            }
+        }
+        let part = |of: fn(f32) -> f32| {
+            padded(size, |cell| {
+                let (sigma_t, albedo) = at(cell);
+                std::array::from_fn(|c| sigma_t[c] * of(albedo[c]))
+            })
+        };
+        let (absorption, scattering) = (part(|albedo| 1.0 - albedo), part(|albedo| albedo));
+        if absorption.is_none() || scattering.is_none() {
+            return Err(too_large(plugin));
+        }
+        Ok(Medium {
+            absorption: Color::gray(1.0),
+            scattering: Color::gray(1.0),
+            variation: variation(Density::Colors { absorption, scattering, emission: None }),
+            ..own
+        })
     }
 
     fn coefficient(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<[f32; 3]> {
@@ -75,4 +158,30 @@ impl Reader<'_, '_> {
             },
         }
     }
+}
+
+fn check_albedo(plugin: &Plugin, albedo: [f32; 3]) -> Result<()> {
+    match albedo.iter().any(|value| *value > 1.0) {
+        true => Err(plugin.refuse("albedo", "numbers from 0 to 1")),
+        false => Ok(()),
+    }
+}
+
+fn too_large(plugin: &Plugin) -> Error {
+    Error::new(ErrorKind::Limit, &plugin.at, "a volume of too many cells")
+}
+
+/// A grid that fills the unit cube and has a layer of cells around it: ours are zero beyond the outermost cells, Mitsuba's go on. `None`
+/// if it is too large.
+fn padded<T: Copy + Default + PartialEq>(size: [u32; 3], of: impl Fn([i64; 3]) -> T) -> Option<Placed<T>> {
+    let with = size.map(|cells| cells + 2);
+    let mut values = Vec::with_capacity(with.iter().map(|&cells| cells as usize).product());
+    for z in 0..i64::from(with[2]) {
+        for y in 0..i64::from(with[1]) {
+            values.extend((0..i64::from(with[0])).map(|x| of([x - 1, y - 1, z - 1])));
+        }
+    }
+    let cell = Vec3::from_array(size.map(|cells| 1.0 / cells as f32));
+    let grid = Arc::new(Grid::from_values(with, &values)?);
+    Some(Placed { grid, bounds: [-cell, Vec3::ONE + cell] })
 }

@@ -14,27 +14,7 @@ use crate::spectrum::Curve;
 use crate::suggest::nearest;
 
 /// Types that Mitsuba has and this program does not, which are no slips for others.
-const MISSING: &[&str] = &[
-    "blackbody",
-    "bsplinecurve",
-    "circular",
-    "directionalarea",
-    "ellipsoids",
-    "hair",
-    "heterogeneous",
-    "linearcurve",
-    "measured",
-    "merge",
-    "mesh_attribute",
-    "principledthin",
-    "projector",
-    "ptracer",
-    "sdfgrid",
-    "serialized",
-    "specfilm",
-    "sunsky",
-    "volume",
-];
+const MISSING: &[&str] = &["circular", "directionalarea", "ellipsoids", "sdfgrid", "volume"];
 
 /// Plugins by their `id`.
 pub(super) type Ids = HashMap<String, Rc<Plugin>>;
@@ -179,6 +159,16 @@ impl Plugin {
             }
         }
         Ok(parts)
+    }
+
+    /// The first plugin of a class among its properties, which does not count as used.
+    pub(super) fn peek(&self, class: &str, ids: &Ids) -> Result<Option<Rc<Self>>> {
+        for property in &self.properties {
+            if let Some(plugin) = property.plugin(ids)?.filter(|plugin| plugin.class == class) {
+                return Ok(Some(plugin));
+            }
+        }
+        Ok(None)
     }
 
     /// The only plugin of a class among its properties.

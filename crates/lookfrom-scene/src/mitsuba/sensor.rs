@@ -4,7 +4,7 @@ use super::Reader;
 use super::plugin::Plugin;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::Result;
-use crate::settings::{Filter, FilterShape, Integrator, PixelBounds, Sampler};
+use crate::settings::{Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 
 /// Maximum width and height.
 const LARGEST: i64 = 1 << 16;
@@ -14,9 +14,14 @@ const MOST_SAMPLES: i64 = 1 << 24;
 /// Maximum number of reflections: so many that Russian roulette alone ends paths, except between perfect mirrors.
 const DEEPEST: u32 = 1000;
 
-const SENSORS: &[&str] = &["orthographic", "perspective", "thinlens"];
-const SAMPLERS: &[&str] = &["independent", "ldsampler", "multijitter", "orthogonal", "stratified"];
-const INTEGRATORS: &[&str] = &["aov", "direct", "moment", "path", "volpath", "volpathmis"];
+const SENSORS: &[&str] = &["orthographic", "perspective", "radiancemeter", "thinlens"];
+/// Films whose pictures are those of `hdrfilm`.
+const FILMS: &[&str] = &["hdrfilm", "ldrfilm", "specfilm", "tiledhdrfilm"];
+const SAMPLERS: &[&str] =
+    &["halton", "hammersley", "independent", "ldsampler", "multijitter", "orthogonal", "sobol", "stratified"];
+/// Integrators of Mitsuba 0.6 whose pictures have the same mean.
+const OTHERS: &[&str] = &["bdpt", "erpt", "mlt", "photonmapper", "ppm", "pssmlt", "sppm", "vpl"];
+const INTEGRATORS: &[&str] = &["aov", "direct", "moment", "path", "ptracer", "volpath", "volpathmis"];
 
 /// The axis along which a field of view is measured.
 #[derive(Clone, Copy)]
@@ -45,6 +50,8 @@ impl Reader<'_, '_> {
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
         let projection = match &*plugin.kind {
             "orthographic" => Projection::Orthographic { height: 2.0 / aspect },
+            // One ray.
+            "radiancemeter" => Projection::Perspective { fov: 1e-6 },
             _ => Projection::Perspective { fov: field_of_view(plugin, aspect)? },
         };
         let lens = match &*plugin.kind {
@@ -81,12 +88,17 @@ impl Reader<'_, '_> {
     }
 
     fn film(&mut self, film: Option<&Plugin>) -> Result<()> {
+        if let Some(film) = film.filter(|film| film.kind == "specfilm") {
+            let message =
+                "a specfilm is one of colours; the option `spectral_buckets` has those of wavelengths";
+            self.warn_once(&film.at, message);
+        }
         let image = &mut self.scene.image;
         (image.width, image.height) = (768, 576);
         image.filter = FilterShape::Gaussian { sigma: 0.5 }.of_radius(2.0);
         let Some(film) = film else { return Ok(()) };
-        if film.kind != "hdrfilm" {
-            return Err(film.unsupported(&["hdrfilm"]));
+        if !FILMS.contains(&&*film.kind) {
+            return Err(film.unsupported(FILMS));
         }
         // The format of the picture is that of the file that is asked for.
         film.ignore(&[
@@ -136,11 +148,9 @@ impl Reader<'_, '_> {
         let Some(plugin) = integrator else { return Ok(()) };
         match &*plugin.kind {
             "moment" | "aov" => {
-                if plugin.kind == "aov" && plugin.find("aovs").is_some() {
-                    self.warn_once(
-                        &plugin.at,
-                        "`aovs` have no effect here: the option `layers` has such pictures",
-                    );
+                if plugin.kind == "aov" && plugin.string("aovs")?.is_some_and(|aovs| !aovs.trim().is_empty())
+                {
+                    self.scene.image.layers = Layers::Geometry;
                 }
                 let inner = plugin.part("integrator", &self.ids)?;
                 return self.within_integrator(plugin, inner.as_ref());
@@ -149,8 +159,8 @@ impl Reader<'_, '_> {
                 plugin.ignore(&["shading_samples", "emitter_samples", "bsdf_samples"]);
                 render.depth = 1;
             }
-            "path" | "volpath" | "volpathmis" => {
-                plugin.ignore(&["rr_depth"]);
+            "path" | "ptracer" | "volpath" | "volpathmis" => {
+                plugin.ignore(&["rr_depth", "samples_per_pass"]);
                 // Segments of a path, one more than its reflections.
                 let segments = plugin.integer("max_depth", -1, -1, i64::from(u32::MAX))?;
                 if segments == 0 {
@@ -160,7 +170,13 @@ impl Reader<'_, '_> {
                     ));
                 }
                 render.depth = u32::try_from(segments - 1).map_or(DEEPEST, |depth| depth.min(DEEPEST));
-                render.media = plugin.kind != "path";
+                render.media = plugin.kind.starts_with("volpath");
+                render.thin_passages_count = !render.media;
+            }
+            other if OTHERS.contains(&other) => {
+                let message = format!("the integrator {other:?} is replaced by path tracing");
+                self.warn_once(&plugin.at, message);
+                return Ok(());
             }
             _ => return Err(plugin.unsupported(INTEGRATORS)),
         }
@@ -213,7 +229,7 @@ fn reconstruction(filter: &Plugin) -> Result<Filter> {
 }
 
 /// The vertical field of view in degrees.
-fn field_of_view(plugin: &Plugin, aspect: f64) -> Result<f64> {
+pub(super) fn field_of_view(plugin: &Plugin, aspect: f64) -> Result<f64> {
     let half = |degrees: f64| libm::tan((0.5 * degrees).to_radians());
     let (tangent, axis) = if plugin.find("fov").is_some() {
         let degrees =

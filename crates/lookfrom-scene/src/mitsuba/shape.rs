@@ -8,15 +8,42 @@ use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 use super::Reader;
 use super::bsdf::Surface;
 use super::plugin::Plugin;
+use super::serialized;
+use super::texture::Attribute;
 use super::xml::blame;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::material::Color;
-use crate::model;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
-use crate::shape::{Geometry, Mesh, Shape};
+use crate::shape::{Geometry, Mesh, Part, Shape};
+use crate::{model, ply};
 
-const KINDS: &[&str] =
-    &["cube", "cylinder", "disk", "instance", "obj", "ply", "rectangle", "shapegroup", "sphere"];
+const KINDS: &[&str] = &[
+    "bsplinecurve",
+    "cube",
+    "cylinder",
+    "disk",
+    "instance",
+    "linearcurve",
+    "merge",
+    "obj",
+    "ply",
+    "rectangle",
+    "serialized",
+    "shapegroup",
+    "sphere",
+];
+
+/// A model that has been read already.
+#[derive(PartialEq, Eq, Hash)]
+pub(super) struct MeshKey {
+    path: PathBuf,
+    /// The number of the mesh in its file.
+    index: u32,
+    /// Whether its normals are those of faces.
+    has_flat_faces: bool,
+    /// The attribute that it has as its colours.
+    attribute: Option<Attribute>,
+}
 
 impl Reader<'_, '_> {
     /// Adds a shape, or an instance, to the world. A group is there for its instances.
@@ -24,6 +51,12 @@ impl Reader<'_, '_> {
         match &*plugin.kind {
             "shapegroup" => self.group(plugin).map(drop),
             "instance" => self.instance(plugin),
+            "merge" => {
+                for (_, part) in plugin.parts("shape", &self.ids)? {
+                    self.within(&part, |reader| reader.shape(&part))?;
+                }
+                Ok(())
+            }
             _ => {
                 let shapes = self.shapes(plugin)?;
                 self.scene.shapes.extend(shapes);
@@ -74,15 +107,21 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&&*plugin.kind) {
             let error = plugin.unsupported(KINDS);
             return Err(match &*plugin.kind {
-                "serialized" => error.hint("write the mesh as a PLY file, and <shape type=\"ply\">"),
+                "sdfgrid" => error.hint("make a mesh of it, and write <shape type=\"ply\">"),
                 _ => error,
             });
         }
         let to_world = plugin.to_world()?;
         let flip = plugin.boolean("flip_normals", false)?;
-        let geometries = self.geometries(plugin)?;
+        let mut attribute = None;
+        for class in ["bsdf", "emitter"] {
+            if let Some(part) = plugin.peek(class, &self.ids)? {
+                attribute = self.attribute(&part)?.or(attribute);
+            }
+        }
+        let geometries = self.geometries(plugin, attribute)?;
         let is_made_of_faces = match &*plugin.kind {
-            "obj" | "ply" => !self.has_own_normals(&geometries),
+            "obj" | "ply" | "serialized" => !self.has_own_normals(&geometries),
             _ => false,
         };
         let emission = match plugin.part("emitter", &self.ids)? {
@@ -132,7 +171,11 @@ impl Reader<'_, '_> {
     }
 
     /// Geometries with their transforms to the space of the shape.
-    fn geometries(&mut self, plugin: &Plugin) -> Result<Vec<(Geometry, DMat4)>> {
+    fn geometries(
+        &mut self,
+        plugin: &Plugin,
+        attribute: Option<Attribute>,
+    ) -> Result<Vec<(Geometry, DMat4)>> {
         let one = |geometry, matrix| Ok(vec![(geometry, matrix)]);
         match &*plugin.kind {
             "sphere" => {
@@ -168,6 +211,7 @@ impl Reader<'_, '_> {
                 let mesh = cube();
                 one(self.push_mesh(mesh), DMat4::IDENTITY)
             }
+            "bsplinecurve" | "linearcurve" => one(self.curves(plugin)?, DMat4::IDENTITY),
             _ => {
                 let (path, at) = self.file(plugin)?;
                 let has_flat_faces = plugin.boolean("face_normals", false)?;
@@ -178,7 +222,12 @@ impl Reader<'_, '_> {
                         Error::new(ErrorKind::Unsupported, &at, message).hint("turn v around in the file")
                     );
                 }
-                let meshes = self.model(path, plugin.kind == "ply", has_flat_faces, &at)?;
+                let index = match &*plugin.kind {
+                    "serialized" => plugin.integer("shape_index", 0, 0, i64::from(u32::MAX))? as u32,
+                    _ => 0,
+                };
+                let key = MeshKey { path, index, has_flat_faces, attribute };
+                let meshes = self.model(&plugin.kind, key, &at)?;
                 Ok(meshes.into_iter().map(|id| (Geometry::Mesh(id), DMat4::IDENTITY)).collect())
             }
         }
@@ -194,19 +243,29 @@ impl Reader<'_, '_> {
     }
 
     /// The meshes of a model file, without its materials.
-    fn model(
-        &mut self,
-        path: PathBuf,
-        is_ply: bool,
-        has_flat_faces: bool,
-        at: &Location,
-    ) -> Result<Vec<MeshId>> {
-        let key = (path, has_flat_faces);
+    fn model(&mut self, kind: &str, key: MeshKey, at: &Location) -> Result<Vec<MeshId>> {
         if let Some(ids) = self.meshes.get(&key) {
             return Ok(ids.clone());
         }
         let mut alone = Scene::default();
-        let parts = model::read(&key.0, self.context, &mut alone).map_err(|error| blame(error, at))?;
+        let parts = match (kind, &key.attribute) {
+            ("serialized", _) => {
+                let mesh =
+                    serialized::read(&key.path, key.index, self.context).map_err(|error| blame(error, at))?;
+                alone.meshes.push(mesh);
+                vec![Part::new(None, Geometry::Mesh(MeshId(0)))]
+            }
+            ("ply", Some(Attribute { element, name })) => {
+                let parts = ply::read_with_attribute(&key.path, (element, name), self.context, &mut alone);
+                parts.map_err(|error| blame(error, at))?.ok_or_else(|| {
+                    let message =
+                        format!("the mesh has no attribute `{element}_{name}` of one or three numbers");
+                    Error::invalid(at, message)
+                })?
+            }
+            _ => model::read(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?,
+        };
+        let (is_obj, has_flat_faces) = (kind == "obj", key.has_flat_faces);
         let mut ids = Vec::new();
         for part in parts {
             let Geometry::Mesh(id) = part.geometry else {
@@ -221,7 +280,7 @@ impl Reader<'_, '_> {
                 mesh.normals = vertex_normals(&mesh);
                 self.context.keep(size_of_val(&*mesh.normals) as u64, "normals of a mesh", at)?;
             }
-            if is_ply {
+            if !is_obj {
                 mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
             }
             let id = self.add_mesh(mesh);

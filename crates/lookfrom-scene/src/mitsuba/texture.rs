@@ -10,18 +10,67 @@ use glam::DMat4;
 use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use super::xml::blame;
-use crate::error::{ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::image;
 use crate::material::{Color, Scalar};
 use crate::scene::{CurveId, ImageId, TextureId};
 use crate::spectrum::{Curve, observer};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
-const KINDS: &[&str] = &["bitmap", "checkerboard"];
+const KINDS: &[&str] = &["bitmap", "checkerboard", "mesh_attribute"];
 
-const SPECTRA: &[&str] = &["d65", "irregular", "rawconstant", "regular", "srgb", "uniform"];
+const SPECTRA: &[&str] = &["blackbody", "d65", "irregular", "rawconstant", "regular", "srgb", "uniform"];
+
+/// An attribute of meshes.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Attribute {
+    /// `vertex` or `face`.
+    pub(super) element: &'static str,
+    /// Its name without the element.
+    pub(super) name: String,
+}
+
+impl Attribute {
+    /// That of a texture.
+    fn of(plugin: &Plugin) -> Result<Self> {
+        let name = plugin.string("name")?.unwrap_or_default();
+        let of = |element: &'static str| {
+            let name = name.strip_prefix(element)?.strip_prefix('_').filter(|name| !name.is_empty())?;
+            Some(Self { element, name: name.to_owned() })
+        };
+        of("vertex")
+            .or_else(|| of("face"))
+            .ok_or_else(|| plugin.refuse("name", "that of an attribute: \"vertex_…\" or \"face_…\""))
+    }
+}
 
 impl Reader<'_, '_> {
+    /// The attribute of meshes that textures in a plugin are of.
+    ///
+    /// # Errors
+    /// `Unsupported` if there are several.
+    pub(super) fn attribute(&self, plugin: &Rc<Plugin>) -> Result<Option<Attribute>> {
+        let (mut found, mut seen, mut rest) = (None, Vec::new(), vec![plugin.clone()]);
+        while let Some(plugin) = rest.pop() {
+            if seen.contains(&Rc::as_ptr(&plugin)) {
+                continue;
+            }
+            seen.push(Rc::as_ptr(&plugin));
+            if plugin.kind == "mesh_attribute" {
+                let attribute = Attribute::of(&plugin)?;
+                if found.as_ref().is_some_and(|found| *found != attribute) {
+                    let message = "two attributes of a mesh in one surface are not supported";
+                    return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message));
+                }
+                found = Some(attribute);
+            }
+            for property in &plugin.properties {
+                rest.extend(property.plugin(&self.ids)?);
+            }
+        }
+        Ok(found)
+    }
+
     /// A colour of a surface, constant or textured.
     pub(super) fn color(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<Color> {
         match plugin.find(name) {
@@ -41,7 +90,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn color_of(&mut self, property: &Property) -> Result<Color> {
+    pub(super) fn color_of(&mut self, property: &Property) -> Result<Color> {
         match &property.value {
             Value::Float(value) => Ok(Color::gray(*value as f32)),
             Value::Color(rgb) => Ok(Color::Value(*rgb)),
@@ -61,13 +110,32 @@ impl Reader<'_, '_> {
             None => Ok(Scalar::Value(default as f32)),
             Some(property) => match &property.value {
                 Value::Integer(value) => Ok(Scalar::Value(*value as f32)),
-                _ => match self.color_of(property)? {
+                _ => match self.number_of(property)? {
                     Color::Value([x, y, z]) if x == y && y == z => Ok(Scalar::Value(x)),
                     Color::Texture(id) => Ok(Scalar::Texture(id)),
                     Color::Value(_) | Color::Curve(_) => Err(property.wrong("a number or a texture")),
                 },
             },
         }
+    }
+
+    /// As [`color_of`](Self::color_of), where a number is asked for: there Mitsuba exchanges the fields of a checkerboard.
+    fn number_of(&mut self, property: &Property) -> Result<Color> {
+        let color = self.color_of(property)?;
+        let Color::Texture(id) = color else { return Ok(color) };
+        let TextureKind::Checker { even, odd, footprint, mapping } = self.scene.textures[id.index()].kind
+        else {
+            return Ok(color);
+        };
+        if let Some(&exchanged) = self.exchanged.get(&id) {
+            return Ok(Color::Texture(exchanged));
+        }
+        let kind = TextureKind::Checker { even: odd, odd: even, footprint, mapping };
+        let texture = Texture { kind, ..self.scene.textures[id.index()].clone() };
+        self.scene.textures.push(texture);
+        let exchanged = TextureId(self.scene.textures.len() as u32 - 1);
+        self.exchanged.insert(id, exchanged);
+        Ok(Color::Texture(exchanged))
     }
 
     /// A spectrum that is a plugin of its own, the same everywhere.
@@ -96,6 +164,14 @@ impl Reader<'_, '_> {
                 let steps = values.len().saturating_sub(1).max(1) as f64;
                 let step = (last - first) / steps;
                 ((0..values.len()).map(|index| (first + step * index as f64) as f32).collect(), values)
+            }
+            "blackbody" => {
+                let kelvin = plugin.positive("temperature", 5000.0)?;
+                let scale =
+                    plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
+                let values =
+                    (0..=94).map(|step| (scale * planck(360.0 + 5.0 * f64::from(step), kelvin)) as f32);
+                ((0..=94).map(|step| 360.0 + 5.0 * step as f32).collect(), values.collect())
             }
             _ => return Ok(None),
         };
@@ -173,11 +249,18 @@ impl Reader<'_, '_> {
             "checkerboard" => {
                 let matrix = plugin.transform("to_uv")?;
                 Ok(TextureKind::Checker {
-                    even: reader.color(plugin, "color1", 0.2)?,
-                    odd: reader.color(plugin, "color0", 0.4)?,
+                    even: reader.color(plugin, "color0", 0.4)?,
+                    odd: reader.color(plugin, "color1", 0.2)?,
                     footprint: 0.0,
                     mapping: mapping(&matrix, 2.0, false),
                 })
+            }
+            "mesh_attribute" => {
+                let scale =
+                    plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
+                // Meshes are read with the attribute as their colours.
+                Attribute::of(plugin)?;
+                Ok(TextureKind::VertexColor { tint: [scale as f32; 3] })
             }
             _ => Err(plugin.unsupported(KINDS)),
         })?;
@@ -186,7 +269,7 @@ impl Reader<'_, '_> {
         Ok(id)
     }
 
-    fn bitmap(&mut self, plugin: &Plugin) -> Result<TextureKind> {
+    pub(super) fn bitmap(&mut self, plugin: &Plugin) -> Result<TextureKind> {
         let wraps = [("repeat", Wrap::Repeat), ("mirror", Wrap::Mirror), ("clamp", Wrap::Clamp)];
         let filters = [("bilinear", TexelFilter::Bilinear), ("nearest", TexelFilter::Nearest)];
         plugin.ignore(&["accel", "format"]);
@@ -219,6 +302,16 @@ impl Reader<'_, '_> {
         self.images.insert(key, id);
         Ok(id)
     }
+}
+
+/// The spectral radiance of a blackbody (Planck 1900) in W/(m² sr nm).
+fn planck(nm: f64, kelvin: f64) -> f64 {
+    const C: f64 = 299_792_458.0;
+    const H: f64 = 6.626_070_15e-34;
+    const K: f64 = 1.380_649e-23;
+    let metres = nm * 1e-9;
+    let per_metre = 2.0 * H * C * C / (metres.powi(5) * libm::expm1(H * C / (metres * K * kelvin)));
+    per_metre * 1e-9
 }
 
 /// The mapping of a texture by the matrix `to_uv`, times a factor. The result's v runs up if it `is_picture`.

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::Reader;
 use super::params::{ParameterType, Parameters};
 use crate::error::Result;
-use crate::shape::{Geometry, Profile, Shape, Strand};
+use crate::shape::{Geometry, Profile, Shape, Strand, cubic_b_spline};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Basis {
@@ -130,13 +130,6 @@ fn elevated([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
 /// The Bézier points of a segment of a uniform quadratic B-spline.
 fn quadratic_b_spline([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     [(a + b) * 0.5, b, (b + c) * 0.5]
-}
-
-/// The Bézier points of a segment of a uniform cubic B-spline.
-fn cubic_b_spline([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
-    let near = |p: Vec3, q: Vec3| p + (q - p) * (1.0 / 3.0);
-    let (bc, cb) = (near(b, c), near(c, b));
-    [(near(b, a) + bc) * 0.5, bc, cb, (cb + near(c, d)) * 0.5]
 }
 
 #[cfg(test)]

@@ -13,10 +13,11 @@ use super::spectra::brightness;
 use super::text::Place;
 use super::{Reader, transform};
 use crate::error::Result;
-use crate::light::{Falloff, Light, LightKind, Power, Sky, is_rectangle};
+use crate::light::{Edge, Falloff, Light, LightKind, Power, Projected, Sky, is_rectangle};
 use crate::material::Color;
 use crate::scene::ImageId;
 use crate::shape::Emission;
+use crate::texture::TexelFilter;
 
 const KINDS: &[&str] = &["distant", "goniometric", "infinite", "point", "projection", "spot"];
 
@@ -51,6 +52,7 @@ impl Reader<'_, '_> {
                     intensity,
                     cone_angle: cone.into(),
                     inner_angle: (cone - delta).max(0.0).into(),
+                    edge: Edge::Smooth,
                     falloff: Falloff::Quadratic,
                 };
                 (kind, power(p, "power", intensity, PI)?)
@@ -64,7 +66,15 @@ impl Reader<'_, '_> {
                 let image = self.light_picture(p, false)?;
                 let fov =
                     p.float_where("fov", 90.0, "an angle between 0 and 180", |a| a > 0.0 && a < 180.0)?;
-                let kind = LightKind::Projection { image, intensity: 1.0, fov, world_from_light: matrix };
+                let kind = LightKind::Projection {
+                    image,
+                    filter: TexelFilter::Nearest,
+                    quantity: Projected::Intensity,
+                    intensity: 1.0,
+                    cone: None,
+                    fov,
+                    world_from_light: matrix,
+                };
                 (kind, power(p, "power", WHITE, PI)?)
             }
             "goniometric" => {

@@ -66,6 +66,13 @@ pub(super) const VERTEX: [&[&str]; 11] = [
     &["nz", "normal_z"],
     &["s", "u", "texture_u", "texture_s", "s0", "u0"],
     &["t", "v", "texture_v", "texture_t", "t0", "v0"],
+    COLORS[0],
+    COLORS[1],
+    COLORS[2],
+];
+
+/// Names of the channels of colours.
+pub(super) const COLORS: [&[&str]; 3] = [
     &["red", "r", "diffuse_red", SPLAT_COLOR],
     &["green", "g", "diffuse_green", "f_dc_1"],
     &["blue", "b", "diffuse_blue", "f_dc_2"],
@@ -97,9 +104,9 @@ pub(super) fn read(bytes: &[u8], header: &Header, file: &Location, limits: &Limi
             );
         }
         match element.name.as_str() {
-            "vertex" => read_vertices(element, &mut reader, &mut content)?,
+            "vertex" => read_vertices(element, header.is_gray, &mut reader, &mut content)?,
             "face" | "tristrips" | "tristrip" => {
-                read_faces(element, vertices, limits, &mut reader, &mut content)?;
+                read_faces(element, header.is_gray, vertices, limits, &mut reader, &mut content)?;
             }
             "edge" if element.find(&["vertex1"]).is_some() => {
                 content.edges = Edges::read(element, &mut reader)?;
@@ -124,7 +131,12 @@ fn too_short(element: &Element, least: u64, there: u64) -> Error {
     Error::syntax(at, message).hint("the file may be cut off, or its header may be wrong")
 }
 
-fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Content) -> Result<()> {
+fn read_vertices(
+    element: &Element,
+    is_gray: bool,
+    reader: &mut Reader<'_>,
+    content: &mut Content,
+) -> Result<()> {
     let columns = VERTEX.map(|names| {
         element.find(names).filter(|&index| matches!(element.properties[index].kind, PropertyKind::One(_)))
     });
@@ -141,7 +153,7 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
         columns[slot].is_some_and(|column| element.properties[column].kind == PropertyKind::One(Scalar::F32))
     };
     let is_single = reader.is_binary() && (0..3).all(is_single);
-    let (normals, uvs, colors) = (has(3..6), has(6..8), has(8..11));
+    let (normals, uvs, colors) = (has(3..6), has(6..8), has(8..if is_gray { 9 } else { 11 }));
     let mut slots = vec![VERTEX.len(); element.properties.len()];
     for (slot, column) in columns.into_iter().enumerate() {
         if let Some(column) = column {
@@ -174,7 +186,8 @@ fn read_vertices(element: &Element, reader: &mut Reader<'_>, content: &mut Conte
             content.uvs.push(Vec2::new(s, t));
         }
         if colors {
-            content.colors.push([decode(row[8]), decode(row[9]), decode(row[10])]);
+            let channel = |channel: usize| decode(row[if is_gray { 8 } else { 8 + channel }]);
+            content.colors.push(std::array::from_fn(channel));
         }
         reader.end_row();
     }
@@ -201,6 +214,7 @@ pub(super) fn color_decoder(kind: Option<PropertyKind>) -> impl Fn(f64) -> f32 {
 
 fn read_faces(
     element: &Element,
+    is_gray: bool,
     vertices: u64,
     limits: &Limits,
     reader: &mut Reader<'_>,
@@ -218,7 +232,7 @@ fn read_faces(
     let texcoords = element.find(&["texcoord"]).filter(is_list);
     let is_one = |index: &usize| matches!(element.properties[*index].kind, PropertyKind::One(_));
     let columns = [8, 9, 10].map(|slot| element.find(VERTEX[slot]).filter(is_one));
-    let has_colors = columns.iter().all(Option::is_some);
+    let has_colors = columns[..if is_gray { 1 } else { 3 }].iter().all(Option::is_some);
     let decode = color_decoder(columns[0].map(|column| element.properties[column].kind));
     let (mut face, mut uvs) = (Vec::new(), Vec::new());
     for _ in 0..element.count {
@@ -263,6 +277,7 @@ fn read_faces(
             content.push_face(&face, &uvs, line);
         }
         if has_colors {
+            let color = if is_gray { [color[0]; 3] } else { color };
             content.face_colors.resize(content.faces.len(), color);
         }
         if content.corners.len() as u64 > limits.elements.min(u64::from(u32::MAX) / 4) {

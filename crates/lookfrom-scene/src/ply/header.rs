@@ -1,5 +1,6 @@
 //! Parser for PLY headers: format, elements, properties and textures.
 
+use super::body::COLORS;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::model::scan::{Scanner, shown};
@@ -53,6 +54,8 @@ pub(super) struct Header {
     pub(super) textures: Vec<String>,
     /// Whether it is a file of our own ([`MARK`]), and then whether its mesh is one of a solid ([`SOLID`]).
     pub(super) own: Option<bool>,
+    /// Whether a single number stands for the three channels of colours.
+    pub(super) is_gray: bool,
     /// Length of the header in bytes and lines.
     pub(super) length: usize,
     pub(super) lines: u32,
@@ -174,7 +177,39 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     let before = scanner.position();
     scanner.next_line();
     let length = if lone_returns { (before + 1).min(bytes.len()) } else { scanner.position() };
-    Ok(Header { format, elements, textures, own, length, lines: scanner.line() })
+    Ok(Header { format, elements, textures, own, is_gray: false, length, lines: scanner.line() })
+}
+
+impl Header {
+    /// Takes an attribute for the colours: properties `NAME_0`, `NAME_1`, … (as Mitsuba writes them), or one that is called so. Those of
+    /// `color` may have the usual names too. False if the element has no such one with one or three channels.
+    pub(super) fn take_colors_from(&mut self, element: &str, name: &str) -> bool {
+        const CHANNELS: [&str; 3] = ["red", "green", "blue"];
+        let numbered = |property: &Property, channel: usize| property.name == format!("{name}_{channel}");
+        let count = |of: &Element| {
+            (0..4).take_while(|&channel| of.properties.iter().any(|p| numbered(p, channel))).count()
+        };
+        let numbers = self.elements.iter().find(|of| of.name == element).map_or(0, count);
+        for of in &mut self.elements {
+            let is_it = of.name == element;
+            if is_it && numbers == 0 && name == "color" {
+                continue;
+            }
+            for property in &mut of.properties {
+                let channel = (0..numbers).find(|&channel| numbered(property, channel));
+                let alone = (numbers == 0 && property.name == name).then_some(0);
+                if let Some(channel) = channel.or(alone).filter(|channel| is_it && *channel < 3) {
+                    CHANNELS[channel].clone_into(&mut property.name);
+                } else if COLORS.iter().any(|names| names.contains(&&*property.name)) {
+                    property.name.clear();
+                }
+            }
+        }
+        let found = self.elements.iter().find(|of| of.name == element);
+        let channels = found.map_or(0, |of| COLORS.iter().filter(|names| of.find(names).is_some()).count());
+        self.is_gray = channels == 1;
+        matches!(channels, 1 | 3) && numbers < 4
+    }
 }
 
 fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[Element]) -> Result<Element> {

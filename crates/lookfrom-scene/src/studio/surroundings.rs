@@ -12,7 +12,7 @@ use glam::{DMat4, DVec3};
 use super::{StudioFrame, sane};
 use crate::error::Location;
 use crate::image::Image;
-use crate::light::{LightKind, Sky};
+use crate::light::{LightKind, MapRows, Sky};
 use crate::material::{Material, MaterialKind};
 use crate::model::surface::push_image;
 use crate::scene::{Bounds, MaterialId, Scene};
@@ -65,7 +65,12 @@ impl StudioFrame {
     /// Adds the studio, oriented towards the viewer whom models face.
     pub(super) fn add_studio(&self, scene: &mut Scene) {
         let image = push_image(scene, studio());
-        let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: self.world_from_light() };
+        let sky = Sky::Image {
+            image,
+            scale: [1.0; 3],
+            world_from_light: self.world_from_light(),
+            rows: MapRows::Bands,
+        };
         super::add(scene, "studio", LightKind::Environment { sky, portal: None, illuminates: true });
     }
 
@@ -81,7 +86,7 @@ pub fn surround(scene: &mut Scene, picture: Image, up: Option<DVec3>) {
     scene.lights.retain(|light| !matches!(light.kind, LightKind::Environment { .. }));
     let world_from_light = StudioFrame::of(scene, up).world_from_light();
     let image = push_image(scene, picture);
-    let sky = Sky::Image { image, scale: [1.0; 3], world_from_light };
+    let sky = Sky::Image { image, scale: [1.0; 3], world_from_light, rows: MapRows::Bands };
     super::add(scene, "environment", LightKind::Environment { sky, portal: None, illuminates: true });
 }
 

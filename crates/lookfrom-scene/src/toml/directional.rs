@@ -11,8 +11,18 @@ use super::value::Value;
 use crate::camera::up_across;
 use crate::error::Result;
 use crate::ies;
-use crate::light::{LightKind, Power};
+use crate::light::{Edge, LightKind, Power, Projected};
 use crate::scene::ImageId;
+use crate::texture::TexelFilter;
+
+/// The words for the edges of spot lights.
+pub(super) const EDGES: &[(&str, Edge)] = &[("smooth", Edge::Smooth), ("linear", Edge::Linear)];
+/// The words for the interpolation of projected images.
+pub(super) const PROJECTED_FILTERS: &[(&str, TexelFilter)] =
+    &[("nearest", TexelFilter::Nearest), ("bilinear", TexelFilter::Bilinear)];
+/// The words for the quantities of projected images.
+pub(super) const QUANTITIES: &[(&str, Projected)] =
+    &[("intensity", Projected::Intensity), ("irradiance", Projected::Irradiance)];
 
 impl Reader<'_, '_> {
     /// A spot light.
@@ -29,7 +39,11 @@ impl Reader<'_, '_> {
         let inner_angle = table.or("inner_angle", 0.8 * cone_angle, |value| {
             value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=cone_angle).contains(&angle))
         });
-        Ok((LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff }, power))
+        let edge = table.or("edge", Edge::default(), |value| value.choice(EDGES));
+        Ok((
+            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, edge, falloff },
+            power,
+        ))
     }
 
     /// A projection light.
@@ -40,7 +54,6 @@ impl Reader<'_, '_> {
         let position = position(table);
         let forward = aim(table, position).normalize();
         let up = table.maybe("up", Value::direction);
-        let Projected { image, intensity, fov, power } = self.projected(table);
         table.sound(&["position", "target", "direction", "up"])?;
         let up = match up {
             Some(up) => {
@@ -62,7 +75,25 @@ impl Reader<'_, '_> {
             forward.extend(0.0),
             position.extend(1.0),
         );
-        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
+        self.projected(table, world_from_light)
+    }
+
+    /// The half-angles of the cone of a projection light, if it has one.
+    fn projected_cone(&mut self, table: &Table<'_>) -> Result<Option<[f64; 2]>> {
+        let expected = "degrees, more than 0 and less than 90";
+        let outer = table
+            .maybe("cone_angle", |value| value.number_where(expected, |angle| angle > 0.0 && angle < 90.0));
+        table.sound(&["cone_angle"])?;
+        let Some(outer) = outer else {
+            if let Some(inner) = table.find("inner_angle") {
+                inner.note(inner.error("`inner_angle` needs a `cone_angle`"));
+            }
+            return Ok(None);
+        };
+        let inner = table.or("inner_angle", outer, |value| {
+            value.number_where("degrees from 0 to `cone_angle`", |angle| (0.0..=outer).contains(&angle))
+        });
+        Ok(Some([outer, inner]))
     }
 
     /// A projection light whose space a matrix places.
@@ -71,23 +102,25 @@ impl Reader<'_, '_> {
             table.one_of(&["matrix", key]);
         }
         let world_from_light = table.or("matrix", DMat4::IDENTITY, invertible_rows);
-        let Projected { image, intensity, fov, power } = self.projected(table);
-        Ok((LightKind::Projection { image, intensity, fov, world_from_light }, power))
+        self.projected(table, world_from_light)
     }
 
-    /// What a projection light projects.
-    fn projected(&mut self, table: &Table<'_>) -> Projected {
+    /// A projection light in its place.
+    fn projected(&mut self, table: &Table<'_>, world_from_light: DMat4) -> Result<(LightKind, Power)> {
         let expected = "degrees between 0 and 180, exclusive";
-        Projected {
-            fov: table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0)),
-            intensity: table.or("intensity", 1.0, |value| {
-                value.single_where("a number of at least 0: the colours are in the picture", |number| {
-                    number >= 0.0
-                })
-            }),
-            power: power(table, "power", 1.0),
-            image: table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value)),
-        }
+        let fov = table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0));
+        let intensity = table.or("intensity", 1.0, |value| {
+            value.single_where("a number of at least 0: the colours are in the picture", |number| {
+                number >= 0.0
+            })
+        });
+        let power = power(table, "power", 1.0);
+        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.image(value));
+        let filter = table.or("filter", TexelFilter::Nearest, |value| value.choice(PROJECTED_FILTERS));
+        let quantity = table.or("quantity", Projected::default(), |value| value.choice(QUANTITIES));
+        let cone = self.projected_cone(table)?;
+        let kind = LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light };
+        Ok((kind, power))
     }
 
     /// The octahedral map of a luminaire's photometric file, or of a picture.
@@ -113,12 +146,4 @@ impl Reader<'_, '_> {
         let (intensity, power) = self.intensity(table, "power");
         (LightKind::Goniometric { intensity, image, world_from_light }, power)
     }
-}
-
-/// A picture and its light.
-struct Projected {
-    image: ImageId,
-    intensity: f32,
-    fov: f32,
-    power: Power,
 }

@@ -4,7 +4,7 @@ use super::color::plain_color;
 use super::light::power;
 use super::table::{Kinds, Table};
 use super::value::Value;
-use super::{Reader, hair, open_pbr, principled, subsurface};
+use super::{Reader, disney, hair, open_pbr, principled, subsurface};
 use crate::chain;
 use crate::error::{Location, Result};
 use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
@@ -75,6 +75,7 @@ pub(super) const KEYS: Kinds = &[
     ("measured", &["file", "normal_map", "bump"]),
     ("principled", principled::KEYS),
     ("openpbr", open_pbr::KEYS),
+    ("disney", disney::KEYS),
     ("unlit", &["color"]),
     ("mix", &["materials", "amount"]),
     ("shadow_catcher", &["normal"]),

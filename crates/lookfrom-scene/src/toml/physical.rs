@@ -73,6 +73,7 @@ impl Reader<'_, '_> {
                 read.map_or(MaterialKind::Interface, MaterialKind::Measured)
             }
             "principled" => MaterialKind::Principled(Box::new(self.principled(table))),
+            "disney" => MaterialKind::Disney(Box::new(self.disney(table))),
             "unlit" => MaterialKind::Unlit { color: self.color_or(table, "color", 1.0) },
             "mix" => {
                 let amount = self.share_or(table, "amount", MaterialKind::MIX_AMOUNT);

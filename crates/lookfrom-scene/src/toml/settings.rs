@@ -48,6 +48,7 @@ pub(super) const RENDER: &[&str] = &[
     "regularize",
     "occlusion_distance",
     "occlusion_directions",
+    "thin_passages_count",
     "open_fronts",
     "media",
     "vertex_normals",
@@ -237,6 +238,7 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         regularize: table.or("regularize", default.regularize, Value::boolean),
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         media: table.or("media", default.media, Value::boolean),
+        thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),
         open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
     }
 }

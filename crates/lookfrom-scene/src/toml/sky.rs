@@ -8,14 +8,18 @@ use super::table::Table;
 use super::transform::invertible_rows;
 use super::value::Value;
 use crate::error::{Error, Result};
-use crate::light::{LightKind, Power, Sky, is_rectangle, panorama_fault};
+use crate::light::{LightKind, MapRows, Power, Sky, is_rectangle, panorama_fault};
 use crate::scene::ImageId;
 
 /// The keys besides those of the colours.
 const ALWAYS: &[&str] = &["illuminance", "portal", "illuminates"];
 
-/// The words for the layouts of environment maps, and whether they are octahedral.
-pub(super) const LAYOUTS: &[(&str, bool)] = &[("latitude_longitude", false), ("octahedral", true)];
+/// The words for the layouts of environment maps; `None` for the octahedral one.
+pub(super) const LAYOUTS: &[(&str, Option<MapRows>)] = &[
+    ("latitude_longitude", Some(MapRows::Bands)),
+    ("latitude_longitude_to_poles", Some(MapRows::ToPoles)),
+    ("octahedral", None),
+];
 
 impl Reader<'_, '_> {
     pub(super) fn environment(&mut self, table: &Table<'_>) -> Result<(LightKind, Power)> {
@@ -59,16 +63,16 @@ impl Reader<'_, '_> {
     }
 
     fn sky_picture(&mut self, table: &Table<'_>, value: Value<'_>) -> Result<Sky> {
-        let is_octahedral = table.or("layout", false, |value| value.choice(LAYOUTS));
+        let rows = table.or("layout", Some(MapRows::Bands), |value| value.choice(LAYOUTS));
         let scale = table.or("scale", [1.0; 3], |value| self.light_rgb(value));
         table.one_of(&["rotate", "matrix"]);
         let (turn, matrix) = (turned(table), table.maybe("matrix", invertible_rows));
-        let image = if is_octahedral { self.octahedral_image(value)? } else { self.image(value)? };
-        if !is_octahedral {
+        let image = if rows.is_none() { self.octahedral_image(value)? } else { self.image(value)? };
+        if let Some(rows) = rows {
             if let Some(fault) = panorama_fault(&self.scene.images[image.index()]) {
                 self.context.warn(&value.at(), fault);
             }
-            return Ok(Sky::Image { image, scale, world_from_light: matrix.unwrap_or(turn) });
+            return Ok(Sky::Image { image, scale, world_from_light: matrix.unwrap_or(turn), rows });
         }
         let world_from_light = matrix.unwrap_or_else(|| turn * up_from_pole());
         Ok(Sky::Octahedral { image, scale, world_from_light })

@@ -75,7 +75,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 /// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
-    use super::{sky, solid};
+    use super::{directional, sky, solid};
     use crate::settings::{Allocation, ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
@@ -92,6 +92,8 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("[[solid.of]]", words(solid::TYPES)),
         ("interpolation", words(keyframes::INTERPOLATIONS)),
         ("falloff", words(light::FALLOFFS)),
+        ("edge", words(directional::EDGES)),
+        ("quantity", words(directional::QUANTITIES)),
         ("energy", words(physical::ENERGIES)),
         ("coat_estimate", words(physical::ESTIMATES)),
         ("ends", words(spectrum::ENDS)),

@@ -35,7 +35,17 @@ fn check_kind(part: &Part<'_>, kind: &LightKind) -> Result<()> {
             part.number("cone_angle", cone, "degrees above 0 and up to 180", cone > 0.0 && cone <= 180.0)?;
             part.number("inner_angle", inner, "degrees from 0 to cone_angle", (0.0..=cone).contains(&inner))
         }
-        LightKind::Projection { image, intensity, fov, world_from_light } => {
+        LightKind::Projection { image, intensity, fov, world_from_light, cone, .. } => {
+            if let Some([outer, inner]) = *cone {
+                part.number(
+                    "cone_angle",
+                    outer,
+                    "degrees above 0 and below 90",
+                    outer > 0.0 && outer < 90.0,
+                )?;
+                let is_within = (0.0..=outer).contains(&inner);
+                part.number("inner_angle", inner, "degrees from 0 to cone_angle", is_within)?;
+            }
             part.image(*image)?;
             part.finite("intensity", &[f64::from(*intensity)])?;
             part.number("fov", f64::from(*fov), "degrees between 0 and 180", *fov > 0.0 && *fov < 180.0)?;
@@ -70,7 +80,7 @@ fn check_sky(part: &Part<'_>, sky: &Sky) -> Result<()> {
         Sky::Gradient { zenith, horizon, nadir } => {
             [zenith, horizon, nadir].into_iter().try_for_each(|rgb| part.finite("color", &rgb.map(f64::from)))
         }
-        Sky::Image { image, scale, world_from_light }
+        Sky::Image { image, scale, world_from_light, .. }
         | Sky::Octahedral { image, scale, world_from_light } => {
             part.image(*image)?;
             if let Sky::Octahedral { .. } = sky {

@@ -4,7 +4,7 @@ use super::Part;
 use crate::error::Result;
 use crate::material::{
     BumpMapping, Coat, Hair, Ior, MaterialKind, NormalTexture, OpenPbr, Pigment, Principled, Roughness,
-    Subsurface, Tangent, Whitted,
+    Scalar, Subsurface, Tangent, Whitted,
 };
 use crate::scene::Scene;
 
@@ -42,6 +42,13 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
         }
         MaterialKind::Principled(look) => check_principled(part, look),
         MaterialKind::OpenPbr(look) => check_open_pbr(part, look),
+        MaterialKind::Disney(look) => {
+            look.scalars().into_iter().try_for_each(|(name, scalar)| part.scalar(name, scalar))?;
+            match look.eta {
+                Scalar::Value(eta) => part.positive("eta", eta.into()),
+                Scalar::Texture(_) => Ok(()),
+            }
+        }
         MaterialKind::Subsurface(below) => check_subsurface(part, below),
         MaterialKind::Hair(hair) => check_hair(part, hair),
         MaterialKind::Measured(measured) => match measured.is_consistent() {

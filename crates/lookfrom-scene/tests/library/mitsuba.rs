@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::excerpt::Excerpts;
-use lookfrom_scene::light::{LightKind, Sky};
+use lookfrom_scene::light::{Edge, LightKind, MapRows, Projected, Sky};
 use lookfrom_scene::material::{BumpMapping, Color, Ior, MaterialKind, Metal, Scalar};
-use lookfrom_scene::settings::{FilterShape, Integrator, PixelBounds, Sampler};
+use lookfrom_scene::medium::{Density, Medium};
+use lookfrom_scene::scene::TextureId;
+use lookfrom_scene::settings::{FilterShape, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Shape};
 use lookfrom_scene::texture::{Mapping, TexelFilter, TextureKind, Wrap};
 use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, load};
@@ -284,8 +286,12 @@ fn bsdfs_become_materials() {
     );
     let (principled, _, warnings) =
         material("<bsdf type=\"principled\"><float name=\"specular\" value=\"0.5\"/></bsdf>");
-    let MaterialKind::Principled(look) = principled else { panic!("{principled:?}") };
-    assert!((look.ior - 1.5).abs() < 1e-6 && warnings.len() == 1, "{} {warnings:?}", look.ior);
+    let MaterialKind::Disney(look) = principled else { panic!("{principled:?}") };
+    assert!(look.eta == Scalar::Value(1.5) && warnings.is_empty() && !look.is_thin, "{look:?} {warnings:?}");
+    let thin = material("<bsdf type=\"principledthin\"><float name=\"diff_trans\" value=\"0.6\"/></bsdf>").0;
+    assert!(
+        matches!(thin, MaterialKind::Disney(look) if look.is_thin && look.diff_trans == Scalar::Value(0.6))
+    );
     let bumpy = scene(
         "<shape type=\"cube\"><bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/><bsdf type=\"diffuse\"/></bsdf></shape>",
     );
@@ -309,7 +315,10 @@ fn emitters_have_the_intensities_of_whitted() {
     assert!(
         matches!(read.lights[0].kind, LightKind::Point { intensity, .. } if intensity == Color::gray(6.0))
     );
-    let LightKind::Environment { sky: Sky::Image { scale, world_from_light, .. }, .. } = read.lights[2].kind
+    let LightKind::Environment {
+        sky: Sky::Image { scale, world_from_light, rows: MapRows::ToPoles, .. },
+        ..
+    } = read.lights[2].kind
     else {
         panic!("{:?}", read.lights[2].kind)
     };
@@ -321,8 +330,162 @@ fn emitters_have_the_intensities_of_whitted() {
     // An emitter without a BSDF is black.
     let black = &read.materials[read.shapes[0].material.index()];
     assert_eq!(black.kind, MaterialKind::Diffuse { reflectance: Color::BLACK });
-    let (_, warnings) = told("<emitter type=\"spot\"/>");
-    assert!(warnings[0].contains("smoothstep"), "{warnings:?}");
+}
+
+#[test]
+fn spots_and_projectors_have_pictures_and_linear_edges() {
+    let read = scene(
+        r#"<emitter type="spot"><float name="cutoff_angle" value="40"/></emitter>
+        <emitter type="spot"><float name="cutoff_angle" value="30"/><float name="beam_width" value="10"/>
+            <rgb name="intensity" value="2 3 4"/>
+            <texture name="texture" type="bitmap"><string name="filename" value="p.pfm"/></texture></emitter>
+        <emitter type="projector"><float name="fov" value="60"/><float name="scale" value="5"/>
+            <texture name="irradiance" type="bitmap"><string name="filename" value="p.pfm"/>
+            <string name="filter_type" value="nearest"/></texture></emitter>
+        <emitter type="projector"><rgb name="irradiance" value="1 2 3"/></emitter>"#,
+    );
+    let LightKind::Spot { cone_angle: 40.0, inner_angle: 30.0, edge: Edge::Linear, .. } = read.lights[0].kind
+    else {
+        panic!("{:?}", read.lights[0])
+    };
+    let LightKind::Projection { image, filter, quantity, cone, fov, world_from_light, .. } =
+        read.lights[1].kind
+    else {
+        panic!("{:?}", read.lights[1])
+    };
+    // The colour of the light is in its picture, whose rows run up.
+    assert_eq!(read.images[image.index()].texel(0), [1.0, 1.5, 2.0]);
+    assert_eq!(
+        (filter, quantity, cone, fov),
+        (TexelFilter::Bilinear, Projected::Intensity, Some([30.0, 10.0]), 60.0)
+    );
+    assert_eq!(world_from_light.transform_vector3(DVec3::ONE), DVec3::new(1.0, -1.0, 1.0));
+    assert_eq!(read.lights[1].power.scale, FRAC_1_PI);
+    let LightKind::Projection { filter, quantity, cone: None, fov, world_from_light, .. } =
+        read.lights[2].kind
+    else {
+        panic!("{:?}", read.lights[2])
+    };
+    assert_eq!((filter, quantity), (TexelFilter::Nearest, Projected::Irradiance));
+    assert!((fov - 60.0).abs() < 1e-4 && read.lights[2].power.scale == 5.0, "{fov}");
+    assert_eq!(world_from_light.transform_vector3(DVec3::ONE), DVec3::new(-1.0, 1.0, 1.0));
+    let LightKind::Projection { image, .. } = read.lights[3].kind else { panic!("{:?}", read.lights[3]) };
+    assert_eq!(read.images[image.index()].texel(0), [1.0, 2.0, 3.0]);
+    assert!(error("<emitter type=\"spot\"><float name=\"cutoff_angle\" value=\"90\"/><texture name=\"texture\" type=\"bitmap\"/></emitter>").message.contains("cutoff_angle"));
+}
+
+/// A mesh with an attribute of faces and one of vertices.
+const ATTRIBUTES: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property float heat_0\nelement face 2\nproperty list uchar int vertex_indices\nproperty float color_0\n\
+    property float color_1\nproperty float color_2\nend_header\n0 0 0 0.25\n1 0 0 0.5\n0 1 0 0.75\n1 1 0 1\n\
+    3 0 1 2 1 0 0\n3 1 3 2 0 0.5 0\n";
+
+#[test]
+fn attributes_of_meshes_are_their_colours() {
+    let of = |bsdf: &str| {
+        let text = format!(
+            "<scene version=\"3.0.0\">\n<shape type=\"ply\"><string name=\"filename\" value=\"m.ply\"/>{bsdf}</shape>\n</scene>"
+        );
+        read_of(&files(&[("s/a.xml", &text), ("s/m.ply", ATTRIBUTES)]), &[]).0
+    };
+    let diffuse = |name: &str| {
+        of(&format!(
+            "<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"mesh_attribute\"><string name=\"name\" value=\"{name}\"/></texture></bsdf>"
+        ))
+    };
+    let read = diffuse("vertex_heat").expect("a scene");
+    assert_eq!(read.meshes[0].colors, [[0.25; 3], [0.5; 3], [0.75; 3], [1.0; 3]]);
+    let read = diffuse("face_color").expect("a scene");
+    let colors = read.meshes[0].triangles[1].map(|corner| read.meshes[0].colors[corner as usize]);
+    assert_eq!((read.meshes[0].positions.len(), colors), (6, [[0.0, 0.5, 0.0]; 3]));
+    let missing = diffuse("vertex_color").expect_err("no such attribute");
+    assert_eq!((missing.kind, missing.at.line), (ErrorKind::Invalid, 2));
+    assert!(diffuse("color").expect_err("of nothing").message.starts_with("`name` has to be"));
+    let both = of(
+        "<bsdf type=\"blendbsdf\"><texture name=\"weight\" type=\"mesh_attribute\"><string name=\"name\" value=\"vertex_heat\"/></texture>\
+         <bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"mesh_attribute\"><string name=\"name\" value=\"face_color\"/></texture></bsdf>\
+         <bsdf type=\"conductor\"/></bsdf>",
+    );
+    assert_eq!(both.expect_err("two").kind, ErrorKind::Unsupported);
+}
+
+/// A serialized file of one mesh for each list of flags: a triangle at heights that rise by the number of the mesh.
+fn serialized(version: u16, flags: &[u32]) -> Vec<u8> {
+    let mut bytes = [0x041c_u16.to_le_bytes(), version.to_le_bytes()].concat();
+    let mut places = Vec::new();
+    for (index, &flags) in flags.iter().enumerate() {
+        places.push(bytes.len() as u64);
+        bytes.extend([0x041c_u16.to_le_bytes(), version.to_le_bytes()].concat());
+        let mut mesh = flags.to_le_bytes().to_vec();
+        if version == 4 {
+            mesh.extend(b"name\0");
+        }
+        mesh.extend([3_u64.to_le_bytes(), 1_u64.to_le_bytes()].concat());
+        let mut number = |value: f32| match flags & 0x2000 {
+            0 => mesh.extend(value.to_le_bytes()),
+            _ => mesh.extend(f64::from(value).to_le_bytes()),
+        };
+        let height = index as f32;
+        [0.0, 0.0, height, 1.0, 0.0, height, 0.0, 1.0, height].into_iter().for_each(&mut number);
+        if flags & 1 != 0 {
+            (0..3).for_each(|_| [0.0, 0.0, 1.0].into_iter().for_each(&mut number));
+        }
+        if flags & 2 != 0 {
+            [0.0, 0.0, 1.0, 0.0, 0.0, 1.0].into_iter().for_each(&mut number);
+        }
+        mesh.extend([0_u32, 1, 2].into_iter().flat_map(u32::to_le_bytes));
+        let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+        std::io::Write::write_all(&mut packed, &mesh).expect("memory");
+        bytes.extend(packed.finish().expect("memory"));
+    }
+    for place in &places {
+        match version {
+            4 => bytes.extend(place.to_le_bytes()),
+            _ => bytes.extend((*place as u32).to_le_bytes()),
+        }
+    }
+    bytes.extend((places.len() as u32).to_le_bytes());
+    bytes
+}
+
+/// The scene of a serialized file.
+fn with_serialized(bytes: &[u8], index: u32) -> Result<Scene> {
+    let text = format!(
+        "<scene version=\"3.0.0\">\n<shape type=\"serialized\"><string name=\"filename\" value=\"m.serialized\"/>\
+         <integer name=\"shape_index\" value=\"{index}\"/></shape>\n</scene>"
+    );
+    let mut memory = files(&[("s/a.xml", &text)]);
+    memory.0.insert(PathBuf::from("s/m.serialized"), bytes.to_vec());
+    read_of(&memory, &[]).0
+}
+
+#[test]
+fn serialized_meshes_are_read_by_their_number() {
+    for version in [3, 4] {
+        let bytes = serialized(version, &[0x1000, 0x2003]);
+        let plain = with_serialized(&bytes, 0).expect("a mesh");
+        assert_eq!(
+            (plain.meshes[0].positions[2].to_array(), plain.meshes[0].uvs.len()),
+            ([0.0, 1.0, 0.0], 0)
+        );
+        let full = with_serialized(&bytes, 1).expect("a mesh");
+        assert_eq!(full.meshes[0].positions[1].to_array(), [1.0, 0.0, 1.0]);
+        assert_eq!(full.meshes[0].normals, [glam::Vec3::Z; 3]);
+        // v runs up here.
+        assert_eq!(full.meshes[0].uvs[2].to_array(), [0.0, 0.0]);
+        assert_eq!(with_serialized(&bytes, 2).expect_err("two meshes").kind, ErrorKind::Invalid);
+        // Files that are cut off or changed anywhere.
+        for length in 0..bytes.len() {
+            assert!(with_serialized(&bytes[..length], 0).is_err(), "{length}");
+        }
+        for place in 0..bytes.len() {
+            let mut broken = bytes.clone();
+            broken[place] ^= 0x55;
+            let _ = with_serialized(&broken, 1);
+        }
+    }
+    let unknown = with_serialized(&serialized(5, &[0]), 0).expect_err("a version to come");
+    assert_eq!(unknown.kind, ErrorKind::Unsupported);
 }
 
 #[test]
@@ -336,14 +499,19 @@ fn textures_undo_the_direction_of_v() {
         <bsdf type="diffuse"><texture name="reflectance" type="bitmap"><string name="filename" value="p.pfm"/></texture></bsdf>
         </bsdf></shape>"#,
     );
-    let [TextureKind::Checker { mapping, even, .. }, first, second] =
-        [0, 1, 2].map(|index| read.textures[index].kind.clone())
+    let [TextureKind::Checker { mapping, even, .. }, TextureKind::Checker { even: odd, .. }, first, second] =
+        [0, 1, 2, 3].map(|index| read.textures[index].kind.clone())
     else {
         panic!("{:?}", read.textures)
     };
+    // As a number, which it is here, Mitsuba's checkerboard has its fields exchanged.
+    let TextureKind::Mix { amount: Scalar::Texture(TextureId(1)), .. } = read.textures[4].kind else {
+        panic!("{:?}", read.textures)
+    };
+    assert_eq!(odd, Color::gray(0.2));
     // 2 · 5 · (1 − v).
     assert_eq!(mapping, Mapping::Uv { scale: [6.0, -10.0], offset: [0.0, 10.0] });
-    assert_eq!(even, Color::gray(0.2));
+    assert_eq!(even, Color::gray(0.4));
     let TextureKind::Image { mapping, wrap, filter, .. } = first else { panic!("{first:?}") };
     // 1 − (4 (1 − v) + ¼).
     assert_eq!(mapping, Mapping::Uv { scale: [2.0, 4.0], offset: [0.5, -3.25] });
@@ -370,6 +538,138 @@ fn media_are_absorption_and_scattering() {
 }
 
 #[test]
+fn curves_are_strands_of_bezier() {
+    let of = |kind: &str, text: &str| {
+        let scene = format!(
+            "<scene version=\"3.0.0\">\n<shape type=\"{kind}\"><string name=\"filename\" value=\"c.txt\"/><bsdf type=\"hair\"/></shape>\n</scene>"
+        );
+        read_of(&files(&[("s/a.xml", &scene), ("s/c.txt", text)]), &[]).0
+    };
+    let strands = |scene: &Scene| match &scene.shapes[0].geometry {
+        Geometry::Curves(strands) => strands.to_vec(),
+        other => panic!("{other:?}"),
+    };
+    let two = "0 0 0 1\n2 0 0 3\n\n0 1 0 1\n0 2 0 1\n0 3 0 1\n";
+    let linear = of("linearcurve", two).expect("curves");
+    assert_eq!(strands(&linear).len(), 3);
+    assert_eq!(
+        (strands(&linear)[0].points[3].to_array(), strands(&linear)[0].width),
+        ([2.0, 0.0, 0.0], [2.0, 6.0])
+    );
+    let MaterialKind::Hair(hair) = &linear.materials[linear.shapes[0].material.index()].kind else {
+        panic!("no hair")
+    };
+    assert_eq!((hair.beta_m, hair.alpha), (Scalar::Value(0.3), Scalar::Value(2.0)));
+    // A straight spline of equal steps goes from the second to the third point.
+    let spline = of("bsplinecurve", "0 0 0 1\n1 0 0 1\n2 0 0 1\n3 0 0 1").expect("curves");
+    let [first, .., last] = strands(&spline)[0].points;
+    assert!((first.x - 1.0).abs() < 1e-6 && (last.x - 2.0).abs() < 1e-6, "{first} {last}");
+    let short = of("bsplinecurve", two).expect_err("two points");
+    assert_eq!((short.kind, short.at.line), (ErrorKind::Invalid, 3));
+    assert_eq!(of("linearcurve", "1 2 3\n").expect_err("no radius").kind, ErrorKind::Invalid);
+    assert_eq!(of("linearcurve", "\n\n").expect_err("nothing").kind, ErrorKind::Invalid);
+}
+
+#[test]
+fn skies_blackbodies_and_old_integrators_are_understood() {
+    let (read, warnings) = told(
+        r#"<integrator type="aov"><string name="aovs" value="d:depth"/><integrator type="bdpt"/></integrator>
+        <sensor type="radiancemeter"><film type="ldrfilm"><integer name="width" value="1"/>
+            <integer name="height" value="1"/></film><sampler type="sobol"/></sensor>
+        <emitter type="sunsky"><vector name="sun_direction" value="0 1 1"/></emitter>
+        <emitter type="constant"><spectrum name="radiance" type="blackbody"><float name="temperature" value="5000"/></spectrum></emitter>
+        <shape type="merge"><shape type="cube"/><shape type="sphere"/></shape>"#,
+    );
+    assert_eq!(
+        (read.shapes.len(), read.image.layers, read.render.integrator),
+        (2, Layers::Geometry, Integrator::Path)
+    );
+    assert!(
+        matches!(read.camera.expect("a camera").projection, Projection::Perspective { fov } if fov < 1e-3)
+    );
+    let LightKind::Environment { sky: Sky::Octahedral { world_from_light, .. }, .. } = read.lights[0].kind
+    else {
+        panic!("{:?}", read.lights[0])
+    };
+    assert_eq!(world_from_light, DMat4::IDENTITY);
+    // Planck's law in W/(m² sr nm), by the luminous efficiencies of 1 nm steps.
+    let luminance = f64::from(read.lights[1].power.scale);
+    assert!((luminance / 12_579.29 - 1.0).abs() < 2e-3, "{luminance}");
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert_eq!(error("<emitter type=\"sunsky\"/>").kind, ErrorKind::Unsupported);
+}
+
+/// A `.vol` file.
+fn volume(size: [i32; 3], channels: i32, values: &[f32]) -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    bytes.extend([1, size[0], size[1], size[2], channels].into_iter().flat_map(i32::to_le_bytes));
+    bytes.extend([0.0_f32, 0.0, 0.0, 2.0, 3.0, 4.0].into_iter().flat_map(f32::to_le_bytes));
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
+}
+
+/// The medium of these elements, with a volume `v.vol`.
+fn heterogeneous(elements: &str, bytes: Vec<u8>) -> Result<Medium> {
+    let text = format!(
+        "<scene version=\"3.0.0\">\n<medium type=\"heterogeneous\" id=\"m\">{elements}</medium>\
+         <shape type=\"cube\"><bsdf type=\"null\"/><ref name=\"interior\" id=\"m\"/></shape>\n</scene>"
+    );
+    let mut memory = files(&[("s/a.xml", &text)]);
+    memory.0.insert(PathBuf::from("s/v.vol"), bytes);
+    read_of(&memory, &[]).0.map(|scene| scene.media[0].clone())
+}
+
+#[test]
+fn volumes_are_grids_whose_outermost_cells_go_on() {
+    let grid = "<volume name=\"sigma_t\" type=\"gridvolume\"><string name=\"filename\" value=\"v.vol\"/>\
+                <boolean name=\"use_grid_bbox\" value=\"true\"/></volume><rgb name=\"albedo\" value=\"0.5 0.25 0\"/>";
+    let medium = heterogeneous(grid, volume([2, 1, 1], 1, &[1.0, 3.0])).expect("a medium");
+    assert_eq!(
+        (medium.absorption, medium.scattering),
+        (Color::Value([0.5, 0.75, 1.0]), Color::Value([0.5, 0.25, 0.0]))
+    );
+    let variation = medium.variation.expect("a grid");
+    assert_eq!(variation.world_from_medium, DMat4::from_scale(DVec3::new(2.0, 3.0, 4.0)));
+    assert_eq!(
+        variation.bounds.map(|[low, high]| (low.to_array(), high.to_array())),
+        Some(([0.0; 3], [1.0; 3]))
+    );
+    let Density::Grid(placed) = variation.density else { panic!("{:?}", variation.density) };
+    assert_eq!(placed.grid.size(), [4, 3, 3]);
+    assert_eq!([0, 1, 2, 3].map(|x| placed.grid.value([x, 2, 0])), [1.0, 1.0, 3.0, 3.0]);
+    assert_eq!(placed.bounds.map(|corner| corner.to_array()), [[-0.5, -1.0, -1.0], [1.5, 2.0, 2.0]]);
+
+    // Colours by place.
+    let colored = "<float name=\"sigma_t\" value=\"2\"/><volume name=\"albedo\" type=\"gridvolume\">\
+                   <string name=\"filename\" value=\"v.vol\"/></volume>";
+    let medium =
+        heterogeneous(colored, volume([1, 1, 2], 3, &[0.5, 0.25, 0.0, 1.0, 1.0, 1.0])).expect("a medium");
+    let Some(Density::Colors { absorption: Some(absorption), scattering: Some(scattering), .. }) =
+        medium.variation.map(|variation| variation.density)
+    else {
+        panic!("colours")
+    };
+    assert_eq!(
+        [absorption.grid.value([1, 1, 1]), scattering.grid.value([1, 1, 1])],
+        [[1.0, 1.5, 2.0], [1.0, 0.5, 0.0]]
+    );
+    assert_eq!([absorption.grid.value([1, 1, 2]), scattering.grid.value([1, 1, 2])], [[0.0; 3], [2.0; 3]]);
+
+    for (bytes, kind) in [
+        (volume([2, 1, 1], 1, &[1.0]), ErrorKind::Syntax),
+        (volume([2, 1, 1], 1, &[1.0, -1.0]), ErrorKind::Invalid),
+        (volume([2, 1, 1], 1, &[1.0, f32::NAN]), ErrorKind::Invalid),
+        (volume([i32::MAX; 3], 3, &[1.0]), ErrorKind::Invalid),
+        (volume([-1, 1, 1], 1, &[]), ErrorKind::Invalid),
+        (volume([1, 1, 1], 2, &[1.0, 1.0]), ErrorKind::Invalid),
+        (b"VOL\x02".repeat(20), ErrorKind::Unsupported),
+        (b"VOL".to_vec(), ErrorKind::Syntax),
+    ] {
+        assert_eq!(heterogeneous(grid, bytes).expect_err("a fault").kind, kind);
+    }
+}
+
+#[test]
 fn what_has_no_effect_is_warned_of() {
     let (_, warnings) = told(
         "<shape type=\"cube\">\n<float name=\"raduis\" value=\"2\"/><bsdf type=\"diffuse\" id=\"d\"/></shape>\n\
@@ -388,7 +688,7 @@ fn errors_have_their_place_and_a_remedy() {
             "",
         ),
         ("<shape type=\"spere\"/>", 14, "the shape \"spere\" is not supported", "did you mean \"sphere\"?"),
-        ("<shape type=\"sdfgrid\"/>", 14, "the shape \"sdfgrid\" is not supported", "there are: cube"),
+        ("<shape type=\"sdfgrid\"/>", 14, "the shape \"sdfgrid\" is not supported", "make a mesh of it"),
         ("<shap type=\"sphere\" name=\"x\"/>", 1, "<shap> is not a known element", "did you mean <shape>?"),
         ("<shape type=\"cube\"><ref id=\"b\"/></shape>", 29, "\"b\" is not a known id", ""),
         ("<float name=\"x\" valeu=\"1\"/>", 17, "<float> has no attribute `valeu`", "it has: name, value"),

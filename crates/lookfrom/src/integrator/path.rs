@@ -27,6 +27,7 @@ use crate::integrator::{
     self, BatchStreams, Event, Integrator, PathState, Probe, SampleStream, Term, wavefront,
 };
 use crate::light::LightSampleContext;
+use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::{Shading, ShadingContext};
@@ -84,6 +85,8 @@ pub struct PathTracer {
     pub depth: u32,
     /// Whether sharp lobes are roughened after the first non-specular bounce (path regularisation).
     pub regularize: bool,
+    /// Whether passing straight through a thin dielectric counts as a bounce.
+    pub thin_passages_count: bool,
     /// The strategy for finding light.
     pub light_sampling: LightSampling,
 }
@@ -315,7 +318,9 @@ impl PathTracer {
             beta: path.beta,
         });
         // Most lamps reflect nothing.
-        if path.depth < self.depth && shading.bsdf.lobes() != Lobes::NONE {
+        let may_pass = !self.thin_passages_count && matches!(shading.bsdf, Bsdf::ThinDielectric(_));
+        let goes_on = path.depth < self.depth || may_pass && path.depth == self.depth;
+        if goes_on && shading.bsdf.lobes() != Lobes::NONE {
             let vertex = Vertex { path, surface, shading, stream: *stream, is_catcher };
             waiting.push_vertex(self, world, vertex, output);
         }

@@ -8,10 +8,10 @@ mod pictures;
 
 use glam::{Mat3, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::Falloff;
+use lookfrom_scene::light::{Edge, Falloff};
 use serde::Serialize;
 
-use super::{IncompletePdf, Light, LightSample, LightSampleContext, fade, smooth_step, toward};
+use super::{IncompletePdf, Light, LightSample, LightSampleContext, fade, in_cone, toward};
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, Textures};
 
@@ -29,6 +29,9 @@ impl Derivation {
         Self { formula: formula.into(), numbers }
     }
 }
+
+/// The factor of a cone that fades with the angle.
+const LINEAR_EDGE: &str = "S = (acos outer − acos cos) / (acos outer − acos inner), from 0 to 1";
 
 /// The texel of a direction in an equal-area octahedral square (Clarberg 2008).
 pub(super) const OCTAHEDRAL: &str = "i = ⌊½ (1 ± U) columns⌋, j = ⌊½ (1 ± V) rows⌋ with the signs of x and y; \
@@ -53,7 +56,7 @@ impl Light {
                 let numbers = vec![("I", lanes(intensity.even(textures, mode), mode)), law, faded];
                 Derivation::new(format!("L = I · fall-off(d); fall-off = {}", law_of(*falloff)), numbers)
             }),
-            Self::Spot { position, axis, intensity, cos_outer, cos_inner, falloff } => {
+            Self::Spot { position, axis, intensity, cos_outer, cos_inner, edge, falloff } => {
                 toward(from, *position).map(|(wi, distance)| {
                     let cos = axis.dot(-wi);
                     let [law, faded] = fall_off(*falloff, distance);
@@ -64,13 +67,14 @@ impl Light {
                         ("axis", vector(*axis)),
                         ("cos to the axis", vec![f64::from(cos)]),
                         ("cos outer, inner", vec![f64::from(*cos_outer), f64::from(*cos_inner)]),
-                        ("S", vec![f64::from(smooth_step(*cos_outer, *cos_inner, cos))]),
+                        ("S", vec![f64::from(in_cone(*edge, [*cos_outer, *cos_inner], cos))]),
                     ];
-                    let formula = format!(
-                        "L = I · fall-off(d) · S; fall-off = {}; S = x² (3 − 2x), x = (cos − outer) / (inner − outer), \
-                         from 0 to 1",
-                        law_of(*falloff)
-                    );
+                    let of_cone = match edge {
+                        Edge::Smooth => "S = x² (3 − 2x), x = (cos − outer) / (inner − outer), from 0 to 1",
+                        Edge::Linear => LINEAR_EDGE,
+                    };
+                    let formula =
+                        format!("L = I · fall-off(d) · S; fall-off = {}; {of_cone}", law_of(*falloff));
                     Derivation::new(formula, numbers)
                 })
             }

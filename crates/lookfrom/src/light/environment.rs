@@ -63,6 +63,8 @@ pub struct SkyImage {
     pub layout: MapLayout,
     /// Columns: the light's axes in the world; a rotation or a rotation with reflection.
     pub world_from_light: Mat3,
+    /// Slope and offset of v in the picture by v of the layout: 1 and 0, but where the outermost rows are the poles.
+    pub picture_v: [f32; 2],
     /// Distribution by luminous contribution: brightness times solid angle of each texel.
     pub complete: Arc<Piecewise2D>,
     /// MIS-compensated distribution (Karlík et al. 2019), by the excess of each texel over the mean: where BSDFs are
@@ -149,12 +151,14 @@ impl Environment {
         let image = textures.image(sky.image);
         let (width, height) = (image.width as f32, image.height as f32);
         let mut sum = [0.0_f64; 3];
+        let is_in_bands = sky.picture_v == [1.0, 0.0];
         for (index, texel) in (0..).zip(image.texels()) {
             let place = [(index % image.width) as f32 + 0.5, (index / image.width) as f32 + 0.5];
             let uv = [place[0] / width, place[1] / height];
             let (direction, per_solid_angle) = sky.direction(uv);
             let cos = direction.dot(n);
             if cos > 0.0 {
+                let texel = if is_in_bands { texel } else { sky.texel(textures, uv) };
                 let share = f64::from(cos / per_solid_angle);
                 sum = std::array::from_fn(|c| sum[c] + share * f64::from((texel[c] * sky.scale[c]).max(0.0)));
             }
@@ -238,8 +242,16 @@ impl SkyImage {
         }
     }
 
+    /// The place in the picture of (u, v).
+    #[inline(always)]
+    fn in_picture<R: Real>(&self, [u, v]: [R; 2]) -> [R; 2] {
+        let [slope, offset] = self.picture_v;
+        [u, v * slope + offset]
+    }
+
     /// The map's colour at (u, v).
     fn texel(&self, textures: &Textures, uv: [f32; 2]) -> [f32; 3] {
+        let uv = self.in_picture(uv);
         let image = textures.image(self.image);
         match self.layout {
             MapLayout::LatitudeLongitude => {

@@ -1,9 +1,10 @@
 //! Projection and goniometric lights.
 
 use glam::{DVec3, Mat3, Vec3};
+use lookfrom_scene::light::{Edge, Projected};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{EmissionSpectrum, LightSample, toward};
+use super::{EmissionSpectrum, LightSample, in_cone, toward};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
@@ -17,7 +18,15 @@ pub struct Projection {
     pub light_from_render: Mat3,
     /// Index of the picture in the world.
     pub image: usize,
-    /// W/sr of a white texel.
+    /// The interpolation between its texels.
+    pub filter: TexelFilter,
+    /// The quantity of the picture.
+    pub quantity: Projected,
+    /// Cosines of the angles of a cone beyond which it is dark, and of one with full intensity.
+    pub cone: Option<[f32; 2]>,
+    /// The axis, unit length.
+    pub axis: Vec3,
+    /// W/sr of a white texel on the axis.
     pub scale: f32,
     /// Half the size of the picture at a distance of 1.
     pub half_size: [f32; 2],
@@ -41,15 +50,20 @@ impl Projection {
         }
         // rows run down
         let st = [0.5 + 0.5 * s, 0.5 - 0.5 * t];
-        let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
+        let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], self.filter);
         let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, mode);
-        let li = white * (self.scale / (distance * distance) as f32);
+        let li = white * (self.scale * self.by_angle(-wi) / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 
-    /// The axis, unit length.
-    pub(super) fn axis(&self) -> Vec3 {
-        (self.light_from_render.inverse() * Vec3::Z).normalize()
+    /// The factor of the intensity in a unit direction from the light, by its angle to the axis.
+    pub(crate) fn by_angle(&self, direction: Vec3) -> f32 {
+        let cos = self.axis.dot(direction);
+        let in_cone = self.cone.map_or(1.0, |cosines| in_cone(Edge::Linear, cosines, cos));
+        match self.quantity {
+            Projected::Intensity => in_cone,
+            Projected::Irradiance => in_cone / (cos * cos * cos),
+        }
     }
 
     /// Cosine of the angle from the axis to a corner.

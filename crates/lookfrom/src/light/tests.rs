@@ -6,12 +6,13 @@ use std::f64::consts::PI as PI64;
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use lookfrom_scene::Location;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Falloff, Light as Written, LightKind, Power, Sky};
+use lookfrom_scene::light::{Edge, Falloff, Light as Written, LightKind, MapRows, Power, Projected, Sky};
 use lookfrom_scene::material::{Color, Material, MaterialKind};
 use lookfrom_scene::scene::{CurveId, ImageId, MaterialId, Scene};
 use lookfrom_scene::settings::{LightSampler, Sampler as SamplerKind};
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
+use lookfrom_scene::texture::TexelFilter;
 use rayon::prelude::*;
 
 use super::{IncompletePdf, Light, LightSampleContext};
@@ -67,7 +68,7 @@ fn environment(sky: Sky, portal: Option<[DVec3; 4]>) -> LightKind {
 }
 
 fn latitude_longitude() -> Sky {
-    Sky::Image { image: ImageId(0), scale: [1.0, 2.0, 0.5], world_from_light: turn() }
+    Sky::Image { image: ImageId(0), scale: [1.0, 2.0, 0.5], world_from_light: turn(), rows: MapRows::Bands }
 }
 
 fn octahedral() -> Sky {
@@ -269,21 +270,34 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
     let intensity = Color::Value([0.5, 0.4, 0.2]);
     let direction = DVec3::new(0.5, -2.0, 1.0);
     let falloff = Falloff::Quadratic;
-    let spot = |cone_angle, inner_angle| LightKind::Spot {
+    let spot = |cone_angle, inner_angle, edge| LightKind::Spot {
         position: here,
         direction,
         intensity,
         cone_angle,
         inner_angle,
+        edge,
         falloff,
+    };
+    let projection = |image, fov, quantity, cone| LightKind::Projection {
+        image: ImageId(image),
+        filter: TexelFilter::Nearest,
+        quantity,
+        intensity: 0.7,
+        cone,
+        fov,
+        world_from_light,
     };
     [
         LightKind::Point { position: here, intensity, falloff },
-        spot(40.0, 30.0),
-        spot(170.0, 10.0),
-        spot(3.0, 3.0),
-        LightKind::Projection { image: ImageId(0), intensity: 0.7, fov: 50.0, world_from_light },
-        LightKind::Projection { image: ImageId(2), intensity: 0.7, fov: 130.0, world_from_light },
+        spot(40.0, 30.0, Edge::Smooth),
+        spot(170.0, 10.0, Edge::Smooth),
+        spot(60.0, 10.0, Edge::Linear),
+        spot(3.0, 3.0, Edge::Linear),
+        projection(0, 50.0, Projected::Intensity, None),
+        projection(2, 130.0, Projected::Intensity, None),
+        projection(2, 100.0, Projected::Irradiance, None),
+        projection(0, 80.0, Projected::Irradiance, Some([35.0, 10.0])),
         LightKind::Goniometric { intensity, image: ImageId(1), world_from_light },
     ]
     .into_iter()
@@ -321,7 +335,12 @@ fn illuminances_are_what_is_asked() {
     let skies = [
         Sky::Constant(Color::Value([0.2, 0.5, 3.0])),
         gradient(),
-        Sky::Image { image: ImageId(0), scale: [1.0, 2.0, 0.5], world_from_light: DMat4::IDENTITY },
+        Sky::Image {
+            image: ImageId(0),
+            scale: [1.0, 2.0, 0.5],
+            world_from_light: DMat4::IDENTITY,
+            rows: MapRows::ToPoles,
+        },
         // up is z there
         Sky::Octahedral { image: ImageId(1), scale: [3.0, 1.0, 1.0], world_from_light: DMat4::IDENTITY },
     ];
@@ -375,7 +394,15 @@ fn corners(width: u32, height: u32) -> Image {
 fn projections_stand_upright() {
     for (width, height) in [(4, 2), (2, 2), (2, 6)] {
         let world_from_light = DMat4::from_translation(EYE + DVec3::new(1.0, 2.0, 3.0)) * turn();
-        let kind = LightKind::Projection { image: ImageId(0), intensity: 1.0, fov: 60.0, world_from_light };
+        let kind = LightKind::Projection {
+            image: ImageId(0),
+            filter: TexelFilter::Nearest,
+            quantity: Projected::Intensity,
+            intensity: 1.0,
+            cone: None,
+            fov: 60.0,
+            world_from_light,
+        };
         let world = world_of(vec![(kind, Power::AS_WRITTEN)], vec![corners(width, height)], vec![]);
         // The shorter side is seen under the angle.
         let short = libm::tanf(30.0_f32.to_radians()) / width.min(height) as f32;

@@ -163,6 +163,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             MaterialKind::Whitted(whitted) => whitted.transmission.is_gray(0.0),
             MaterialKind::Principled(look) => look.transmission.is(0.0) && look.diffuse_transmission.is(0.0),
             MaterialKind::OpenPbr(look) => look.transmission_weight.is(0.0) && look.subsurface_weight.is(0.0),
+            MaterialKind::Disney(look) => look.is_opaque,
             MaterialKind::Diffuse { .. }
             | MaterialKind::Conductor { .. }
             | MaterialKind::CoatedDiffuse { .. }

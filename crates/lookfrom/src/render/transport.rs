@@ -68,10 +68,12 @@ pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3
         min_contribution,
         transparent_shadows,
         regularize,
+        thin_passages_count,
         occlusion_distance,
         ..
     } = settings;
-    let path = |light_sampling| Arc::new(PathTracer { depth, regularize, light_sampling });
+    let path =
+        |light_sampling| Arc::new(PathTracer { depth, regularize, thin_passages_count, light_sampling });
     match integrator {
         Kind::Raycast => Arc::new(Raycast { transparent_shadows }),
         Kind::Whitted => Arc::new(Whitted { depth, min_contribution, transparent_shadows }),

@@ -27,6 +27,7 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
         ("regularize", render.regularize.to_string()),
         ("min_contribution", render.min_contribution.to_string()),
         ("transparent_shadows", render.transparent_shadows.to_string()),
+        ("thin_passages_count", render.thin_passages_count.to_string()),
         ("open_fronts", render.open_fronts.to_string()),
         ("seed", render.seed.to_string()),
         ("sampler", render.sampler.word().to_owned()),

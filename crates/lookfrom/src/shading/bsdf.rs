@@ -12,6 +12,7 @@ mod class;
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
+pub mod disney;
 pub mod droplets;
 mod factors;
 pub mod fresnel;

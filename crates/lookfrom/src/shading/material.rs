@@ -8,6 +8,7 @@ mod albedo;
 mod approximate;
 mod bump;
 mod compile;
+mod disney;
 mod hair;
 mod interior;
 mod kind;
@@ -43,6 +44,7 @@ pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub use bump::Relief;
 pub(crate) use bump::{Bending, frame_about};
 pub(crate) use compile::Compiler;
+pub use disney::DisneyMaterial;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PrincipledMaterial,
@@ -350,6 +352,7 @@ impl Evaluator<'_> {
             MaterialKind::CoatedConductor { metal, roughness, coat } => {
                 Bsdf::CoatedConductor(self.coated_conductor(metal, roughness, coat))
             }
+            MaterialKind::Disney(look) => Bsdf::Disney(self.disney(look)),
             MaterialKind::Hair(hair) => Bsdf::Hair(self.hair(hair)),
             MaterialKind::Measured(tables) => Bsdf::Measured(self.measured(tables)),
             MaterialKind::Subsurface(below) => Bsdf::Subsurface(self.subsurface(below, index)),

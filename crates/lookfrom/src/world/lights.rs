@@ -5,8 +5,11 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Mat3, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Light as Written, LightKind, Power, Sky as WrittenSky};
+use lookfrom_scene::light::{
+    Edge, Light as Written, LightKind, MapRows, Power, Projected, Sky as WrittenSky,
+};
 use lookfrom_scene::material::Color;
+use lookfrom_scene::texture::TexelFilter;
 
 use crate::core::distribution::Piecewise2D;
 use crate::core::math;
@@ -116,10 +119,17 @@ impl<'a> Lights<'a> {
                 let toward = -direction.normalize().as_vec3();
                 ("distant light", Light::Distant { toward, irradiance }, brightness)
             }
-            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff } => {
+            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, edge, falloff } => {
                 let cos_outer = libm::cos(cone_angle.to_radians()) as f32;
                 let cos_inner = libm::cos(inner_angle.to_radians()) as f32;
-                let per_unit = 2.0 * PI * ((1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer));
+                let per_unit = 2.0
+                    * PI
+                    * match edge {
+                        Edge::Smooth => (1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer),
+                        Edge::Linear => {
+                            linear_cone([cone_angle, inner_angle].map(|angle| angle.to_radians()))
+                        }
+                    };
                 let intensity = whitted(self.emission_spectrum(*intensity, power, per_unit));
                 let brightness = self.brightness_of(&intensity);
                 let light = Light::Spot {
@@ -128,12 +138,18 @@ impl<'a> Lights<'a> {
                     intensity,
                     cos_outer,
                     cos_inner,
+                    edge: *edge,
                     falloff: *falloff,
                 };
                 ("spot light", light, brightness)
             }
-            LightKind::Projection { image, intensity, fov, world_from_light } => {
-                let light = self.projection(image.index(), *fov, world_from_light, origin);
+            LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light } => {
+                let light = Projection {
+                    filter: *filter,
+                    quantity: *quantity,
+                    cone: cone.map(|angles| angles.map(|angle| libm::cos(angle.to_radians()) as f32)),
+                    ..self.projection(image.index(), *fov, world_from_light, origin)
+                };
                 let white = self.emission_spectrum(Color::gray(*intensity), power, self.power_of(&light));
                 let scale = whitted(white).scale * intensity;
                 let light = Projection { scale, ..light };
@@ -170,10 +186,15 @@ impl<'a> Lights<'a> {
         let picture = self.textures.image(image);
         let aspect = picture.width as f32 / picture.height as f32;
         let half = libm::tanf(0.5 * fov.to_radians());
+        let light_from_render = Mat3::from_mat4(world_from_light.inverse().as_mat4());
         Projection {
             position: world_from_light.w_axis.truncate() - origin,
-            light_from_render: Mat3::from_mat4(world_from_light.inverse().as_mat4()),
+            light_from_render,
             image,
+            filter: TexelFilter::Nearest,
+            quantity: Projected::Intensity,
+            cone: None,
+            axis: (light_from_render.inverse() * Vec3::Z).normalize(),
             scale: 1.0,
             half_size: if aspect > 1.0 { [half * aspect, half] } else { [half, half / aspect] },
         }
@@ -184,12 +205,14 @@ impl<'a> Lights<'a> {
         let image = self.textures.image(light.image);
         let [half_x, half_y] = light.half_size;
         let place = |i: u32, size: u32, half: f32| half * (2.0 * (i as f32 + 0.5) / size as f32 - 1.0);
+        let of_render = light.light_from_render.inverse();
         let mut sum = 0.0;
         for (index, texel) in (0..).zip(image.texels()) {
             let x = place(index % image.width, image.width, half_x);
             let y = place(index / image.width, image.height, half_y);
             let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
-            sum += f64::from(math::luminance(texel) * cos * cos * cos);
+            let toward = (of_render * Vec3::new(x, y, 1.0)).normalize();
+            sum += f64::from(math::luminance(texel) * cos * cos * cos * light.by_angle(toward));
         }
         4.0 * half_x * half_y * (sum / image.len() as f64) as f32
     }
@@ -202,7 +225,7 @@ impl<'a> Lights<'a> {
     }
 
     fn sky(&self, sky: &WrittenSky, power: &Power, has_portal: bool) -> (Sky, f32) {
-        let (image, scale, world_from_light, layout) = match sky {
+        let (image, scale, world_from_light, layout, rows) = match sky {
             WrittenSky::Constant(color) => {
                 let emission_spectrum = self.emission_spectrum(*color, power, PI);
                 return (Sky::Constant(emission_spectrum), self.brightness_of(&emission_spectrum));
@@ -215,11 +238,11 @@ impl<'a> Lights<'a> {
                     .map(|rgb| EmissionSpectrum { color: self.illuminant(Color::Value(*rgb)), scale });
                 return (Sky::Gradient { zenith, horizon, nadir }, self.brightness_of(&horizon));
             }
-            WrittenSky::Image { image, scale, world_from_light } => {
-                (image.index(), scale, world_from_light, MapLayout::LatitudeLongitude)
+            WrittenSky::Image { image, scale, world_from_light, rows } => {
+                (image.index(), scale, world_from_light, MapLayout::LatitudeLongitude, *rows)
             }
             WrittenSky::Octahedral { image, scale, world_from_light } => {
-                (image.index(), scale, world_from_light, MapLayout::Octahedral)
+                (image.index(), scale, world_from_light, MapLayout::Octahedral, MapRows::Bands)
             }
         };
         let picture = self.textures.image(image);
@@ -243,11 +266,17 @@ impl<'a> Lights<'a> {
         let (complete, sum) = choice(&|brightness| brightness);
         let (compensated, excess) = choice(&|brightness| (brightness - average as f32).max(0.0));
         let scale = scale.map(|c| c * factor);
+        let height = picture.height as f32;
         let brightness = average as f32 * scale.into_iter().fold(0.0, f32::max);
         let sky = SkyImage {
             image,
             scale,
             layout,
+            picture_v: match rows {
+                MapRows::Bands => [1.0, 0.0],
+                // The middles of the first and last row are at v = 0 and 1.
+                MapRows::ToPoles => [(height - 1.0) / height, 0.5 / height],
+            },
             world_from_light: Mat3::from_mat4(world_from_light.as_mat4()),
             complete: Arc::new(complete),
             compensated: Arc::new(compensated),
@@ -256,6 +285,14 @@ impl<'a> Lights<'a> {
         };
         (Sky::Image(Box::new(sky)), brightness)
     }
+}
+
+/// The integral of [`Edge::Linear`] over the solid angle of a cone, divided by 2π; its half-angles in radians.
+fn linear_cone([outer, inner]: [f64; 2]) -> f32 {
+    if outer == inner {
+        return (1.0 - libm::cos(inner)) as f32;
+    }
+    (1.0 - (libm::sin(outer) - libm::sin(inner)) / (outer - inner)) as f32
 }
 
 /// Mean of all channels of all texels.

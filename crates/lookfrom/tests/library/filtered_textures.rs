@@ -172,8 +172,12 @@ fn eight_at_once_are_eight_one_by_one() {
             scene.render.depth = 3;
             scene.render.color = color;
             (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);
-            let tracer =
-                PathTracer { depth: 3, regularize: false, light_sampling: LightSampling::MultipleImportance };
+            let tracer = PathTracer {
+                depth: 3,
+                regularize: false,
+                thin_passages_count: true,
+                light_sampling: LightSampling::MultipleImportance,
+            };
             let in_lanes = Compiled::new(scene.clone()).renderer();
             let alone = in_lanes.clone().with_integrator(OneByOne(tracer));
             let [a, b] = [in_lanes, alone].map(|renderer| renderer.render(Some(1), &()).unwrap().film);

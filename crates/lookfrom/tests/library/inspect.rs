@@ -7,7 +7,7 @@ use lookfrom::film::{Film, FilmTile};
 use lookfrom::inspect::{Inspection, RayKind, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
 use lookfrom_scene::image::Image;
-use lookfrom_scene::light::{Light, LightKind, Power, Sky};
+use lookfrom_scene::light::{Light, LightKind, MapRows, Power, Sky};
 use lookfrom_scene::scene::ImageId;
 use lookfrom_scene::settings::{ColorMode, Integrator, PixelBounds};
 use lookfrom_scene::{Location, Scene};
@@ -126,7 +126,8 @@ fn room(integrator: Integrator, color: ColorMode) -> Scene {
     let image = ImageId(scene.images.len() as u32);
     let texels = (0..128).map(|k| if k == 37 { [60.0, 50.0, 30.0] } else { [0.3, 0.4, 0.5] }).collect();
     scene.images.push(Image::from_linear("sky", 16, 8, texels));
-    let sky = Sky::Image { image, scale: [1.0; 3], world_from_light: glam::DMat4::IDENTITY };
+    let sky =
+        Sky::Image { image, scale: [1.0; 3], world_from_light: glam::DMat4::IDENTITY, rows: MapRows::Bands };
     scene.lights.push(Light {
         name: Some("sky".into()),
         at: Location::default(),

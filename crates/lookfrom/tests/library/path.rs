@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection, View};
-use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
+use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Sky};
 use lookfrom_scene::material::{
     Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness, Scalar,
 };
@@ -253,6 +253,7 @@ fn the_way_of_choosing_lights_does_not_matter() {
             intensity: Color::gray(1.0),
             cone_angle: 40.0,
             inner_angle: 20.0,
+            edge: Edge::Smooth,
             falloff: Falloff::Quadratic,
         }));
         let view = View::Look { lookfrom: DVec3::new(0.0, 3.0, 0.01), lookat: DVec3::ZERO, up: DVec3::Z };
@@ -288,7 +289,7 @@ fn a_picture_all_around_lights_as_it_is_seen() {
         let world_from_light = DMat4::from_rotation_x(0.7);
         let sky = match octahedral {
             true => Sky::Octahedral { image, scale, world_from_light },
-            false => Sky::Image { image, scale, world_from_light },
+            false => Sky::Image { image, scale, world_from_light, rows: MapRows::Bands },
         };
         scene.lights.push(light(LightKind::Environment { sky, portal: None, illuminates: true }));
         scene.render.integrator = integrator;

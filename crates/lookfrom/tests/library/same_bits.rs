@@ -239,8 +239,12 @@ fn steps_eight_at_once_are_steps_one_by_one() {
             let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
             let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
             let (in_lanes, rays) = renderer.trace(&ids);
-            let tracer =
-                PathTracer { depth: 7, regularize: false, light_sampling: LightSampling::MultipleImportance };
+            let tracer = PathTracer {
+                depth: 7,
+                regularize: false,
+                thin_passages_count: true,
+                light_sampling: LightSampling::MultipleImportance,
+            };
             let scalar = renderer.clone().with_integrator(OneByOne(tracer));
             let (one_by_one, same_rays) = scalar.trace(&ids);
             assert_eq!(rays, same_rays);
@@ -272,6 +276,7 @@ fn aovs_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
         let tracer = PathTracer {
             depth: scene.render.depth,
             regularize: scene.render.regularize,
+            thin_passages_count: true,
             light_sampling: LightSampling::MultipleImportance,
         };
         let in_lanes = Compiled::new(scene).renderer();

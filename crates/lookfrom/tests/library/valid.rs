@@ -248,6 +248,12 @@ impl<'a> Places<'a> {
                 self.scalar(&mut look.coat_weight);
                 self.single.extend([&mut look.specular_ior, &mut look.coat_ior, &mut look.dispersion]);
             }
+            MaterialKind::Disney(look) => {
+                self.color(&mut look.base_color);
+                [&mut look.eta, &mut look.sheen, &mut look.diff_trans]
+                    .into_iter()
+                    .for_each(|n| self.scalar(n));
+            }
             MaterialKind::Subsurface(below) => {
                 let (SubsurfaceMedium::Coefficients { absorption: first, scattering: second }
                 | SubsurfaceMedium::Reflectance { reflectance: first, mean_free_path: second }) =
@@ -416,7 +422,8 @@ impl<'a> Places<'a> {
                 self.color(intensity);
                 self.double.extend([cone_angle, inner_angle]);
             }
-            LightKind::Projection { image, intensity, fov, world_from_light } => {
+            LightKind::Projection { image, intensity, fov, world_from_light, cone, .. } => {
+                self.double.extend(cone.iter_mut().flatten());
                 self.whole.push(&mut image.0);
                 self.single.extend([intensity, fov]);
                 self.matrix(world_from_light);
@@ -430,7 +437,7 @@ impl<'a> Places<'a> {
                 match sky {
                     Sky::Constant(color) => self.color(color),
                     Sky::Gradient { zenith, .. } => self.single.push(&mut zenith[0]),
-                    Sky::Image { image, scale, world_from_light }
+                    Sky::Image { image, scale, world_from_light, .. }
                     | Sky::Octahedral { image, scale, world_from_light } => {
                         self.whole.push(&mut image.0);
                         self.single.push(&mut scale[0]);

@@ -1,10 +1,10 @@
-//! The materials of many parameters: glTF's and OpenPBR's.
+//! The materials of many parameters: glTF's, OpenPBR's and Disney's.
 
 use super::Writer;
 use super::color::plain_color;
 use super::text::{Fields, Item};
 use crate::error::Result;
-use crate::material::{Anisotropy, OpenPbr, Principled, Scalar, Tangent};
+use crate::material::{Anisotropy, Disney, OpenPbr, Principled, Scalar, Tangent};
 
 impl Writer<'_> {
     pub(super) fn principled(&mut self, fields: &mut Fields, look: &Principled) -> Result<()> {
@@ -166,6 +166,45 @@ impl Writer<'_> {
         }
         self.put_tangent(fields, "geometry_tangent", *geometry_tangent);
         self.put_tangent(fields, "geometry_coat_tangent", *geometry_coat_tangent);
+        Ok(())
+    }
+
+    pub(super) fn disney(&mut self, fields: &mut Fields, look: &Disney) -> Result<()> {
+        let Disney {
+            base_color,
+            roughness,
+            anisotropic,
+            metallic,
+            spec_trans,
+            eta,
+            spec_tint,
+            sheen,
+            sheen_tint,
+            flatness,
+            clearcoat,
+            clearcoat_gloss,
+            diff_trans,
+            is_thin,
+        } = look;
+        self.put_color(fields, "base_color", *base_color, 0.5)?;
+        self.put_scalars(
+            fields,
+            &[
+                ("roughness", *roughness, 0.5),
+                ("anisotropic", *anisotropic, 0.0),
+                ("metallic", *metallic, 0.0),
+                ("spec_trans", *spec_trans, 0.0),
+                ("ior", *eta, 1.5),
+                ("spec_tint", *spec_tint, 0.0),
+                ("sheen", *sheen, 0.0),
+                ("sheen_tint", *sheen_tint, 0.0),
+                ("flatness", *flatness, 0.0),
+                ("clearcoat", *clearcoat, 0.0),
+                ("clearcoat_gloss", *clearcoat_gloss, 0.0),
+                ("diff_trans", *diff_trans, 0.0),
+            ],
+        );
+        fields.put_unless("thin", *is_thin, false);
         Ok(())
     }
 

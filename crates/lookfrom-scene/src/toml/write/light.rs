@@ -9,9 +9,11 @@ use super::picture::For;
 use super::placing::{put_matrix, same_bits};
 use super::text::Fields;
 use crate::error::Result;
-use crate::light::{Falloff, Light, LightKind, Power, Sky};
+use crate::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
+use crate::texture::TexelFilter;
+use crate::toml::directional::{EDGES, PROJECTED_FILTERS, QUANTITIES};
 use crate::toml::light::FALLOFFS;
-use crate::toml::sky::up_from_pole;
+use crate::toml::sky::{LAYOUTS, up_from_pole};
 use crate::toml::transform::about;
 use crate::toml::word_of;
 
@@ -34,19 +36,32 @@ impl Writer<'_> {
                 fields.put("direction", *direction);
                 self.put_light(&mut fields, ["intensity", "illuminance"], *intensity, power)?;
             }
-            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, falloff } => {
+            LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, edge, falloff } => {
                 fields.put("position", *position);
                 fields.put("direction", *direction);
                 self.put_light(&mut fields, ["intensity", "power"], *intensity, power)?;
                 fields.put_unless("cone_angle", *cone_angle, 30.0);
                 fields.put_unless("inner_angle", *inner_angle, 0.8 * cone_angle);
+                if *edge != Edge::default() {
+                    fields.put("edge", word_of(EDGES, edge));
+                }
                 put_falloff(&mut fields, *falloff);
             }
-            LightKind::Projection { image, intensity, fov, world_from_light } => {
+            LightKind::Projection { image, filter, quantity, intensity, cone, fov, world_from_light } => {
                 put_matrix(&mut fields, "matrix", world_from_light);
                 let picture = self.picture(*image, For::Light)?;
                 fields.put("image", picture.file);
                 fields.put_unless("intensity", *intensity, 1.0);
+                if *filter != TexelFilter::Nearest {
+                    fields.put("filter", word_of(PROJECTED_FILTERS, filter));
+                }
+                if *quantity != Projected::default() {
+                    fields.put("quantity", word_of(QUANTITIES, quantity));
+                }
+                if let Some([outer, inner]) = *cone {
+                    fields.put("cone_angle", outer);
+                    fields.put_unless("inner_angle", inner, outer);
+                }
                 fields.put_unless("fov", *fov, 45.0);
                 put_power(&mut fields, "power", power);
             }
@@ -82,9 +97,12 @@ impl Writer<'_> {
                     fields.put("nadir", plain_color(*nadir));
                 }
             }
-            Sky::Image { image, scale, world_from_light } => {
+            Sky::Image { image, scale, world_from_light, rows } => {
                 let picture = self.picture(*image, For::Light)?;
                 fields.put("image", picture.file);
+                if *rows != MapRows::Bands {
+                    fields.put("layout", word_of(LAYOUTS, &Some(*rows)));
+                }
                 put_scale(fields, *scale);
                 put_turn(fields, world_from_light, |turn| turn);
             }

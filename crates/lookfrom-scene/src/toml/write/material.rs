@@ -63,6 +63,7 @@ impl Writer<'_> {
             }
             MaterialKind::Principled(look) => self.principled(&mut fields, look)?,
             MaterialKind::OpenPbr(look) => self.open_pbr(&mut fields, look)?,
+            MaterialKind::Disney(look) => self.disney(&mut fields, look)?,
             MaterialKind::Unlit { color } => self.put_color(&mut fields, "color", *color, 1.0)?,
             MaterialKind::ShadowCatcher { normal } => {
                 fields.put("normal", normal.to_array().map(Item::exact));
@@ -241,6 +242,7 @@ fn word(kind: &MaterialKind) -> &'static str {
         MaterialKind::Mix { .. } => "mix",
         MaterialKind::Principled(_) => "principled",
         MaterialKind::OpenPbr(_) => "openpbr",
+        MaterialKind::Disney(_) => "disney",
         MaterialKind::Unlit { .. } => "unlit",
         MaterialKind::ShadowCatcher { .. } => "shadow_catcher",
         MaterialKind::Interface => "interface",

@@ -89,6 +89,7 @@ impl Writer<'_> {
             occlusion_distance,
             media,
             open_fronts,
+            thin_passages_count,
         } = &self.scene.render;
         let usual = RenderSettings::default();
         let mut fields = Fields::default();
@@ -116,6 +117,7 @@ impl Writer<'_> {
         fields.put_unless("regularize", *regularize, usual.regularize);
         fields.put_unless("occlusion_distance", *occlusion_distance, usual.occlusion_distance);
         fields.put_unless("media", *media, usual.media);
+        fields.put_unless("thin_passages_count", *thin_passages_count, usual.thin_passages_count);
         fields.put_unless("open_fronts", *open_fronts, usual.open_fronts);
         if self.scene.vertex_normals != VertexNormals::default() {
             fields.put("vertex_normals", word_of(VERTEX_NORMALS, &self.scene.vertex_normals));

@@ -7,11 +7,11 @@ use lookfrom_scene::camera::{Camera, Lens, Projection, Target, View, Window};
 use lookfrom_scene::grid::{Grid, Placed};
 use lookfrom_scene::image::{Encoding, Image};
 use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSurface, LensSystem};
-use lookfrom_scene::light::{Falloff, Light, LightKind, Power, Sky};
+use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
 use lookfrom_scene::material::{
-    Anisotropy, BumpMapping, Coat, CoatEstimate, Color, Energy, Hair, Ior, Material, MaterialKind, Metal,
-    NormalTexture, OpenPbr, Pigment, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent,
-    Whitted,
+    Anisotropy, BumpMapping, Coat, CoatEstimate, Color, Disney, Energy, Hair, Ior, Material, MaterialKind,
+    Metal, NormalTexture, OpenPbr, Pigment, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium,
+    Tangent, Whitted,
 };
 use lookfrom_scene::medium::{Density, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -246,6 +246,22 @@ fn materials() -> Vec<(String, Scene)> {
         fresnel: true,
         absorption: [0.5, 0.25, 0.125],
     };
+    let disney = Disney {
+        base_color: COLOR,
+        roughness: TEXTURE,
+        anisotropic: Scalar::Value(0.25),
+        metallic: TEXTURE,
+        spec_trans: Scalar::Value(0.25),
+        eta: Scalar::Value(1.25),
+        spec_tint: Scalar::Value(0.25),
+        sheen: Scalar::Value(2.0),
+        sheen_tint: TEXTURE,
+        flatness: Scalar::Value(0.25),
+        clearcoat: Scalar::Value(0.25),
+        clearcoat_gloss: TEXTURE,
+        diff_trans: Scalar::Value(1.25),
+        is_thin: false,
+    };
     let (conserved, single) = (Energy::Conserved, Energy::SingleScattering);
     let variants = vec![
         MaterialKind::Whitted(whitted),
@@ -270,6 +286,8 @@ fn materials() -> Vec<(String, Scene)> {
         MaterialKind::OpenPbr(Box::new(open)),
         MaterialKind::OpenPbr(Box::new(thin)),
         MaterialKind::OpenPbr(Box::default()),
+        MaterialKind::Disney(Box::new(disney.clone())),
+        MaterialKind::Disney(Box::new(Disney { is_thin: true, ..disney })),
         MaterialKind::Unlit { color: value },
         MaterialKind::ShadowCatcher { normal: unit() },
         MaterialKind::Interface,
@@ -293,7 +311,8 @@ fn materials() -> Vec<(String, Scene)> {
         MaterialKind::Unlit { .. } => 13,
         MaterialKind::ShadowCatcher { .. } => 14,
         MaterialKind::Interface => 15,
-        MaterialKind::Measured(_) => 16,
+        MaterialKind::Disney(_) => 16,
+        MaterialKind::Measured(_) => 17,
     };
     each("material", variants, index, |scene, kind| {
         scene.materials.push(Material { medium: Some(MediumId(0)), ..Material::new("made", here(), kind) });
@@ -446,14 +465,28 @@ fn lights() -> Vec<(String, Scene)> {
             intensity: Color::Curve(CurveId(8)),
             cone_angle: 33.3,
             inner_angle: 11.1,
+            edge: Edge::Linear,
             falloff: Falloff::Linear,
         },
-        LightKind::Projection { image, intensity: 2.0, fov: 33.0, world_from_light },
+        LightKind::Projection {
+            image,
+            filter: TexelFilter::Bilinear,
+            quantity: Projected::Irradiance,
+            intensity: 2.0,
+            cone: Some([33.3, 11.1]),
+            fov: 33.0,
+            world_from_light,
+        },
         LightKind::Goniometric { intensity, image, world_from_light },
         LightKind::Environment { sky: Sky::Constant(intensity), portal: Some(portal), illuminates: false },
         environment(Sky::Gradient { zenith: [0.1; 3], horizon: [0.2; 3], nadir: [0.5, 0.25, 0.125] }),
-        environment(Sky::Image { image: ImageId(3), scale, world_from_light }),
-        environment(Sky::Image { image, scale: [1.0; 3], world_from_light: DMat4::IDENTITY }),
+        environment(Sky::Image { image: ImageId(3), scale, world_from_light, rows: MapRows::ToPoles }),
+        environment(Sky::Image {
+            image,
+            scale: [1.0; 3],
+            world_from_light: DMat4::IDENTITY,
+            rows: MapRows::Bands,
+        }),
         environment(Sky::Octahedral { image: ImageId(3), scale, world_from_light }),
     ];
     let index = |kind: &LightKind| match kind {
@@ -819,6 +852,7 @@ fn settings() -> Vec<(String, Scene)> {
             occlusion_distance: 1.5,
             media: false,
             open_fronts: true,
+            thin_passages_count: false,
         };
         scene.vertex_normals = VertexNormals::AsGiven;
     }));

@@ -470,12 +470,18 @@ impl PathTracer {
         if !is(scattered.goes_on) {
             return;
         }
+        // Nothing but a thin dielectric transmits specularly without a change of the index of refraction.
+        let is_thin_passage = is_specular && is_transmission && scattered.eta[lane] == 1.0;
+        let depth = path.depth + u32::from(self.thin_passages_count || !is_thin_passage);
+        if depth > self.depth {
+            return;
+        }
         let light_path = output.scattered(path, lobe);
         output.paths.push(Path {
             ray: Ray::new(row(&scattered.origin, lane), wi.to_array()),
             beta: Spectrum(row(&scattered.next_beta, lane)),
             slot: path.slot,
-            depth: path.depth + 1,
+            depth,
             address: path.address + 1,
             interior: departure.interior(world, wi, is_transmission),
             origin_primitive,

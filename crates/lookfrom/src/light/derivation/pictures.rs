@@ -1,11 +1,15 @@
 //! Derivations of lights that project pictures: the direction in the light's space, its texel, the intensity.
 
 use glam::{DVec3, Mat3, Vec3};
+use lookfrom_scene::light::{Edge, Projected};
+use lookfrom_scene::texture::TexelFilter;
 
-use super::{Derivation, OCTAHEDRAL, as_spectrum, color_of, in_space, lanes, place, texel_at, vector};
+use super::{
+    Derivation, LINEAR_EDGE, OCTAHEDRAL, as_spectrum, color_of, in_space, lanes, place, texel_at, vector,
+};
 use crate::core::warp;
 use crate::light::picture::{Goniometric, Projection};
-use crate::light::toward;
+use crate::light::{in_cone, toward};
 use crate::shading::texture::{SpectralMode, Textures};
 
 /// The direction from a light in its space.
@@ -33,7 +37,7 @@ impl Projection {
         let st = [0.5 + 0.5 * w.x / (w.z * half_x), 0.5 - 0.5 * w.y / (w.z * half_y)];
         let texel = texel_at(image, st);
         let [size, index] = place(image, texel);
-        let numbers = vec![
+        let mut numbers = vec![
             ("half size at z = 1", vec![f64::from(half_x), f64::from(half_y)]),
             size,
             index,
@@ -41,12 +45,33 @@ impl Projection {
             ("scale", vec![f64::from(self.scale)]),
             ("d", vec![distance]),
         ];
+        let (mut factors, mut laws) = (String::new(), String::new());
+        let direction = toward(from, self.position).map_or(Vec3::ZERO, |(wi, _)| -wi);
+        let cos = self.axis.dot(direction);
+        if let Some([outer, inner]) = self.cone {
+            factors.push_str(" · S");
+            laws.push_str(&format!("; {LINEAR_EDGE}"));
+            numbers.push(("cos outer, inner", vec![f64::from(outer), f64::from(inner)]));
+            numbers.push(("S", vec![f64::from(in_cone(Edge::Linear, [outer, inner], cos))]));
+        }
+        if self.quantity == Projected::Irradiance {
+            factors.push_str(" / cos³");
+        }
+        if !factors.is_empty() {
+            laws.push_str("; cos = axis · (−wi)");
+            numbers.push(("axis", vector(self.axis)));
+            numbers.push(("cos to the axis", vec![f64::from(cos)]));
+        }
+        let texel = match self.filter {
+            TexelFilter::Nearest => "texel (i, j) of the picture",
+            _ => "the picture, interpolated between the texel (i, j) and its neighbours,",
+        };
         vec![
             Derivation::new(FROM_LIGHT, in_space(&self.light_from_render, w)),
             Derivation::new(
                 format!(
-                    "L = I / d², I = scale · texel (i, j) of the picture{}; \
-                     i = ⌊½ (1 + x / (half_x z)) columns⌋, j = ⌊½ (1 − y / (half_y z)) rows⌋",
+                    "L = I / d², I = scale{factors} · {texel}{}; \
+                     i = ⌊½ (1 + x / (half_x z)) columns⌋, j = ⌊½ (1 − y / (half_y z)) rows⌋{laws}",
                     as_spectrum(mode)
                 ),
                 numbers,

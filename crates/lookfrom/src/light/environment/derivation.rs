@@ -152,15 +152,20 @@ impl SkyImage {
             let numbers = vec![("scale", vector(self.scale)), ("texel", vector(color))];
             return Derivation::new(format!("L = scale · texel (i, j){}", as_spectrum(mode)), numbers);
         }
+        let [u, v] = self.in_picture([u, v]);
         let (x, y) = (u * image.width as f32 - 0.5, v * image.height as f32 - 0.5);
         let (fx, fy) = (x - x.floor(), y - y.floor());
         let column = |step: i64| (x.floor() as i64 + step).rem_euclid(i64::from(image.width)) as usize;
         let row = |step: i64| (y.floor() as i64 + step).clamp(0, i64::from(image.height) - 1) as usize;
         let texel = |across, down| vector(color_of(image, [column(across), row(down)]));
+        let place = match self.picture_v {
+            [1.0, 0.0] => "",
+            _ => "; v = (½ + v′ (rows − 1)) / rows by v′ = θ/π, since the outermost rows are the poles",
+        };
         Derivation::new(
             format!(
                 "L = scale · ((1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11){}; f and g are the fractions of u columns − ½ and \
-                 v rows − ½, from whose whole parts on the four texels are",
+                 v rows − ½, from whose whole parts on the four texels are{place}",
                 as_spectrum(mode)
             ),
             vec![

@@ -69,7 +69,7 @@ impl SkyImage {
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, textures: &Textures, uv: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
         let image = textures.image(self.image);
-        let texels = texture::look_up_lanes(simd, image, uv, [Wrap::Repeat, Wrap::Clamp]);
+        let texels = texture::look_up_lanes(simd, image, self.in_picture(uv), [Wrap::Repeat, Wrap::Clamp]);
         by_lane!(lane => {
             let [r, g, b, _] = texels[lane];
             [r, g, b]

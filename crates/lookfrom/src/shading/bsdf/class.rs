@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::conductor::Conductor;
 use super::dielectric::{Dielectric, ThinDielectric};
 use super::diffuse::{Diffuse, DiffuseTransmission};
+use super::disney::Disney;
 use super::hair::Hair;
 use super::layered::Layered;
 use super::lobes::Lobes;
@@ -117,6 +118,8 @@ macro_rules! bsdf_classes {
                 DiffuseTransmission(DiffuseTransmission),
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
+                /// Disney's principled surface.
+                Disney(Disney),
                 /// A measured material.
                 Measured(Measured),
                 /// Whitted's model.

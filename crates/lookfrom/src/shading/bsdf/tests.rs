@@ -156,6 +156,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
     ];
     subjects.extend(principled::tests::subjects());
     subjects.extend(open_pbr::tests::subjects());
+    subjects.extend(disney::tests::subjects());
     subjects
 }
 
@@ -235,7 +236,8 @@ fn samples_are_as_dense_as_they_say() {
     let mut faults = Vec::new();
     for (subject, (name, bsdf)) in subjects.iter().enumerate() {
         // BSDFs of many lobes are costly: fewer samples.
-        let is_costly = ["principled", "openpbr", "conserving"].iter().any(|kind| name.starts_with(kind));
+        let is_costly =
+            ["principled", "openpbr", "disney", "conserving"].iter().any(|kind| name.starts_with(kind));
         // Refraction to the wrong side has a sharp ridge, of which quadrature misses a part.
         let missed = if name.starts_with("conserving") { 2e-4 } else { 1e-5 };
         let n: u64 = if is_costly { 300_000 } else { 1_000_000 };

@@ -66,6 +66,7 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
         MaterialKind::Measured(_) => false,
         MaterialKind::Mix { .. } => true,
         MaterialKind::Principled(look) => look.base_color.varies(),
+        MaterialKind::Disney(look) => look.base_color.varies(),
         MaterialKind::OpenPbr(look) => {
             look.base_color.varies()
                 || look.base_weight.varies()
@@ -117,6 +118,7 @@ fn of_kind(
             first * (1.0 - amount) + second * amount
         }
         MaterialKind::Principled(look) => color(&look.base_color),
+        MaterialKind::Disney(look) => color(&look.base_color),
         MaterialKind::OpenPbr(look) => {
             let part = textures.float(look.subsurface_weight, point).clamp(0.0, 1.0);
             let base = color(&look.base_color) * textures.float(look.base_weight, point).clamp(0.0, 1.0);

@@ -1,8 +1,8 @@
 //! The nearest equivalent of a physical material in Whitted's model; an approximation.
 
 use lookfrom_scene::material::{
-    Color, Ior, MaterialKind, Metal, OpenPbr, Pigment, Principled, Roughness, Scalar, SubsurfaceMedium,
-    Whitted,
+    Color, Disney, Ior, MaterialKind, Metal, OpenPbr, Pigment, Principled, Roughness, Scalar,
+    SubsurfaceMedium, Whitted,
 };
 
 use crate::core::spectrum::Spectrum;
@@ -63,6 +63,7 @@ pub(super) fn in_whitteds_model(
         }
         MaterialKind::Principled(look) => principled(look, textures),
         MaterialKind::OpenPbr(look) => principled(&as_principled(look), textures),
+        MaterialKind::Disney(look) => principled(&of_disney(look), textures),
         // Its emission is all that is visible.
         MaterialKind::Unlit { .. } => plain,
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
@@ -75,6 +76,23 @@ fn coated(reflectance: Color, roughness: &Roughness) -> Whitted {
     let shininess = shininess(roughness);
     let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
     Whitted { diffuse: reflectance, specular: Color::gray(0.2), shininess, mirror, ..Whitted::default() }
+}
+
+/// The nearest material of glTF.
+fn of_disney(look: &Disney) -> Principled {
+    Principled {
+        base_color: look.base_color,
+        metallic: look.metallic,
+        roughness: look.roughness,
+        ior: match look.eta {
+            Scalar::Value(eta) => eta,
+            Scalar::Texture(_) => 1.5,
+        },
+        transmission: look.spec_trans,
+        is_solid: !look.is_thin,
+        clearcoat: look.clearcoat,
+        ..Principled::default()
+    }
 }
 
 /// The nearest material of glTF.

@@ -102,6 +102,7 @@ impl<'a> Compiler<'a> {
             Written::Subsurface(below) => MaterialKind::Subsurface(Box::new(self.subsurface(below))),
             Written::Principled(look) => MaterialKind::Principled(Box::new(self.principled(look))),
             Written::OpenPbr(look) => MaterialKind::OpenPbr(Box::new(self.open_pbr(look))),
+            Written::Disney(look) => MaterialKind::Disney(Box::new(self.disney(look))),
             Written::Unlit { color } => MaterialKind::Unlit {
                 color: self.textures.spectrum_texture(*color, SpectrumType::Illuminant),
                 albedo: self.albedo(*color),

@@ -6,6 +6,7 @@ use glam::Vec3;
 use lookfrom_scene::material::{CoatEstimate, Energy};
 use lookfrom_scene::scene::CurveId;
 
+use super::disney::DisneyMaterial;
 use super::hair::HairMaterial;
 use super::open_pbr::OpenPbrMaterial;
 use crate::shading::bsdf::layered::CoatInterior;
@@ -92,6 +93,8 @@ pub enum MaterialKind {
     Principled(Box<PrincipledMaterial>),
     /// OpenPBR's surface.
     OpenPbr(Box<OpenPbrMaterial>),
+    /// Disney's principled surface.
+    Disney(Box<DisneyMaterial>),
     /// Visible in its colour whatever the light, which it neither reflects nor transmits.
     Unlit {
         /// Its radiance.

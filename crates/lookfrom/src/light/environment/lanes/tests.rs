@@ -43,6 +43,7 @@ fn eight_at_once_are_eight_one_by_one() {
         world_from_light: Mat3::from_rotation_x(0.7) * Mat3::from_rotation_y(2.0),
         complete: choice.clone(),
         compensated: choice,
+        picture_v: [6.0 / 7.0, 0.5 / 7.0],
         mean: 0.0,
         sums: [0.0; 2],
     };
