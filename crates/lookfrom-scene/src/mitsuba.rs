@@ -9,6 +9,7 @@ mod curve;
 mod emitter;
 mod medium;
 mod plugin;
+mod sdf;
 mod sensor;
 mod serialized;
 mod shape;

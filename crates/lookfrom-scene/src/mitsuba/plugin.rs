@@ -14,7 +14,7 @@ use crate::spectrum::Curve;
 use crate::suggest::nearest;
 
 /// Types that Mitsuba has and this program does not, which are no slips for others.
-const MISSING: &[&str] = &["circular", "directionalarea", "ellipsoids", "sdfgrid", "volume"];
+const MISSING: &[&str] = &["circular", "directionalarea", "ellipsoids", "volume"];
 
 /// Plugins by their `id`.
 pub(super) type Ids = HashMap<String, Rc<Plugin>>;

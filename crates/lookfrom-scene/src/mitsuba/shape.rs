@@ -28,6 +28,7 @@ const KINDS: &[&str] = &[
     "obj",
     "ply",
     "rectangle",
+    "sdfgrid",
     "serialized",
     "shapegroup",
     "sphere",
@@ -105,11 +106,7 @@ impl Reader<'_, '_> {
     /// The shapes that a plugin stands for: one, or as many as a model has parts.
     fn shapes(&mut self, plugin: &Rc<Plugin>) -> Result<Vec<Shape>> {
         if !KINDS.contains(&&*plugin.kind) {
-            let error = plugin.unsupported(KINDS);
-            return Err(match &*plugin.kind {
-                "sdfgrid" => error.hint("make a mesh of it, and write <shape type=\"ply\">"),
-                _ => error,
-            });
+            return Err(plugin.unsupported(KINDS));
         }
         let to_world = plugin.to_world()?;
         let flip = plugin.boolean("flip_normals", false)?;
@@ -121,7 +118,7 @@ impl Reader<'_, '_> {
         }
         let geometries = self.geometries(plugin, attribute)?;
         let is_made_of_faces = match &*plugin.kind {
-            "obj" | "ply" | "serialized" => !self.has_own_normals(&geometries),
+            "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),
             _ => false,
         };
         let emission = match plugin.part("emitter", &self.ids)? {
@@ -209,6 +206,13 @@ impl Reader<'_, '_> {
             }
             "cube" => {
                 let mesh = cube();
+                one(self.push_mesh(mesh), DMat4::IDENTITY)
+            }
+            "sdfgrid" => {
+                let mut mesh = self.sdf_surface(plugin)?;
+                mesh.normals = vertex_normals(&mesh);
+                // It has the texture coordinates (0, 0) everywhere in Mitsuba.
+                mesh.uvs = vec![Vec2::Y; mesh.positions.len()];
                 one(self.push_mesh(mesh), DMat4::IDENTITY)
             }
             "bsplinecurve" | "linearcurve" => one(self.curves(plugin)?, DMat4::IDENTITY),

@@ -30,6 +30,11 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
+    #[cfg(test)]
+    pub(super) fn new(size: [u32; 3], channels: usize, values: Vec<f32>) -> Self {
+        Self { size, channels, values }
+    }
+
     pub(super) fn even(rgb: [f32; 3]) -> Self {
         Self { size: [1; 3], channels: 3, values: rgb.to_vec() }
     }
@@ -92,9 +97,7 @@ impl Reader<'_, '_> {
                 plugin.choice("filter_type", (), &[("trilinear", ())])?;
                 plugin.choice("wrap_mode", (), &[("clamp", ())])?;
                 let (path, at) = self.file(plugin)?;
-                let bytes = self.context.read(&path).map_err(|error| super::xml::blame(error, &at))?;
-                let grid = grid(&bytes, &path)?;
-                self.context.keep(grid.lattice.values.len() as u64 * 4, "cells of a volume", &at)?;
+                let grid = self.volume_grid(&path, &at, 0.0)?;
                 let has_own_box = plugin.boolean("use_grid_bbox", false)?;
                 let cube = if has_own_box { grid.world_from_cube } else { DMat4::IDENTITY };
                 Ok(Volume { world_from_cube: world_from_cube * cube, lattice: grid.lattice })
@@ -104,12 +107,26 @@ impl Reader<'_, '_> {
     }
 }
 
+impl Reader<'_, '_> {
+    /// The numbers of a file, of which none is less than `least`.
+    pub(super) fn volume_file(&mut self, path: &Path, at: &Location, least: f32) -> Result<Lattice> {
+        Ok(self.volume_grid(path, at, least)?.lattice)
+    }
+
+    fn volume_grid(&mut self, path: &Path, at: &Location, least: f32) -> Result<Volume> {
+        let bytes = self.context.read(path).map_err(|error| super::xml::blame(error, at))?;
+        let grid = grid(&bytes, path, least)?;
+        self.context.keep(grid.lattice.values.len() as u64 * 4, "cells of a volume", at)?;
+        Ok(grid)
+    }
+}
+
 /// The numbers of a file, in the box that it names.
 ///
 /// # Errors
 /// `Syntax` for bytes that are no such file or too few, `Invalid` for numbers that are negative or not finite, `Unsupported` for other
 /// types of numbers.
-fn grid(bytes: &[u8], path: &Path) -> Result<Volume> {
+fn grid(bytes: &[u8], path: &Path, least: f32) -> Result<Volume> {
     const HEADER: usize = 48;
     let at = Location::file(path);
     if bytes.len() < HEADER || !bytes.starts_with(b"VOL") {
@@ -140,10 +157,13 @@ fn grid(bytes: &[u8], path: &Path) -> Result<Volume> {
     }
     let values: Vec<f32> =
         data.chunks_exact(4).map(|word| f32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
-    if let Some(value) = values.iter().find(|value| !(**value >= 0.0 && value.is_finite())) {
+    if let Some(value) = values.iter().find(|value| !(**value >= least && value.is_finite())) {
         return Err(Error::invalid(
             &at,
-            format!("a volume with the number {value}; expected finite ones of at least 0"),
+            format!(
+                "a volume with the number {value}; expected finite ones{}",
+                if least == 0.0 { " of at least 0" } else { "" }
+            ),
         ));
     }
     let [low, high] =

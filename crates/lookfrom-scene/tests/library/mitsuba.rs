@@ -699,7 +699,12 @@ fn errors_have_their_place_and_a_remedy() {
             "",
         ),
         ("<shape type=\"spere\"/>", 14, "the shape \"spere\" is not supported", "did you mean \"sphere\"?"),
-        ("<shape type=\"sdfgrid\"/>", 14, "the shape \"sdfgrid\" is not supported", "make a mesh of it"),
+        (
+            "<shape type=\"ellipsoids\"/>",
+            14,
+            "the shape \"ellipsoids\" is not supported",
+            "there are: bsplinecurve",
+        ),
         ("<shap type=\"sphere\" name=\"x\"/>", 1, "<shap> is not a known element", "did you mean <shape>?"),
         ("<shape type=\"cube\"><ref id=\"b\"/></shape>", 29, "\"b\" is not a known id", ""),
         ("<float name=\"x\" valeu=\"1\"/>", 17, "<float> has no attribute `valeu`", "it has: name, value"),

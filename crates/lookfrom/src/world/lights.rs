@@ -206,15 +206,18 @@ impl<'a> Lights<'a> {
         let [half_x, half_y] = light.half_size;
         let place = |i: u32, size: u32, half: f32| half * (2.0 * (i as f32 + 0.5) / size as f32 - 1.0);
         let of_render = light.light_from_render.inverse();
+        // A cone varies within the texels of small pictures.
+        let parts = if light.cone.is_some() { 256_u32.div_ceil(image.width.min(image.height)) } else { 1 };
+        let [width, height] = [image.width, image.height].map(|size| size * parts);
         let mut sum = 0.0;
-        for (index, texel) in (0..).zip(image.texels()) {
-            let x = place(index % image.width, image.width, half_x);
-            let y = place(index / image.width, image.height, half_y);
+        for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
+            let (x, y) = (place(column, width, half_x), place(row, height, half_y));
             let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
             let toward = (of_render * Vec3::new(x, y, 1.0)).normalize();
+            let texel = image.texel((row / parts * image.width + column / parts) as usize);
             sum += f64::from(math::luminance(texel) * cos * cos * cos * light.by_angle(toward));
         }
-        4.0 * half_x * half_y * (sum / image.len() as f64) as f32
+        4.0 * half_x * half_y * (sum / (f64::from(width) * f64::from(height))) as f32
     }
 
     fn portal(&self, opening: Opening, sky: &Sky) -> Portal {
