@@ -82,7 +82,7 @@ fn put(written: &Written, place: &Path, output: &Path, inputs: &Inputs) -> Resul
     replace_file(output, written.text.as_bytes(), inputs, "-o")
 }
 
-/// What was written.
+/// The summary of the files that were written.
 fn told(written: &Written, output: &Path, name: &str) -> String {
     let text = format!("{}: {}", output.display(), bytes(written.text.len() as u64));
     match written.files.len() {

@@ -90,14 +90,8 @@ impl Counts {
         }
         for light in &scene.lights {
             let kind = match light.kind {
-                LightKind::Ambient { .. } => "ambient",
-                LightKind::Point { .. } => "point",
-                LightKind::Distant { .. } => "distant",
-                LightKind::Spot { .. } => "spot",
-                LightKind::Projection { .. } => "projection",
-                LightKind::Goniometric { .. } => "goniometric",
-                LightKind::Environment { illuminates: true, .. } => "environment",
                 LightKind::Environment { illuminates: false, .. } => "backdrop",
+                _ => light.kind.word(),
             };
             *counts.lights.entry(kind).or_default() += 1;
         }

@@ -131,6 +131,19 @@ pub enum LightKind {
 }
 
 impl LightKind {
+    /// The word for the kind, in scene files and for people.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Ambient { .. } => "ambient",
+            Self::Point { .. } => "point",
+            Self::Distant { .. } => "distant",
+            Self::Spot { .. } => "spot",
+            Self::Projection { .. } => "projection",
+            Self::Goniometric { .. } => "goniometric",
+            Self::Environment { .. } => "environment",
+        }
+    }
+
     /// Whether it is seen under a solid angle, so that paths can meet it by chance.
     pub fn has_size(&self) -> bool {
         matches!(self, Self::Environment { .. } | Self::Ambient { .. })
@@ -200,7 +213,7 @@ pub enum Sky {
         scale: [f32; 3],
         /// The transform from the light's space to the world: a rotation.
         world_from_light: DMat4,
-        /// Where its rows are.
+        /// The latitudes of its rows.
         rows: MapRows,
     },
     /// A square environment map in the equal-area octahedral mapping (Clarberg 2008), as in pbrt-v4: z of the light's space

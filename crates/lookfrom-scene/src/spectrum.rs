@@ -91,11 +91,27 @@ fn tabulated(wavelengths: &[f32], values: &[f32], nm: f32) -> f32 {
     }
 }
 
+/// Wien's displacement constant b in m K.
+const WIEN: f64 = 2.897_772_1e-3;
+/// h c in J m.
+const PLANCK_LIGHT: f64 = 6.626_069_57e-34 * SPEED_OF_LIGHT;
+/// c in m/s.
+const SPEED_OF_LIGHT: f64 = 299_792_458.0;
+/// h c / k in m K.
+const SECOND_RADIATION: f64 = PLANCK_LIGHT / 1.380_648_8e-23;
+
+/// The spectral radiance of a blackbody (Planck 1900) in W/(m² sr nm), at a wavelength in nm.
+#[cfg(feature = "mitsuba")]
+pub(crate) fn spectral_radiance(nm: f64, kelvin: f64) -> f64 {
+    let peak = WIEN / kelvin;
+    let fifth = peak * peak * peak * peak * peak;
+    let of_peak = 2.0 * PLANCK_LIGHT * SPEED_OF_LIGHT / (fifth * libm::expm1(SECOND_RADIATION / WIEN));
+    // Per metre to per nanometre.
+    1e-9 * of_peak * blackbody(nm, kelvin)
+}
+
 /// Planck's law relative to its maximum, which is at b / T (Wien's displacement law).
 fn blackbody(nm: f64, kelvin: f64) -> f64 {
-    const WIEN: f64 = 2.897_772_1e-3;
-    /// h c / k in m K.
-    const SECOND_RADIATION: f64 = 6.626_069_57e-34 * 299_792_458.0 / 1.380_648_8e-23;
     if !(kelvin > 0.0 && nm > 0.0) {
         return 0.0;
     }

@@ -235,7 +235,7 @@ impl Image {
         }
     }
 
-    /// What a byte of a colour stands for, of an image that is stored in bytes.
+    /// The linear value of a byte of a colour; `None` of an image that is stored in floats.
     pub(crate) fn decoded_byte(&self, byte: u8) -> Option<f32> {
         match &self.texels {
             Texels::Bytes { table, .. } => Some(table[usize::from(byte)]),

@@ -55,7 +55,7 @@ pub enum Distribution {
 /// Smith's masking-shadowing function of two directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Masking {
-    /// What is masked and what is in shadow depends on the height alike (Heitz 2014, equation 99), as in pbrt-v4.
+    /// Height-correlated masking and shadowing (Heitz 2014, equation 99), as in pbrt-v4.
     #[default]
     Correlated,
     /// The product of the functions of both directions (Walter et al. 2007), as in Mitsuba 3: darker where both are grazing.

@@ -14,6 +14,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
 use crate::material::{Color, Scalar};
+use crate::model::surface::push_image;
 use crate::scene::ImageId;
 use crate::shape::Emission;
 use crate::spectrum::observer;
@@ -137,8 +138,7 @@ impl Reader<'_, '_> {
             albedo,
             has_sun: sun_scale > 0.0,
         };
-        self.scene.images.push(sky.octahedral("sunsky"));
-        let image = ImageId(self.scene.images.len() as u32 - 1);
+        let image = push_image(&mut self.scene, sky.octahedral("sunsky"));
         let scale = [sky_scale as f32 / OF_RADIANCE; 3];
         let sky = Sky::Octahedral { image, scale, world_from_light: *to_world };
         Ok(LightKind::Environment { sky, portal: None, illuminates: true })
@@ -167,7 +167,7 @@ impl Reader<'_, '_> {
             return Err(error.hint("write its intensity as <rgb>"));
         };
         let projected = self.projected(texture, rgb)?;
-        let (width, height) = self.aspect(projected.0);
+        let (width, height) = self.size_of(projected.0);
         // Both sides are seen under the same angle; the picture's rows run toward +y, its columns toward +x.
         let shape = DVec3::new(height / width.max(height), -width / width.max(height), 1.0);
         let kind = LightKind::Projection {
@@ -188,9 +188,9 @@ impl Reader<'_, '_> {
         let scale = plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
         let (image, filter) = match plugin.find("irradiance") {
             Some(irradiance) => self.projected(irradiance, [1.0; 3])?,
-            None => (self.push_image(1, 1, vec![[1.0; 3]]), TexelFilter::Nearest),
+            None => (self.picture(1, 1, vec![[1.0; 3]]), TexelFilter::Nearest),
         };
-        let (width, height) = self.aspect(image);
+        let (width, height) = self.size_of(image);
         let vertical = super::sensor::field_of_view(plugin, width / height)?;
         let half = libm::tan((0.5 * vertical).to_radians()) * (width / height).min(1.0);
         let kind = LightKind::Projection {
@@ -216,7 +216,7 @@ impl Reader<'_, '_> {
                 _ => return Err(property.wrong("an <rgb> or a texture of the type \"bitmap\" here")),
             };
             let texel = std::array::from_fn(|c| rgb[c] * tint[c]);
-            return Ok((self.push_image(1, 1, vec![texel]), TexelFilter::Nearest));
+            return Ok((self.picture(1, 1, vec![texel]), TexelFilter::Nearest));
         };
         let TextureKind::Image { image, filter, mapping, .. } = self.bitmap(&texture)? else {
             return Err(property.wrong("a picture"));
@@ -231,15 +231,16 @@ impl Reader<'_, '_> {
         let picture = &self.scene.images[image.index()];
         let (width, height) = (picture.width, picture.height);
         let texels = picture.texels().map(|texel| std::array::from_fn(|c| texel[c] * tint[c])).collect();
-        Ok((self.push_image(width, height, texels), filter))
+        Ok((self.picture(width, height, texels), filter))
     }
 
-    fn push_image(&mut self, width: u32, height: u32, texels: Vec<[f32; 3]>) -> ImageId {
-        self.scene.images.push(Image::from_linear("", width, height, texels));
-        ImageId(self.scene.images.len() as u32 - 1)
+    /// Adds a picture of the texels.
+    fn picture(&mut self, width: u32, height: u32, texels: Vec<[f32; 3]>) -> ImageId {
+        push_image(&mut self.scene, Image::from_linear("", width, height, texels))
     }
 
-    fn aspect(&self, image: ImageId) -> (f64, f64) {
+    /// Width and height of a picture.
+    fn size_of(&self, image: ImageId) -> (f64, f64) {
         let image = &self.scene.images[image.index()];
         (image.width.into(), image.height.into())
     }

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec3};
 
 use super::Reader;
-use super::plugin::{Plugin, Property, Value};
+use super::plugin::Plugin;
+use super::volume::even_color;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Placed};
 use crate::material::Color;
 use crate::medium::{Density, Medium, Sides, Variation};
 use crate::scene::MediumId;
-use crate::spectrum::Curve;
 
 impl Reader<'_, '_> {
     /// The media that a shape bounds.
@@ -146,16 +146,14 @@ impl Reader<'_, '_> {
     }
 
     fn coefficient(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<[f32; 3]> {
-        match plugin.find(name) {
-            None => Ok([default; 3]),
-            Some(Property { value: Value::Color(rgb), .. }) => Ok(*rgb),
-            Some(Property { value: Value::Curve(Curve::Constant(value)), .. }) => Ok([*value; 3]),
-            Some(Property { value: Value::Float(value), .. }) if *value >= 0.0 => Ok([*value as f32; 3]),
-            Some(property) => match property.plugin(&self.ids)? {
-                Some(volume) if volume.kind == "constvolume" => self.coefficient(&volume, "value", 1.0),
-                Some(volume) => Err(volume.unsupported(&["constvolume"])),
-                None => Err(property.wrong("a colour of at least 0")),
-            },
+        let Some(property) = plugin.find(name) else { return Ok([default; 3]) };
+        if let Some(rgb) = even_color(property) {
+            return Ok(rgb);
+        }
+        match property.plugin(&self.ids)? {
+            Some(volume) if volume.kind == "constvolume" => self.coefficient(&volume, "value", 1.0),
+            Some(volume) => Err(volume.unsupported(&["constvolume"])),
+            None => Err(property.wrong("a colour of at least 0")),
         }
     }
 }

@@ -27,7 +27,7 @@ impl Reader<'_, '_> {
         plugin.ignore(&["normals"]);
         let (path, at) = self.file(plugin)?;
         self.warn_once(&plugin.at, "an sdfgrid is a mesh, with four triangles or more along each cell");
-        let lattice = self.volume_file(&path, &at, f32::NEG_INFINITY)?;
+        let lattice = self.volume_grid(&path, &at, f32::NEG_INFINITY)?.lattice;
         let too_large = |size: &u32| !(2..MOST / PARTS).contains(size);
         if lattice.channels != 1 || lattice.size.iter().any(too_large) {
             let message = format!("a grid of {:?} numbers with {} channels", lattice.size, lattice.channels);

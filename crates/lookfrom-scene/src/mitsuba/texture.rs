@@ -13,8 +13,9 @@ use super::xml::blame;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image;
 use crate::material::{Color, Scalar};
+use crate::model::surface::push_image;
 use crate::scene::{CurveId, ImageId, TextureId};
-use crate::spectrum::{Curve, observer};
+use crate::spectrum::{Curve, observer, spectral_radiance};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
 const KINDS: &[&str] = &["bitmap", "checkerboard", "mesh_attribute"];
@@ -169,8 +170,8 @@ impl Reader<'_, '_> {
                 let kelvin = plugin.positive("temperature", 5000.0)?;
                 let scale =
                     plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
-                let values =
-                    (0..=94).map(|step| (scale * planck(360.0 + 5.0 * f64::from(step), kelvin)) as f32);
+                let values = (0..=94)
+                    .map(|step| (scale * spectral_radiance(360.0 + 5.0 * f64::from(step), kelvin)) as f32);
                 ((0..=94).map(|step| 360.0 + 5.0 * step as f32).collect(), values.collect())
             }
             _ => return Ok(None),
@@ -297,21 +298,10 @@ impl Reader<'_, '_> {
             ErrorKind::Io => blame(error, &at),
             _ => error,
         })?;
-        self.scene.images.push(image);
-        let id = ImageId(self.scene.images.len() as u32 - 1);
+        let id = push_image(&mut self.scene, image);
         self.images.insert(key, id);
         Ok(id)
     }
-}
-
-/// The spectral radiance of a blackbody (Planck 1900) in W/(m² sr nm).
-fn planck(nm: f64, kelvin: f64) -> f64 {
-    const C: f64 = 299_792_458.0;
-    const H: f64 = 6.626_070_15e-34;
-    const K: f64 = 1.380_649e-23;
-    let metres = nm * 1e-9;
-    let per_metre = 2.0 * H * C * C / (metres.powi(5) * libm::expm1(H * C / (metres * K * kelvin)));
-    per_metre * 1e-9
 }
 
 /// The mapping of a texture by the matrix `to_uv`, times a factor. The result's v runs up if it `is_picture`.

@@ -68,20 +68,16 @@ impl Lattice {
 }
 
 impl Reader<'_, '_> {
-    /// A volume, or what is the same everywhere.
+    /// A volume, or a colour that is the same everywhere.
     pub(super) fn volume(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<Volume> {
         let even = |rgb| Volume { world_from_cube: DMat4::IDENTITY, lattice: Lattice::even(rgb) };
-        match plugin.find(name) {
-            None => Ok(even([default; 3])),
-            Some(Property { value: Value::Color(rgb), .. }) => Ok(even(*rgb)),
-            Some(Property { value: Value::Curve(Curve::Constant(value)), .. }) => Ok(even([*value; 3])),
-            Some(Property { value: Value::Float(value), .. }) if *value >= 0.0 => {
-                Ok(even([*value as f32; 3]))
-            }
-            Some(property) => match property.plugin(&self.ids)? {
-                Some(volume) => self.volume_plugin(&volume),
-                None => Err(property.wrong("a colour of at least 0, or a <volume>")),
-            },
+        let Some(property) = plugin.find(name) else { return Ok(even([default; 3])) };
+        if let Some(rgb) = even_color(property) {
+            return Ok(even(rgb));
+        }
+        match property.plugin(&self.ids)? {
+            Some(volume) => self.volume_plugin(&volume),
+            None => Err(property.wrong("a colour of at least 0, or a <volume>")),
         }
     }
 
@@ -105,15 +101,9 @@ impl Reader<'_, '_> {
             _ => Err(plugin.unsupported(KINDS)),
         }
     }
-}
 
-impl Reader<'_, '_> {
-    /// The numbers of a file, of which none is less than `least`.
-    pub(super) fn volume_file(&mut self, path: &Path, at: &Location, least: f32) -> Result<Lattice> {
-        Ok(self.volume_grid(path, at, least)?.lattice)
-    }
-
-    fn volume_grid(&mut self, path: &Path, at: &Location, least: f32) -> Result<Volume> {
+    /// The numbers of a file, of which none is less than `least`, in the box that it names.
+    pub(super) fn volume_grid(&mut self, path: &Path, at: &Location, least: f32) -> Result<Volume> {
         let bytes = self.context.read(path).map_err(|error| super::xml::blame(error, at))?;
         let grid = grid(&bytes, path, least)?;
         self.context.keep(grid.lattice.values.len() as u64 * 4, "cells of a volume", at)?;
@@ -121,10 +111,20 @@ impl Reader<'_, '_> {
     }
 }
 
+/// The colour, at least 0, that a property is everywhere, unless it is a plugin.
+pub(super) fn even_color(property: &Property) -> Option<[f32; 3]> {
+    match &property.value {
+        Value::Color(rgb) => Some(*rgb),
+        Value::Curve(Curve::Constant(value)) => Some([*value; 3]),
+        Value::Float(value) if *value >= 0.0 => Some([*value as f32; 3]),
+        _ => None,
+    }
+}
+
 /// The numbers of a file, in the box that it names.
 ///
 /// # Errors
-/// `Syntax` for bytes that are no such file or too few, `Invalid` for numbers that are negative or not finite, `Unsupported` for other
+/// `Syntax` for bytes that are no such file or too few, `Invalid` for numbers below `least` or not finite, `Unsupported` for other
 /// types of numbers.
 fn grid(bytes: &[u8], path: &Path, least: f32) -> Result<Volume> {
     const HEADER: usize = 48;

@@ -19,7 +19,7 @@ const TRIANGLE: usize = 13;
 /// The most sets of texture coordinates, and the most later times.
 const MOST: usize = 256;
 
-/// What each vertex of a file has, in its order.
+/// The attributes of the vertices of a file, in its order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Columns {
     normals: bool,
@@ -32,7 +32,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// Those of a mesh.
+    /// The attributes of a mesh.
     pub(super) fn of(mesh: &Mesh) -> Self {
         Self {
             normals: !mesh.normals.is_empty(),

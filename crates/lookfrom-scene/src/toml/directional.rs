@@ -88,7 +88,7 @@ impl Reader<'_, '_> {
         Ok(self.projected(table)?.placed(world_from_light))
     }
 
-    /// What a projection light projects.
+    /// The picture of a projection light, with its intensity.
     fn projected(&mut self, table: &Table<'_>) -> Result<Picture> {
         let expected = "degrees between 0 and 180, exclusive";
         Ok(Picture {

@@ -171,7 +171,7 @@ fn box_or_none(value: Value<'_>) -> Result<Option<[Vec3; 2]>> {
     if low.cmple(high).all() { Ok(Some([low, high])) } else { Err(value.wrong(expected)) }
 }
 
-/// What varies of a medium, if anything does.
+/// The variation of a medium in space, if it has any.
 fn varying(
     table: &Table<'_>,
     density: Option<Number>,

@@ -66,7 +66,7 @@ pub(super) const COMMON: &[&str] = &[
     "reverse_orientation",
     "single_sided",
 ];
-/// Those, and those of transforms.
+/// The keys of all shapes, and those of transforms.
 const OF_ANY: &[&str] = &[
     "name",
     "material",

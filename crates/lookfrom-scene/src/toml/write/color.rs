@@ -18,7 +18,7 @@ const MOST_ENTRIES: usize = 16;
 /// Longest list of three numbers that is not written as a colour of the web, if it can be.
 const SHORT_LIST: usize = 20;
 
-/// What a spectrum is of.
+/// The use of a spectrum.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Of {
     /// A reflectance or a light, which ends where its table ends.
@@ -201,7 +201,7 @@ fn illuminant(curve: &Curve) -> Option<&'static str> {
     })
 }
 
-/// What a name stands for, of the spectra that are the same: of several, the last, since makers' names of glasses follow pbrt's.
+/// The name of a spectrum: of several, the last, since makers' names of glasses follow pbrt's.
 fn known(curve: &Curve, of: impl Fn(&'static str) -> Option<&'static str>) -> Option<&'static str> {
     NAMED.iter().rev().filter(|(_, named)| named == curve).find_map(|(name, _)| of(name))
 }

@@ -21,7 +21,7 @@ impl Writer<'_> {
     pub(super) fn light(&mut self, light: &Light) -> Result<Fields> {
         let mut fields = Fields::default();
         let Light { name, kind, power, .. } = light;
-        fields.put("type", word(kind));
+        fields.put("type", kind.word());
         if let Some(name) = name {
             fields.put("name", spoken("light", name));
         }
@@ -116,19 +116,6 @@ impl Writer<'_> {
         }
         put_power(fields, "illuminance", power);
         Ok(())
-    }
-}
-
-/// The type of a light.
-fn word(kind: &LightKind) -> &'static str {
-    match kind {
-        LightKind::Ambient { .. } => "ambient",
-        LightKind::Point { .. } => "point",
-        LightKind::Distant { .. } => "distant",
-        LightKind::Spot { .. } => "spot",
-        LightKind::Projection { .. } => "projection",
-        LightKind::Goniometric { .. } => "goniometric",
-        LightKind::Environment { .. } => "environment",
     }
 }
 

@@ -7,7 +7,7 @@ use crate::image::{self, Encoding, Image, Pixels, encode_exr, encode_png_of};
 use crate::scene::ImageId;
 use crate::texture::Channel;
 
-/// What a picture is for, by which its integers are decoded.
+/// The use of a picture, by which its integers are decoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum For {
     /// A texture, which names its encoding.

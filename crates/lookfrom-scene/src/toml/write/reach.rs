@@ -1,4 +1,4 @@
-//! What of a scene's arenas is used by something that is placed, lit or looked through: the rest is not written.
+//! Reachable parts of a scene's arenas: those that shapes, lights and cameras use. The rest is not written.
 
 use super::roughness::squared;
 use crate::material::{Color, Material, MaterialKind, Scalar};

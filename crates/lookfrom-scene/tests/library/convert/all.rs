@@ -908,7 +908,7 @@ fn settings() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// What else shapes have.
+/// Shapes with each of their other properties.
 fn looks() -> Vec<(String, Scene)> {
     let mut scene = base();
     scene.shapes[0] = Shape {
@@ -928,7 +928,7 @@ fn looks() -> Vec<(String, Scene)> {
 /// Compares scenes by all that has an effect on their pictures.
 ///
 /// # Errors
-/// What differs.
+/// The first difference of two scenes.
 pub(super) fn same(before: &Scene, after: &Scene) -> Result<(), String> {
     let (before, after) = (told(before), told(after));
     match before.iter().zip(&after).find(|(before, after)| before != after) {

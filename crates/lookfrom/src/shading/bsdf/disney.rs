@@ -14,12 +14,15 @@ pub(super) mod tests;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::Vec3;
+use lookfrom_scene::material as written;
+use lookfrom_scene::material::Masking;
 
 use super::conductor::try_half_vector;
 use super::diffuse::cosine_direction;
-use super::microfacet::TrowbridgeReitz;
+use super::microfacet::{Microfacets, TrowbridgeReitz};
 use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, fresnel, is_grazing, same_side};
 use crate::core::elementary;
+use crate::core::math::schlick;
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
 
@@ -46,7 +49,7 @@ pub struct Disney {
     pub sheen_tint: f32,
     /// Share of a base in which light scatters below the surface.
     pub flatness: f32,
-    /// What a solid body and a thin sheet have of their own.
+    /// A solid body or a thin sheet, with its own parameters.
     pub form: Form,
 }
 
@@ -96,21 +99,15 @@ impl Choice {
     }
 }
 
-/// (1 − cos)⁵, Schlick's weight of grazing angles.
-fn schlick(cos: f32) -> f32 {
-    let m = (1.0 - cos).clamp(0.0, 1.0);
-    (m * m) * (m * m) * m
-}
-
 /// Reflectance at normal incidence.
 fn normal_reflectance(eta: f32) -> f32 {
     let root = (eta - 1.0) / (eta + 1.0);
     root * root
 }
 
-/// Masking and shadowing, each by itself: the product of both.
-fn masking(facets: TrowbridgeReitz, wo: Vec3, wi: Vec3) -> f32 {
-    facets.g1(wo.into()) * facets.g1(wi.into())
+/// Microfacets whose masking and shadowing are independent, as Mitsuba has them.
+fn separable(alpha: TrowbridgeReitz) -> Microfacets {
+    Microfacets::new(alpha, written::Microfacets { masking: Masking::Separable, ..Default::default() })
 }
 
 impl Disney {
@@ -121,14 +118,15 @@ impl Disney {
     }
 
     /// The facets of the specular layer, or of light that passes a thin sheet, with a factor of the roughness.
-    fn facets(&self, factor: f32) -> TrowbridgeReitz {
+    fn facets(&self, factor: f32) -> Microfacets {
         let roughness = factor * self.roughness;
         let alpha = roughness * roughness;
-        TrowbridgeReitz::new((alpha / self.aspect).max(1e-3), (alpha * self.aspect).max(1e-3))
+        let [x, y] = [alpha / self.aspect, alpha * self.aspect].map(|alpha| alpha.max(1e-3));
+        separable(TrowbridgeReitz::new(x, y))
     }
 
     /// The facets through which light passes a thin sheet (Burley 2015, figure 15).
-    fn facets_of_thin_transmission(&self) -> TrowbridgeReitz {
+    fn facets_of_thin_transmission(&self) -> Microfacets {
         self.facets(0.65 * self.eta - 0.35)
     }
 
@@ -217,11 +215,11 @@ impl Disney {
             return 0.0;
         }
         let normal = Spectrum::splat(0.04);
-        let coat = TrowbridgeReitz::new(0.25, 0.25);
+        let coat = separable(TrowbridgeReitz::new(0.25, 0.25));
         0.25 * clearcoat
             * self.schlick_of(normal, wo.dot(wm)).0[0]
             * gtr1(clearcoat_alpha, wm.z)
-            * masking(coat, wo, wi)
+            * coat.g(wo.into(), wi.into())
     }
 
     /// The probabilities of the lobes for a facet with the reflectance `fresnel`. The sum of their weights does not depend on it, as those
@@ -269,7 +267,7 @@ impl Disney {
         let passes = 1.0 - fresnel::dielectric(cos_o, self.eta);
         let light = passes
             * facets.d(wm.into())
-            * masking(facets, wo, wi)
+            * facets.g(wo.into(), wi.into())
             * eta
             * eta
             * (cos_o * cos_i / (sum * sum * wo.z * wi.z)).abs();
@@ -341,7 +339,7 @@ impl Disney {
             let Some(wm) = try_half_vector(wo, wi) else { return black };
             let cos = if is_inside { -wo.dot(wm).abs() } else { wo.dot(wm).abs() };
             let facets = self.facets(1.0);
-            let visible = facets.d(wm.into()) * masking(facets, wo, wi) / (4.0 * (wo.z * wi.z).abs());
+            let visible = facets.d(wm.into()) * facets.g(wo.into(), wi.into()) / (4.0 * (wo.z * wi.z).abs());
             let share = if matches!(self.form, Form::Thin { .. }) { glass } else { 1.0 };
             let specular = self.specular(cos, is_inside) * (share * visible);
             if is_inside {
@@ -362,7 +360,8 @@ impl Disney {
                 let Some(wm) = try_half_vector(wo, mirrored(wi)) else { return [diffuse; 2] };
                 let facets = self.facets_of_thin_transmission();
                 let passes = 1.0 - fresnel::dielectric(wo.dot(wm).abs(), self.eta);
-                let visible = facets.d(wm.into()) * masking(facets, wo, wi) / (4.0 * (wo.z * wi.z).abs());
+                let visible =
+                    facets.d(wm.into()) * facets.g(wo.into(), wi.into()) / (4.0 * (wo.z * wi.z).abs());
                 [diffuse + self.base * (glass * passes * visible), diffuse]
             }
         }

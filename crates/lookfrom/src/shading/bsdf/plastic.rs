@@ -158,7 +158,7 @@ impl<R: Real, T: AsRef<[&'static Interface]>> Plastic<R, T> {
         SeenPlastic { wo, is_below, base, specular_probability }
     }
 
-    /// What a rough surface reflects in each lane of a white spectrum, and its density; 0 where it is smooth.
+    /// `f` of the rough surface in each lane of a white spectrum, and its density; 0 where it is smooth.
     #[inline(always)]
     fn off_the_surface(&self, wo: Vector<R>, wi: Vector<R>) -> [R; 2] {
         let zero = wo.z.like(0.0);
