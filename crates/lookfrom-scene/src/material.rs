@@ -63,14 +63,27 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
+    /// What is done about normals that bump or normal mapping bends too far; `None` for what the scene does
+    /// ([`crate::scene::VertexNormals`]).
+    pub bump_guard: Option<BumpGuard>,
     /// Medium inside closed bodies of it; `None` where they only absorb, by the material itself.
     pub medium: Option<MediumId>,
+    /// Its look from behind, when paths are traced.
+    pub back_face: BackFace,
 }
 
 impl Material {
     /// A material without bump mapping.
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
-        Self { name: name.into(), at, kind, bump_mapping: BumpMapping::None, medium: None }
+        Self {
+            name: name.into(),
+            at,
+            kind,
+            bump_mapping: BumpMapping::None,
+            bump_guard: None,
+            medium: None,
+            back_face: BackFace::Own,
+        }
     }
 
     /// Whether the material depends on the direction of u on the surface.
@@ -114,6 +127,26 @@ pub enum BumpMapping {
     NormalMap(ImageId),
     /// A normal map from a texture, as in glTF.
     NormalTexture(NormalTexture),
+}
+
+/// The look of a surface from behind, where its shading normal points away from the viewer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackFace {
+    /// That of the kind of material: bodies from inside, others as from the front.
+    #[default]
+    Own,
+    /// Black, as Mitsuba's surfaces are without `twosided`.
+    Black,
+}
+
+/// Mitsuba's treatment of normals that are bent too far: no light comes from a direction that is above the surface by one of the
+/// normals and below it by the other, the one with the map and the one without.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BumpGuard {
+    /// Whether normals that the viewer sees from behind are turned about the one without the map (Schüßler et al. 2017).
+    pub turns: bool,
+    /// Whether light fades toward directions in which bumps would shadow one another (Conty Estevez, Lecocq & Stein 2019).
+    pub shadows: bool,
 }
 
 /// Normals from a texture in the tangent frame (u, v, outward): `(scale, scale, 1) · (2·texel − 1)`, normalised. The

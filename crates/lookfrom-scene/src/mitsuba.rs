@@ -28,7 +28,7 @@ use self::plugin::{Ids, Plugin, Value};
 use crate::chain;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
-use crate::material::{Color, Material, MaterialKind};
+use crate::material::{BackFace, Color, Material, MaterialKind};
 use crate::scene::{ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals};
 
 /// Reads a scene of Mitsuba with all its includes. Files are looked up in the folder of the scene and those of its `path` elements. The
@@ -53,7 +53,8 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
     scene.contents.variables = variables;
     for (name, reflectance) in [("default", 0.5), ("black", 0.0)] {
         let kind = MaterialKind::Diffuse { reflectance: Color::gray(reflectance) };
-        scene.materials.push(Material::new(name, Location::file(path), kind));
+        let material = Material::new(name, Location::file(path), kind);
+        scene.materials.push(Material { back_face: BackFace::Black, ..material });
     }
     let mut reader = Reader {
         context,
@@ -62,6 +63,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         folders,
         open: Vec::new(),
         surfaces: HashMap::new(),
+        is_two_sided: false,
         textures: HashMap::new(),
         exchanged: HashMap::new(),
         images: HashMap::new(),
@@ -85,7 +87,9 @@ struct Reader<'s, 'f> {
     folders: Vec<PathBuf>,
     /// The plugins that are being read, each a part of the one before it.
     open: Vec<*const Plugin>,
-    surfaces: HashMap<*const Plugin, Surface>,
+    /// Surfaces by their plugin, and whether they are within a `twosided`.
+    surfaces: HashMap<(*const Plugin, bool), Surface>,
+    is_two_sided: bool,
     textures: HashMap<*const Plugin, TextureId>,
     /// Checkerboards with exchanged fields, by those that have them as they are written.
     exchanged: HashMap<TextureId, TextureId>,

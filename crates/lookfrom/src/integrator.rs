@@ -326,7 +326,11 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     }
 
     /// A path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to infinity.
+    #[inline]
     pub fn absorbed(&mut self, world: &World, path: &Path<S>, hit: &Hit) -> Path<S> {
+        if path.interior.is_empty() && self.light_paths.is_none() {
+            return *path;
+        }
         let mode = self.mode(path);
         let absorbed = path.absorbed(world, hit, &mode);
         self.set_transmittance(world, path, absorbed.beta);

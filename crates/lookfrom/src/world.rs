@@ -88,6 +88,8 @@ pub struct World {
     pub(crate) environments: Vec<u32>,
     /// Whether any material transmits light.
     pub(crate) transmissive: bool,
+    /// Whether any material is a pane ([`Material::is_pane`]).
+    pub(crate) has_panes: bool,
     /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts.
     pub(crate) has_gaps: bool,
     /// Whether single-sided surfaces mostly face inward: then their fronts are open to light ([`World::is_open_front`]).
@@ -315,7 +317,7 @@ impl World {
 
     /// Data that shading frames are bent by.
     pub(crate) fn relief(&self) -> Relief<'_> {
-        Relief { textures: &self.textures, footprint: self.footprint.as_ref() }
+        Relief { textures: &self.textures, footprint: self.footprint.as_ref(), step: Relief::STEP }
     }
 
     /// Whether a surface is only an interface between media.

@@ -7,8 +7,8 @@ use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
-    BumpMapping, Color, Disney, Distribution, Energy, Hair, Ior, Masking, Material, MaterialKind, Metal,
-    Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
+    BackFace, BumpGuard, BumpMapping, Color, Disney, Distribution, Energy, Hair, Ior, Masking, Material,
+    MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -68,26 +68,27 @@ const INDICES: &[(&str, f64)] = &[
 pub(super) struct Surface {
     pub(super) material: MaterialId,
     pub(super) alpha: Option<Scalar>,
-    /// Whether it is black from behind in Mitsuba.
-    pub(super) is_one_sided: bool,
 }
 
 impl Surface {
     pub(super) fn opaque(material: MaterialId) -> Self {
-        Self { material, alpha: None, is_one_sided: true }
+        Self { material, alpha: None }
     }
 }
 
 impl Reader<'_, '_> {
     /// The surface of a BSDF.
     pub(super) fn surface(&mut self, plugin: &Rc<Plugin>) -> Result<Surface> {
-        if let Some(&surface) = self.surfaces.get(&Rc::as_ptr(plugin)) {
+        let key = (Rc::as_ptr(plugin), self.is_two_sided);
+        if let Some(&surface) = self.surfaces.get(&key) {
             return Ok(surface);
         }
         let surface = self.within(plugin, |reader| match &*plugin.kind {
             "twosided" => {
-                let surface = reader.nested(plugin)?;
-                Ok(Surface { is_one_sided: false, ..surface })
+                let outside = std::mem::replace(&mut reader.is_two_sided, true);
+                let surface = reader.nested(plugin);
+                reader.is_two_sided = outside;
+                surface
             }
             "mask" => {
                 let surface = reader.nested(plugin)?;
@@ -100,18 +101,27 @@ impl Reader<'_, '_> {
             "bumpmap" | "normalmap" => reader.mapped(plugin),
             _ => {
                 let kind = reader.kind(plugin)?;
-                let transmits = matches!(
-                    kind,
-                    MaterialKind::Dielectric { .. }
-                        | MaterialKind::ThinDielectric { .. }
-                        | MaterialKind::Interface
-                );
-                let material = reader.push_material(plugin, kind);
-                Ok(Surface { is_one_sided: !transmits, ..Surface::opaque(material) })
+                let back_face = reader.back_face_of(&kind);
+                let id = reader.push_material(plugin, kind);
+                reader.scene.materials[id.index()].back_face = back_face;
+                Ok(Surface::opaque(id))
             }
         })?;
-        self.surfaces.insert(Rc::as_ptr(plugin), surface);
+        self.surfaces.insert(key, surface);
         Ok(surface)
+    }
+
+    /// The look from behind of a material here: opaque ones are black without `twosided`.
+    fn back_face_of(&self, kind: &MaterialKind) -> BackFace {
+        let is_opaque = match kind {
+            MaterialKind::Diffuse { .. }
+            | MaterialKind::Conductor { .. }
+            | MaterialKind::Plastic(_)
+            | MaterialKind::Measured(_) => true,
+            MaterialKind::Disney(look) => !look.is_thin && look.spec_trans == Scalar::Value(0.0),
+            _ => false,
+        };
+        if is_opaque && !self.is_two_sided { BackFace::Black } else { BackFace::Own }
     }
 
     fn push_material(&mut self, plugin: &Plugin, kind: MaterialKind) -> MaterialId {
@@ -152,15 +162,40 @@ impl Reader<'_, '_> {
             let kind = TextureKind::Scale { color: Color::Texture(texture), by: Scalar::Value(scale) };
             BumpMapping::Bump(Scalar::Texture(self.push_texture(plugin, kind)))
         };
+        let guard = BumpGuard {
+            turns: plugin.boolean("flip_invalid_normals", true)?,
+            shadows: plugin.boolean("use_shadowing_function", true)?,
+        };
         let inner = self.nested(plugin)?;
-        let material = self.scene.materials[inner.material.index()].clone();
-        if material.bump_mapping != BumpMapping::None || matches!(material.kind, MaterialKind::Mix { .. }) {
-            let message = format!("a {} over another map or a blendbsdf is not supported", plugin.title());
+        let material = match bump_mapping {
+            BumpMapping::None => inner.material,
+            _ => self.under_map(plugin, inner.material, (bump_mapping, guard))?,
+        };
+        Ok(Surface { material, ..inner })
+    }
+
+    /// A material, or all that it is mixed of, under a map.
+    fn under_map(
+        &mut self,
+        plugin: &Plugin,
+        inner: MaterialId,
+        map: (BumpMapping, BumpGuard),
+    ) -> Result<MaterialId> {
+        let mut material = self.scene.materials[inner.index()].clone();
+        if let MaterialKind::Mix { materials: [first, second], .. } = &mut material.kind {
+            *first = self.under_map(plugin, *first, map)?;
+            *second = self.under_map(plugin, *second, map)?;
+        } else if material.bump_mapping == BumpMapping::None {
+            (material.bump_mapping, material.bump_guard) = (map.0, Some(map.1));
+        } else {
+            let message = format!("a {} over another map is not supported", plugin.title());
             return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message));
         }
         let id = self.push_material(plugin, material.kind);
-        self.scene.materials[id.index()].bump_mapping = bump_mapping;
-        Ok(Surface { material: id, ..inner })
+        let Material { bump_mapping, bump_guard, back_face, .. } = material;
+        let mapped = &mut self.scene.materials[id.index()];
+        (mapped.bump_mapping, mapped.bump_guard, mapped.back_face) = (bump_mapping, bump_guard, back_face);
+        Ok(id)
     }
 
     fn kind(&mut self, plugin: &Plugin) -> Result<MaterialKind> {
@@ -222,7 +257,9 @@ impl Reader<'_, '_> {
         let [first, second] = materials.map(|id| &self.scene.materials[id.index()]);
         match (&first.kind, &second.kind) {
             (&MaterialKind::Diffuse { reflectance: low }, &MaterialKind::Diffuse { reflectance: high })
-                if first.bump_mapping == BumpMapping::None && second.bump_mapping == BumpMapping::None =>
+                if first.bump_mapping == BumpMapping::None
+                    && second.bump_mapping == BumpMapping::None
+                    && first.back_face == second.back_face =>
             {
                 let mix = self.push_texture(plugin, TextureKind::Mix { low, high, amount });
                 MaterialKind::Diffuse { reflectance: Color::Texture(mix) }

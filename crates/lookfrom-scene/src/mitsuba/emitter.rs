@@ -245,12 +245,19 @@ impl Reader<'_, '_> {
         (image.width.into(), image.height.into())
     }
 
-    /// The emission of a shape.
-    pub(super) fn emission(&mut self, plugin: &Plugin) -> Result<Emission> {
-        if plugin.kind != "area" {
-            return Err(plugin.unsupported(&["area"]));
-        }
+    /// The emission of a shape, as paths from the camera find it.
+    pub(super) fn emission(&mut self, plugin: &Plugin) -> Result<Option<Emission>> {
         plugin.ignore(&["sampling_weight"]);
+        match &*plugin.kind {
+            "area" => {}
+            "directionalarea" => {
+                plugin.ignore(&["radiance"]);
+                let message = "paths from the camera do not find the light of a directionalarea: it is dark, as with Mitsuba's path tracers";
+                self.warn_once(&plugin.at, message);
+                return Ok(None);
+            }
+            _ => return Err(plugin.unsupported(&["area", "directionalarea"])),
+        }
         let texture = match plugin.find("radiance").map(|property| &property.value) {
             Some(Value::Plugin(_) | Value::Reference(_)) => plugin
                 .find("radiance")
@@ -259,10 +266,10 @@ impl Reader<'_, '_> {
             _ => None,
         };
         if let Some(texture) = texture {
-            return Ok(Emission::new(Color::Texture(self.texture(&texture)?), false));
+            return Ok(Some(Emission::new(Color::Texture(self.texture(&texture)?), false)));
         }
         let (radiance, scale) = self.light_color(plugin, "radiance")?;
         let power = Power { scale, ..Power::AS_WRITTEN };
-        Ok(Emission { radiance, power, two_sided: false })
+        Ok(Some(Emission { radiance, power, two_sided: false }))
     }
 }

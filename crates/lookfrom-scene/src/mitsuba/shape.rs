@@ -42,6 +42,8 @@ pub(super) struct MeshKey {
     index: u32,
     /// Whether its normals are those of faces.
     has_flat_faces: bool,
+    /// Whether v is turned around: up in files, and so here.
+    turns_v: bool,
     /// The attribute that it has as its colours.
     attribute: Option<Attribute>,
 }
@@ -122,7 +124,7 @@ impl Reader<'_, '_> {
             _ => false,
         };
         let emission = match plugin.part("emitter", &self.ids)? {
-            Some(emitter) => Some(self.emission(&emitter)?),
+            Some(emitter) => self.emission(&emitter)?,
             None => None,
         };
         let surface = match plugin.part("bsdf", &self.ids)? {
@@ -135,12 +137,6 @@ impl Reader<'_, '_> {
             let message =
                 "textures of disks lie along the angle and the radius as in pbrt, not as in Mitsuba";
             self.warn_once(&plugin.at, message);
-        }
-        if surface.is_one_sided && matches!(&*plugin.kind, "rectangle" | "disk" | "cylinder") {
-            let message = "a surface without `twosided` is black from behind in Mitsuba; here both of its sides are lit";
-            if self.warned.insert(message.to_owned()) {
-                self.context.notice(&plugin.at, message);
-            }
         }
         let shape = |(geometry, own): (Geometry, DMat4)| Shape {
             name: plugin.id.clone(),
@@ -219,18 +215,12 @@ impl Reader<'_, '_> {
             _ => {
                 let (path, at) = self.file(plugin)?;
                 let has_flat_faces = plugin.boolean("face_normals", false)?;
-                // What the formats do otherwise is warned of.
-                if plugin.boolean("flip_tex_coords", plugin.kind == "obj")? != (plugin.kind == "obj") {
-                    let message = "`flip_tex_coords` other than its default is not supported";
-                    return Err(
-                        Error::new(ErrorKind::Unsupported, &at, message).hint("turn v around in the file")
-                    );
-                }
+                let turns_v = plugin.boolean("flip_tex_coords", plugin.kind == "obj")?;
                 let index = match &*plugin.kind {
                     "serialized" => plugin.integer("shape_index", 0, 0, i64::from(u32::MAX))? as u32,
                     _ => 0,
                 };
-                let key = MeshKey { path, index, has_flat_faces, attribute };
+                let key = MeshKey { path, index, has_flat_faces, turns_v, attribute };
                 let meshes = self.model(&plugin.kind, key, &at)?;
                 Ok(meshes.into_iter().map(|id| (Geometry::Mesh(id), DMat4::IDENTITY)).collect())
             }
@@ -269,7 +259,7 @@ impl Reader<'_, '_> {
             }
             _ => model::read(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?,
         };
-        let (is_obj, has_flat_faces) = (kind == "obj", key.has_flat_faces);
+        let MeshKey { has_flat_faces, turns_v, .. } = key;
         let mut ids = Vec::new();
         for part in parts {
             let Geometry::Mesh(id) = part.geometry else {
@@ -284,7 +274,8 @@ impl Reader<'_, '_> {
                 mesh.normals = vertex_normals(&mesh);
                 self.context.keep(size_of_val(&*mesh.normals) as u64, "normals of a mesh", at)?;
             }
-            if !is_obj {
+            // v runs down in Mitsuba.
+            if !turns_v {
                 mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
             }
             let id = self.add_mesh(mesh);

@@ -132,7 +132,7 @@ impl Reader<'_, '_> {
             MaterialKind::Interface | MaterialKind::Mix { .. } => BumpMapping::None,
             _ => self.bump_mapping(p)?,
         };
-        Ok(Material { name: name.to_owned(), at: p.place.location(), kind, bump_mapping, medium: None })
+        Ok(Material { bump_mapping, ..Material::new(name, p.place.location(), kind) })
     }
 
     fn bump_mapping(&mut self, p: &Parameters) -> Result<BumpMapping> {

@@ -7,7 +7,7 @@ use super::value::Value;
 use super::{Reader, disney, hair, open_pbr, principled, subsurface};
 use crate::chain;
 use crate::error::{Location, Result};
-use crate::material::{BumpMapping, Color, Material, MaterialKind, Whitted};
+use crate::material::{BackFace, BumpGuard, BumpMapping, Color, Material, MaterialKind, Whitted};
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
@@ -110,7 +110,11 @@ pub(super) const KEYS: Kinds = &[
     ("interface", &[]),
 ];
 /// Keys of all materials.
-pub(super) const COMMON: &[&str] = &["type", "medium", "emission", "power", "two_sided"];
+pub(super) const COMMON: &[&str] =
+    &["type", "medium", "emission", "power", "two_sided", "back_face", "bump_guard"];
+
+/// Looks from behind.
+pub(super) const BACK_FACES: &[(&str, BackFace)] = &[("black", BackFace::Black)];
 
 /// The default material of shapes.
 pub(super) const DEFAULT: &str = "default";
@@ -163,6 +167,9 @@ impl Reader<'_, '_> {
             read.normals.unwrap_or_else(|| self.bump_mapping(table));
         self.scene.materials[id.index()].medium =
             table.maybe("medium", |value| self.medium_named(value)).or(read.medium);
+        self.scene.materials[id.index()].back_face =
+            table.or("back_face", BackFace::Own, |value| value.choice(BACK_FACES));
+        self.scene.materials[id.index()].bump_guard = table.maybe("bump_guard", bump_guard);
         if let Some(glow) = self.emission(table) {
             self.glows.insert(id, glow);
         }
@@ -271,6 +278,16 @@ impl Reader<'_, '_> {
         self.black = Some(id);
         id
     }
+}
+
+/// A table of what is done about bent normals.
+fn bump_guard(value: Value<'_>) -> Result<BumpGuard> {
+    let table = value.table("bump_guard")?;
+    table.allow(&[&["turns", "shadows"]]);
+    Ok(BumpGuard {
+        turns: table.or("turns", true, Value::boolean),
+        shadows: table.or("shadows", true, Value::boolean),
+    })
 }
 
 /// Grey, with a slight highlight.

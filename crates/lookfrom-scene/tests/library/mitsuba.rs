@@ -8,7 +8,8 @@ use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::light::{Edge, LightKind, MapRows, Projected, Sky};
 use lookfrom_scene::material::{
-    BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic, Scalar,
+    BackFace, BumpGuard, BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets,
+    Plastic, Scalar,
 };
 use lookfrom_scene::medium::{Density, Medium};
 use lookfrom_scene::scene::TextureId;
@@ -236,6 +237,45 @@ fn mirrored_meshes_face_as_their_corners_turn() {
 }
 
 #[test]
+fn v_runs_down_unless_it_is_turned_around() {
+    let v_of = |flip: &str| {
+        let read =
+            scene(&format!("<shape type=\"obj\"><string name=\"filename\" value=\"m.obj\"/>{flip}</shape>"));
+        read.meshes[0].uvs.iter().map(|uv| uv.y).collect::<Vec<f32>>()
+    };
+    assert_eq!(v_of(""), [0.0, 0.0, 1.0]);
+    assert_eq!(v_of("<boolean name=\"flip_tex_coords\" value=\"true\"/>"), [0.0, 0.0, 1.0]);
+    assert_eq!(v_of("<boolean name=\"flip_tex_coords\" value=\"false\"/>"), [1.0, 1.0, 0.0]);
+}
+
+#[test]
+fn light_that_paths_cannot_find_is_warned_of() {
+    let (read, warnings) = told(
+        "<shape type=\"rectangle\"><emitter type=\"directionalarea\"><rgb name=\"radiance\" value=\"1\"/></emitter></shape>",
+    );
+    assert!(read.shapes[0].emission.is_none());
+    assert!(matches!(&warnings[..], [warning] if warning.contains("directionalarea")), "{warnings:?}");
+}
+
+#[test]
+fn maps_lie_over_all_of_a_blend() {
+    let read = scene(
+        "<shape type=\"cube\"><bsdf type=\"bumpmap\"><boolean name=\"use_shadowing_function\" value=\"false\"/>\
+         <texture type=\"checkerboard\"/><bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.2\"/>\
+         <bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/></bsdf></bsdf></shape>",
+    );
+    let MaterialKind::Mix { materials, .. } = &read.materials[read.shapes[0].material.index()].kind else {
+        panic!("no mix")
+    };
+    for id in materials {
+        let part = &read.materials[id.index()];
+        assert!(matches!(part.bump_mapping, BumpMapping::Bump(_)), "{part:?}");
+        assert_eq!(part.bump_guard, Some(BumpGuard { turns: true, shadows: false }));
+        assert_eq!(part.back_face, BackFace::Black);
+    }
+}
+
+#[test]
 fn instances_place_groups() {
     let read = scene(
         r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="sphere"/></shape>
@@ -274,6 +314,29 @@ fn bsdfs_become_materials() {
         (MaterialKind::Diffuse { reflectance: Color::gray(0.5) }, Some(Scalar::Value(0.3)))
     );
     assert_eq!(material("<bsdf type=\"null\"/>").0, MaterialKind::Interface);
+    let back_of = |text: &str| {
+        let read = scene(&format!("<shape type=\"sphere\">{text}</shape>"));
+        read.materials[read.shapes[0].material.index()].back_face
+    };
+    for (text, back) in [
+        ("", BackFace::Black),
+        ("<bsdf type=\"diffuse\"/>", BackFace::Black),
+        ("<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/></bsdf>", BackFace::Own),
+        ("<bsdf type=\"principled\"/>", BackFace::Black),
+        ("<bsdf type=\"principled\"><float name=\"spec_trans\" value=\"1\"/></bsdf>", BackFace::Own),
+        ("<bsdf type=\"twosided\"><bsdf type=\"principled\"/></bsdf>", BackFace::Own),
+        ("<bsdf type=\"roughdielectric\"/>", BackFace::Own),
+    ] {
+        assert_eq!(back_of(text), back, "{text}");
+    }
+    // A BSDF that is named alone and in a `twosided` is a material for each.
+    let read = scene(
+        "<bsdf type=\"diffuse\" id=\"a\"/><bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>\
+         <shape type=\"sphere\"><ref id=\"a\"/></shape><shape type=\"sphere\"><ref id=\"b\"/></shape>",
+    );
+    let backs: Vec<BackFace> =
+        read.shapes.iter().map(|shape| read.materials[shape.material.index()].back_face).collect();
+    assert_eq!(backs, [BackFace::Black, BackFace::Own]);
     let mix = material(
         "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.2\"/><bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/></bsdf>",
     );

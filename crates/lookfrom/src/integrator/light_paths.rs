@@ -147,6 +147,13 @@ impl LightPaths {
         LastScattering { states: [state(true), state(false)], diffuse }
     }
 
+    /// Adds a pane that a shadow ray has passed to the way of its light.
+    #[cold]
+    pub(super) fn pass_pane(&self, last: &mut LastScattering) {
+        let lobe = Lobes::sampled(true, false, true);
+        last.states = last.states.map(|state| self.scattered(state, lobe));
+    }
+
     /// The state after a medium has scattered light.
     #[cold]
     pub(super) fn scattered_in_medium(&self, from: LightPathState) -> LightPathState {

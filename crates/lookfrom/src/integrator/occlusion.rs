@@ -67,6 +67,7 @@ impl Integrator for AmbientOcclusion {
             // Visibility does not depend on the medium.
             interior: InteriorStack::default(),
             last_scattering: Shadow::NO_SCATTERING,
+            panes: 0,
         });
     }
 }

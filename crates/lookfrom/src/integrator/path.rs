@@ -24,7 +24,8 @@ use crate::core::lanes::{LANES, are_shaded_together};
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::{
-    self, BatchStreams, Event, Integrator, PathState, Probe, SampleStream, Term, wavefront,
+    self, BatchStreams, Event, Integrator, PathState, Probe, SampleStream, ShadowTransparency, Term,
+    wavefront,
 };
 use crate::light::LightSampleContext;
 use crate::shading::bsdf::Bsdf;
@@ -142,6 +143,10 @@ impl Integrator for PathTracer {
             LightSampling::NextEventEstimation => "simple_path",
             LightSampling::None => "random_walk",
         }
+    }
+
+    fn shadow_transparency(&self) -> ShadowTransparency {
+        ShadowTransparency::Panes
     }
 
     fn step_all<P: Probe>(
@@ -320,7 +325,8 @@ impl PathTracer {
         // Most lamps reflect nothing.
         let may_pass = !self.thin_passages_count && matches!(shading.bsdf, Bsdf::ThinDielectric(_));
         let goes_on = path.depth < self.depth || may_pass && path.depth == self.depth;
-        if goes_on && shading.bsdf.lobes() != Lobes::NONE {
+        let is_black = shading.bsdf.lobes() == Lobes::NONE || shading.is_black_toward(surface.wo);
+        if goes_on && !is_black {
             let vertex = Vertex { path, surface, shading, stream: *stream, is_catcher };
             waiting.push_vertex(self, world, vertex, output);
         }

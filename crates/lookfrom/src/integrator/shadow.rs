@@ -6,6 +6,7 @@
 
 mod lanes;
 mod media;
+mod panes;
 mod passing;
 mod queue;
 
@@ -18,7 +19,7 @@ use crate::integrator::{Event, Path, PathState, Probe, Queues, StepOutput, Term}
 use crate::light::{LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::material::{Material, MaterialKind};
+use crate::shading::material::MaterialKind;
 use crate::world::World;
 
 use media::Transmittances;
@@ -45,6 +46,8 @@ pub struct Shadow {
     pub interior: InteriorStack,
     /// Index of its last scattering event in the queues; [`Shadow::NO_SCATTERING`] without light-path expressions.
     pub last_scattering: u32,
+    /// The number of panes that it may pass, by [`ShadowTransparency::Panes`].
+    pub panes: u32,
 }
 
 impl Shadow {
@@ -88,6 +91,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
             term: Term::Light(light),
             interior: path.interior.leaving(&world.materials, surface, wi, crosses),
             last_scattering,
+            panes: 0,
         });
     }
 }
@@ -113,6 +117,8 @@ fn rest(t_max: f32, t: f32) -> f32 {
 pub enum ShadowTransparency {
     /// Only surfaces that fail the alpha test, and interfaces of media.
     AlphaTested,
+    /// Thin dielectrics as well, straight on (path tracing).
+    Panes,
     /// Transparent materials as well, straight on, coloured by them (Whitted's model).
     Transparent,
 }
@@ -132,11 +138,26 @@ impl ShadowTransparency {
         let Some(binding) = world.primitives[hit.geometry as usize].binding(hit.primitive as usize) else {
             return false;
         };
-        let Material { kind, whitted, .. } = &world.materials[binding.material as usize];
+        let material = &world.materials[binding.material as usize];
+        let stops_light = match self {
+            Self::AlphaTested => true,
+            Self::Panes => !material.is_pane(),
+            Self::Transparent => material.whitted.transmission.is_gray(0.0),
+        };
         binding.alpha.is_none()
             && !(world.has_open_fronts && binding.single_sided)
-            && !matches!(kind, MaterialKind::Interface)
-            && (self == Self::AlphaTested || whitted.transmission.is_gray(0.0))
+            && !matches!(material.kind, MaterialKind::Interface)
+            && stops_light
+    }
+
+    /// Whether any surface of a world may let shadow rays pass.
+    fn lets_any_pass(self, world: &World) -> bool {
+        world.has_gaps
+            || match self {
+                Self::AlphaTested => false,
+                Self::Panes => world.has_panes,
+                Self::Transparent => world.transmissive,
+            }
     }
 }
 
@@ -147,10 +168,8 @@ pub(crate) fn resolve<P: Probe, S: PathState>(
     output: &mut StepOutput<'_, P, S>,
 ) -> u64 {
     let mut queues = std::mem::take(&mut output.queues);
-    let anything_passes =
-        world.has_gaps || shadow_transparency == ShadowTransparency::Transparent && world.transmissive;
-    let traced = if anything_passes {
-        let_through(world, shadow_transparency, &mut queues, output.probe)
+    let traced = if shadow_transparency.lets_any_pass(world) {
+        let_through(world, (shadow_transparency, output.light_paths), &mut queues, output.probe)
     } else {
         block(world, &mut queues, output.probe)
     };

@@ -21,7 +21,7 @@ mod subsurface;
 mod whitted;
 
 use glam::Vec3;
-use lookfrom_scene::material::Energy;
+use lookfrom_scene::material::{BackFace, BumpGuard, Energy};
 use lookfrom_scene::scene::CurveId;
 
 use crate::core::points::Lift;
@@ -43,7 +43,7 @@ use crate::shading::texture::{
 pub use albedo::albedo;
 pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub use bump::Relief;
-pub(crate) use bump::{Bending, frame_about};
+pub(crate) use bump::{Bending, Guard, frame_about};
 pub(crate) use compile::Compiler;
 pub use disney::DisneyMaterial;
 pub use hair::{HairMaterial, Pigment};
@@ -62,6 +62,10 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Perturbation of the shading normal.
     pub bump_mapping: BumpMapping,
+    /// What is done about normals that it bends too far, in place of [`Self::reflects_outside`].
+    pub bump_guard: Option<BumpGuard>,
+    /// Its look from behind.
+    pub back_face: BackFace,
     /// Whether shading normals are bent so that reflections stay outside (`Bending::valid`).
     pub reflects_outside: bool,
     /// Index into the world's media of the medium inside a body of this material, where the
@@ -89,6 +93,10 @@ pub struct Shading {
     ng: Vec3,
     /// The smooth surface that the mesh stands for.
     lift: Option<Lift<f32>>,
+    /// The guard of a bent normal.
+    guard: Option<Guard<f32>>,
+    /// Whether the surface is black from behind.
+    is_one_sided: bool,
 }
 
 /// An orthonormal frame of unit vectors in render space.
@@ -131,13 +139,16 @@ impl Shading {
             frame: bump::plain(&surface.shading_geometry()),
             ng: surface.ng.as_vec3(),
             lift: surface.lift(),
+            guard: None,
+            is_one_sided: false,
         }
     }
 
     /// A BSDF at a surface in the frame of these axes, the third of which is the shading normal.
     pub(crate) fn in_frame(surface: &SurfaceInteraction, axes: [[f32; 3]; 3], bsdf: Bsdf) -> Self {
         let [s, t, n] = axes.map(Vec3::from);
-        Self { bsdf, frame: Frame { s, t, n }, ng: surface.ng.as_vec3(), lift: surface.lift() }
+        let (ng, lift) = (surface.ng.as_vec3(), surface.lift());
+        Self { bsdf, frame: Frame { s, t, n }, ng, lift, guard: None, is_one_sided: false }
     }
 
     /// The shading normal to the outside, unit length.
@@ -153,6 +164,16 @@ impl Shading {
     /// The cosine of the angle between a unit direction and the shading normal.
     pub fn cos(&self, w: Vec3) -> f32 {
         w.dot(self.frame.n)
+    }
+
+    /// The guard of its normal, if that is bent.
+    pub(crate) fn guard(&self) -> Option<&Guard<f32>> {
+        self.guard.as_ref()
+    }
+
+    /// Whether the surface is black in the direction `wo`, in render space.
+    pub(crate) fn is_black_toward(&self, wo: Vec3) -> bool {
+        self.is_one_sided && self.cos(wo) <= 0.0
     }
 
     /// True if the geometric and the shading normal agree whether two directions are on one side. pbrt's materials
@@ -176,8 +197,11 @@ impl Shading {
     /// length and are in render space.
     pub fn f_toward(&self, wo: Vec3) -> impl Fn(Vec3) -> Spectrum {
         let prepared = self.bsdf.prepare(self.frame.local(wo).into());
-        move |wi| match self.agrees(wo, wi) {
-            true => LaneBsdf::f(&self.bsdf, &prepared, self.frame.local(wi).into()),
+        move |wi| match self.agrees(wo, wi) && !self.is_black_toward(wo) {
+            true => {
+                let f = LaneBsdf::f(&self.bsdf, &prepared, self.frame.local(wi).into());
+                self.guard.map_or(f, |guard| f * guard.lets_through(wi.into(), self.frame.n.into()))
+            }
             false => Spectrum::BLACK,
         }
     }
@@ -219,10 +243,23 @@ impl Material {
 
     /// The shading frame of this material.
     fn frame(&self, relief: Relief<'_>, surface: &ShadingGeometry, point: &TexturePoint) -> Frame {
-        match self.reflects_outside {
-            true => bump::valid_frame(&self.bump_mapping, relief, surface, point),
-            false => bump::frame(&self.bump_mapping, relief, surface, point),
+        match (self.bump_guard, self.reflects_outside) {
+            (Some(guard), _) => bump::guarded_frame(guard, &self.bump_mapping, relief, surface, point),
+            (None, true) => bump::valid_frame(&self.bump_mapping, relief, surface, point),
+            (None, false) => bump::frame(&self.bump_mapping, relief, surface, point),
         }
+    }
+
+    /// Its BSDF at a surface, in a frame.
+    fn shading(&self, surface: &SurfaceInteraction, frame: Frame, bsdf: Bsdf) -> Shading {
+        let guard = self.bump_guard.map(|guard| Guard::of(guard, surface.ns.into(), frame.n.into()));
+        let (ng, lift) = (surface.ng.as_vec3(), surface.lift());
+        Shading { bsdf, frame, ng, lift, guard, is_one_sided: self.back_face == BackFace::Black }
+    }
+
+    /// Whether it is a thin sheet that light passes straight on, and is not dispersed by.
+    pub fn is_pane(&self) -> bool {
+        matches!(self.kind, MaterialKind::ThinDielectric { eta: Ior::Value(_) })
     }
 
     /// True if its shapes are solid bodies that light enters.
@@ -259,19 +296,18 @@ pub fn shading(
     }
     let mut at = Evaluator::new(materials, textures, point, ShadingContext { u, ..arrival });
     let geometry = surface.shading_geometry();
-    let ng = geometry.ng;
     if let MaterialKind::Principled(look) = &material.kind {
         let frame = material.frame(relief, &geometry, point);
         let (bsdf, frame) = at.principled(look, index, &geometry, frame);
-        return Some(Shading { bsdf: Bsdf::Principled(bsdf), frame, ng, lift: surface.lift() });
+        return Some(material.shading(surface, frame, Bsdf::Principled(bsdf)));
     }
     if let MaterialKind::OpenPbr(look) = &material.kind {
         let frame = material.frame(relief, &geometry, point);
         let (bsdf, frame) = at.open_pbr(look, index, &geometry, frame);
-        return Some(Shading { bsdf: Bsdf::OpenPbr(bsdf), frame, ng, lift: surface.lift() });
+        return Some(material.shading(surface, frame, Bsdf::OpenPbr(bsdf)));
     }
     let bsdf = at.bsdf(index)?;
-    Some(Shading { bsdf, frame: material.frame(relief, &geometry, point), ng, lift: surface.lift() })
+    Some(material.shading(surface, material.frame(relief, &geometry, point), bsdf))
 }
 
 /// The shading normal, to the outside, of unit length: that of [`shading`]; for mixed materials that of the first.

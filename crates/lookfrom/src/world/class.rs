@@ -129,7 +129,7 @@ impl World {
 
     /// The mesh of a hit on what stands still, its material, and the placement of the instance that it is in; `None` for other
     /// geometries.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<StoredPlacement<'_>>)> {
         let (primitives, placement) = match hit.instance {
             NONE => (&self.primitives[hit.geometry as usize], None),

@@ -274,6 +274,7 @@ impl World {
             objects: objects.into(),
             instances,
             transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
+            has_panes: materials.iter().any(Material::is_pane),
             has_gaps: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),

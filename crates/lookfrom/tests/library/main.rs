@@ -34,6 +34,7 @@ mod motion;
 mod nested;
 mod openpbr;
 mod own_integrator;
+mod panes;
 mod path;
 mod portal;
 mod references;

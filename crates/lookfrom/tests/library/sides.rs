@@ -131,3 +131,44 @@ fn a_camera_that_would_see_only_backs_sees_both_sides() {
     };
     assert!(!told(&front) && told(&back));
 }
+
+#[test]
+fn back_faces_are_black_where_the_material_says_so() {
+    let sheet = |back: &str, kind: &str, from: f64| {
+        let scene = scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [0, 0, {from}]
+            lookat = [0, 0, 0]
+            [image]
+            width = 8
+            height = 8
+            [render]
+            integrator = "path"
+            samples = 16
+            [materials.sheet]
+            type = {kind}
+            {back}
+            [[quad]]
+            corner = [-9, -9, 0]
+            edge_u = [18, 0, 0]
+            edge_v = [0, 18, 0]
+            material = "sheet"
+            [[sphere]]
+            center = [0, 0, 50]
+            radius = 30
+            material = "sheet"
+            [[light]]
+            type = "environment"
+            color = 1
+            "#
+        ));
+        mean(&Compiled::new(scene).film())
+    };
+    for kind in ["'diffuse'", "'conductor'\nmetal = 'gold'", "'plastic'"] {
+        let [front, back] = [3.0, -3.0].map(|from| sheet("", kind, from));
+        assert!(front > 0.1 && back > 0.1, "{kind}: {front} {back}");
+        assert_eq!(sheet("back_face = \"black\"", kind, 3.0), front, "{kind}");
+        assert_eq!(sheet("back_face = \"black\"", kind, -3.0), 0.0, "{kind}");
+    }
+}

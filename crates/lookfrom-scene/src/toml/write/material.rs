@@ -7,16 +7,17 @@ use super::picture::For;
 use super::text::{Fields, Item};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal, Pigment, Plastic, Roughness,
-    Scalar, Subsurface, SubsurfaceMedium, Whitted,
+    BackFace, BumpGuard, BumpMapping, Coat, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal,
+    Pigment, Plastic, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
 };
 use crate::measured::Measured;
+use crate::toml::material::BACK_FACES;
 use crate::toml::physical::{ENERGIES, ESTIMATES, REFLECTANCE};
 use crate::toml::word_of;
 
 impl Writer<'_> {
     pub(super) fn material(&mut self, material: &Material) -> Result<Fields> {
-        let Material { name: _, at: _, kind, bump_mapping, medium } = material;
+        let Material { name: _, at: _, kind, bump_mapping, bump_guard, medium, back_face } = material;
         let mut fields = Fields::default();
         fields.put_unless("type", word(kind), "whitted");
         match kind {
@@ -83,6 +84,14 @@ impl Writer<'_> {
                 table.put_unless("scale", map.scale, 1.0);
                 fields.put("normal_map", table);
             }
+        }
+        if let Some(BumpGuard { turns, shadows }) = *bump_guard {
+            let mut table = Fields::one("turns", turns);
+            table.put("shadows", shadows);
+            fields.put("bump_guard", table);
+        }
+        if *back_face != BackFace::Own {
+            fields.put("back_face", word_of(BACK_FACES, back_face));
         }
         if let Some(medium) = medium {
             fields.put("medium", self.media.of(medium.index()));

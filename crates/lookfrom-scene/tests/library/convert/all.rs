@@ -9,9 +9,9 @@ use lookfrom_scene::image::{Encoding, Image};
 use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSurface, LensSystem};
 use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
 use lookfrom_scene::material::{
-    Anisotropy, BumpMapping, Coat, CoatEstimate, Color, Disney, Distribution, Energy, Hair, Ior, Masking,
-    Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr, Pigment, Plastic, Principled,
-    Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
+    Anisotropy, BackFace, BumpGuard, BumpMapping, Coat, CoatEstimate, Color, Disney, Distribution, Energy,
+    Hair, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr, Pigment, Plastic,
+    Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
 };
 use lookfrom_scene::medium::{Density, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -351,7 +351,19 @@ fn bumps() -> Vec<(String, Scene)> {
         BumpMapping::NormalMap(_) => 2,
         BumpMapping::NormalTexture(_) => 3,
     };
-    each("bump", variants, index, |scene, bump_mapping| scene.materials[0].bump_mapping = bump_mapping)
+    each("bump", variants, index, |scene, bump_mapping| {
+        let material = &mut scene.materials[0];
+        material.bump_guard = match bump_mapping {
+            BumpMapping::Bump(_) => Some(BumpGuard { turns: true, shadows: false }),
+            BumpMapping::NormalMap(_) => Some(BumpGuard { turns: false, shadows: true }),
+            _ => None,
+        };
+        material.back_face = match bump_mapping {
+            BumpMapping::None => BackFace::Black,
+            _ => BackFace::Own,
+        };
+        material.bump_mapping = bump_mapping;
+    })
 }
 
 /// Puts a texture as the reflectance of the sphere.
@@ -983,8 +995,8 @@ fn resolved(scene: &Scene, text: &str) -> String {
         "TextureId(" => format!("{:?}", scene.textures[index].kind),
         "CurveId(" => format!("{:?}", scene.curves[index]),
         "MaterialId(" => {
-            let Material { kind, bump_mapping, medium, .. } = &scene.materials[index];
-            format!("{kind:?} {bump_mapping:?} {medium:?}")
+            let Material { kind, bump_mapping, bump_guard, medium, back_face, .. } = &scene.materials[index];
+            format!("{kind:?} {bump_mapping:?} {bump_guard:?} {medium:?} {back_face:?}")
         }
         "MediumId(" => {
             let medium = &scene.media[index];

@@ -30,8 +30,8 @@ use super::{Departure, HitBatch, Path, StepOutput};
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::{Behind, Bins, Boundary, Interfaces, Modes};
-use crate::integrator::{Bounce, Event, Probe, SampleStream};
+use crate::integrator::wavefront::{Behind, Bins, Boundary, Interfaces, LightSamples, Modes};
+use crate::integrator::{Bounce, Event, Probe, SampleStream, Shadow};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::Diffuse;
@@ -379,6 +379,16 @@ impl PathTracer {
         }
     }
 
+    /// The number of panes that the shadow ray of a lane may pass: as many as the path itself might. Where panes are surfaces as others,
+    /// there is none before a light that paths cannot find, as in pbrt.
+    fn panes_before_light(&self, path: &Path, lights: &LightSamples, lane: usize) -> u32 {
+        match self.thin_passages_count {
+            true if lights.is_delta & 1 << lane != 0 => 0,
+            true => (self.depth - 1).saturating_sub(path.depth),
+            false => u32::MAX,
+        }
+    }
+
     /// The shadow ray of a lane, to the point on its light.
     #[inline]
     fn shadow_ray<P: Probe>(
@@ -399,7 +409,8 @@ impl PathTracer {
         let last_scattering = output.last_scattering(departure.path, crosses, share);
         let interior = departure.interior(world, wi, crosses);
         let shadow = departure.shadow(ray, (light, contribution), interior, last_scattering);
-        output.queues.shadows.push(shadow);
+        let panes = self.panes_before_light(departure.path, lights, lane);
+        output.queues.shadows.push(Shadow { panes, ..shadow });
         if is_catcher {
             self.expect_light(&world.lights[light as usize], departure.path, contribution, output);
         }
@@ -472,9 +483,9 @@ impl PathTracer {
             return;
         }
         // Nothing but a thin dielectric transmits specularly without a change of the index of refraction.
-        let is_thin_passage = is_specular && is_transmission && scattered.eta[lane] == 1.0;
-        let depth = path.depth + u32::from(self.thin_passages_count || !is_thin_passage);
-        if depth > self.depth {
+        let is_straight = is_specular && is_transmission && scattered.eta[lane] == 1.0;
+        let depth = path.depth + u32::from(self.thin_passages_count || !is_straight);
+        if !self.thin_passages_count && depth > self.depth {
             return;
         }
         let light_path = output.scattered(path, lobe);
@@ -487,12 +498,15 @@ impl PathTracer {
             interior: departure.interior(world, wi, is_transmission),
             origin_primitive,
             blurred: path.blurred || !is_specular,
-            state: PreviousVertex {
-                pdf: scattered.mis_pdf[lane],
-                point: row(&scattered.point, lane).into(),
-                n: row(&scattered.n, lane).into(),
-                eta_scale: scattered.eta_scale[lane],
-                is_catcher,
+            state: match is_straight && departure.is_at_pane(world) {
+                true => PreviousVertex { is_catcher, ..path.state },
+                false => PreviousVertex {
+                    pdf: scattered.mis_pdf[lane],
+                    point: row(&scattered.point, lane).into(),
+                    n: row(&scattered.n, lane).into(),
+                    eta_scale: scattered.eta_scale[lane],
+                    is_catcher,
+                },
             },
             light_path,
         });

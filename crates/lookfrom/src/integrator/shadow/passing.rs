@@ -10,7 +10,7 @@ use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
 use crate::integrator::wavefront::{Behind, Interfaces};
-use crate::integrator::{Event, Probe, Queues};
+use crate::integrator::{Event, LightPaths, Probe, Queues};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Coefficients;
 use crate::shading::texture::SpectralMode;
@@ -23,11 +23,11 @@ const MOST_CROSSINGS: u32 = 32;
 /// traced.
 pub(super) fn let_through<P: Probe>(
     world: &World,
-    shadow_transparency: ShadowTransparency,
+    (shadow_transparency, light_paths): (ShadowTransparency, Option<&LightPaths>),
     queues: &mut Queues,
     probe: &mut P,
 ) -> u64 {
-    let Queues { shadows, modes, times, hits, .. } = queues;
+    let Queues { shadows, modes, times, hits, last_scatterings, .. } = queues;
     let Shadows { rays, origin_primitives, lights } = shadows;
     let mut traced = 0;
     let mut at = Times::default();
@@ -59,7 +59,8 @@ pub(super) fn let_through<P: Probe>(
             let (mut ray, mut origin_primitive, hit) = (rays[place], origin_primitives[place], hits[place]);
             let light = &mut lights[left[place] as usize];
             let is_blocked = is_blocked(&hit);
-            if !is_blocked && crossings.take(world, count as u32, &hit) {
+            let is_bare = !is_blocked && shadow_transparency == ShadowTransparency::Transparent;
+            if is_bare && crossings.take(world, count as u32, &hit) {
                 if P::LISTENS {
                     crossing.push((count, light.of(ray, origin_primitive)));
                 }
@@ -92,6 +93,12 @@ pub(super) fn let_through<P: Probe>(
                 match (&surface, interface) {
                     (Some(surface), _) => {
                         light.go_on_behind(world, &mut ray, &hit, surface);
+                        if shadow_transparency == ShadowTransparency::Panes
+                            && world.materials[surface.material as usize].is_pane()
+                            && meets(world, &rays[place], &hit, surface)
+                        {
+                            light.leave_pane(light_paths, last_scatterings);
+                        }
                         origin_primitive = surface.origin_primitive;
                     }
                     (None, Some(kind)) => {
@@ -101,7 +108,7 @@ pub(super) fn let_through<P: Probe>(
                     (None, None) => continue,
                 }
                 ray.t_max = match shadow_transparency {
-                    ShadowTransparency::AlphaTested => rest(ray.t_max, hit.t),
+                    ShadowTransparency::AlphaTested | ShadowTransparency::Panes => rest(ray.t_max, hit.t),
                     ShadowTransparency::Transparent => ray.t_max - hit.t,
                 };
             }
@@ -159,12 +166,15 @@ impl ShadowLight {
         if world.is_open_front(surface) {
             return mode.one() * (1.0 - World::COVERAGE_OF_OPEN_FRONTS);
         }
-        if shadow_transparency == ShadowTransparency::AlphaTested {
-            return Spectrum::BLACK;
+        let material = &world.materials[surface.material as usize];
+        match shadow_transparency {
+            ShadowTransparency::Panes if material.is_pane() => self.passed_pane(world, surface, mode),
+            ShadowTransparency::AlphaTested | ShadowTransparency::Panes => Spectrum::BLACK,
+            ShadowTransparency::Transparent => {
+                let point = world.texture_point(surface);
+                Coefficients::at(&material.whitted, &world.textures, &point, mode).transmission
+            }
         }
-        let material = &world.materials[surface.material as usize].whitted;
-        let point = world.texture_point(surface);
-        Coefficients::at(material, &world.textures, &point, mode).transmission
     }
 
     /// Continues the ray behind a surface that lets light pass.

@@ -28,17 +28,27 @@ pub(in crate::integrator) struct ShadowLight {
     pub(in crate::integrator) term: Term,
     pub(in crate::integrator) slot: u32,
     pub(in crate::integrator) last_scattering: u32,
+    pub(in crate::integrator) panes: u32,
 }
 
 impl Shadows {
     /// Adds a ray.
     #[inline(always)]
     pub fn push(&mut self, shadow: Shadow) {
-        let Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering } =
-            shadow;
+        let Shadow {
+            ray,
+            origin_primitive,
+            contribution,
+            slot,
+            address,
+            term,
+            interior,
+            last_scattering,
+            panes,
+        } = shadow;
         self.rays.push(ray);
         self.origin_primitives.push(origin_primitive);
-        self.lights.push(ShadowLight { contribution, interior, address, term, slot, last_scattering });
+        self.lights.push(ShadowLight { contribution, interior, address, term, slot, last_scattering, panes });
     }
 
     /// Removes all.
@@ -52,8 +62,8 @@ impl Shadows {
 impl ShadowLight {
     /// The whole of the shadow.
     pub(super) fn of(&self, ray: Ray, origin_primitive: OriginPrimitive) -> Shadow {
-        let Self { contribution, interior, address, term, slot, last_scattering } = *self;
-        Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering }
+        let Self { contribution, interior, address, term, slot, last_scattering, panes } = *self;
+        Shadow { ray, origin_primitive, contribution, slot, address, term, interior, last_scattering, panes }
     }
 
     /// Transmittance of the medium up to a hit, or on the rest of the way.

@@ -41,6 +41,11 @@ impl<S> Departure<'_, S> {
         matches!(self.boundary, Boundary::Surface(surface) if surface.crosses(wi))
     }
 
+    /// Whether the vertex is on a pane.
+    pub(in crate::integrator) fn is_at_pane(&self, world: &World) -> bool {
+        matches!(self.boundary, Boundary::Surface(surface) if world.materials[surface.material as usize].is_pane())
+    }
+
     /// The media around a ray that leaves to the side from which the path has come.
     #[inline(always)]
     pub(in crate::integrator) fn interior_beside(&self, world: &World) -> InteriorStack {
@@ -67,7 +72,7 @@ impl<S> Departure<'_, S> {
         }
     }
 
-    /// The shadow ray to a light, in the media around it.
+    /// The shadow ray to a light, in the media around it, which passes no panes.
     #[inline(always)]
     pub(in crate::integrator) fn shadow(
         &self,
@@ -85,6 +90,7 @@ impl<S> Departure<'_, S> {
             term: Term::Light(light),
             interior,
             last_scattering,
+            panes: 0,
         }
     }
 }

@@ -374,10 +374,10 @@ impl ThinDielectric {
     }
 
     /// Reflectance of both interfaces with all reflections between them: R + T R T + T R³ T + … = R + T² R / (1 − R²), as in
-    /// pbrt-v4.
+    /// pbrt-v4. By the cosine to the normal.
     #[inline]
-    pub(super) fn reflectance(&self, wo: Vec3) -> f32 {
-        let once = optics::fresnel_dielectric(wo.z.abs(), self.eta);
+    pub(crate) fn reflectance(&self, cos: f32) -> f32 {
+        let once = optics::fresnel_dielectric(cos.abs(), self.eta);
         if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once }
     }
 }
@@ -392,7 +392,7 @@ impl ScatteringFunction for ThinDielectric {
     }
 
     fn sample(&self, wo: Vec3, uc: f32, _: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let fresnel = self.reflectance(wo);
+        let fresnel = self.reflectance(wo.z);
         let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
         if r + t == 0.0 {
             return None;

@@ -101,7 +101,7 @@ impl ThinDielectric {
             true,
             [wo, wi, Vec3::Z],
         );
-        let fresnel = self.reflectance(wo);
+        let fresnel = self.reflectance(wo.z);
         let part = if same_side(wo, wi) { fresnel } else { 1.0 - fresnel };
         Some(MicrofacetFactors { fresnel: Spectrum([fresnel; 4]), part: Spectrum([part; 4]), ..smooth })
     }

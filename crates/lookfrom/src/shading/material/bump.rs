@@ -1,14 +1,19 @@
 //! Bump and normal maps: the shading frame.
 //!
-//! Materials of pbrt's scenes take the perturbed normal as it is. Others take one that is [`valid`](Bending::valid), so that
+//! Materials of pbrt's scenes take the perturbed normal as it is, those of Mitsuba's one that is [guarded](Guard). Others take one that is [`valid`](Bending::valid), so that
 //! reflected directions leave the surface: the surface neither turns black where a reflection would point inside, as at
 //! the silhouettes of coarse meshes with smooth normals, nor is lit through itself.
 //!
 //! Blinn 1978 (bumps).
 
+mod guard;
+
 use glam::{Vec2, Vec3};
+use lookfrom_scene::material::BumpGuard;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Mask, Real};
+
+pub(crate) use guard::Guard;
 
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;
@@ -17,8 +22,8 @@ use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
 
-/// Offset in u and v for the finite differences of heights where there is no footprint, as in pbrt-v4.
-const STEP: f32 = 0.0005;
+/// An offset in u and v that is much smaller than texels.
+const FINE_STEP: f32 = 0.000_02;
 /// The smallest offset, in parts of u and v: differences of numbers of single precision need one.
 const LEAST_STEP: f32 = 4e-6;
 
@@ -30,6 +35,13 @@ pub struct Relief<'a> {
     /// The pixels of the camera: heights are compared at half their footprint, so that a bump map is as rough as it is where
     /// it can be seen, as in pbrt-v4.
     pub footprint: Option<&'a PixelFootprint>,
+    /// Offset in u and v for the finite differences of heights where there is no footprint.
+    pub step: f32,
+}
+
+impl Relief<'_> {
+    /// The usual step, as in pbrt-v4.
+    pub const STEP: f32 = 0.0005;
 }
 
 /// The frame of the shading normal without bump mapping.
@@ -57,6 +69,20 @@ pub(super) fn valid_frame(
     at: &TexturePoint,
 ) -> Frame {
     around(valid(bent(bump_mapping, relief, surface, at), surface), surface.dpdu)
+}
+
+/// The shading frame with a normal that is guarded as Mitsuba's.
+pub(super) fn guarded_frame(
+    guard: BumpGuard,
+    bump_mapping: &BumpMapping,
+    relief: Relief<'_>,
+    surface: &ShadingGeometry,
+    at: &TexturePoint,
+) -> Frame {
+    // Mitsuba differentiates pictures between their texels, whatever is seen of them.
+    let fine = Relief { step: FINE_STEP, footprint: None, ..relief };
+    let Frame { n, .. } = frame(bump_mapping, fine, surface, at);
+    around(if guard.turns { guard::turned(n, surface.ns, surface.wo) } else { n }, surface.dpdu)
 }
 
 /// The perturbed normal, of unit length.
@@ -198,14 +224,14 @@ fn normalized_or<R: Real>(v: Vector<R>, other: Vector<R>) -> Vector<R> {
 
 /// The normal of the surface displaced along its shading normal; not of unit length.
 fn bumped(height: FloatTexture, relief: Relief<'_>, surface: &ShadingGeometry, at: &TexturePoint) -> Vec3 {
-    let Relief { textures, footprint } = relief;
+    let Relief { textures, footprint, step: usual } = relief;
     let n = surface.ns;
     let here = textures.float(height, at);
     let half = footprint.and_then(|pixels| pixels.half(at.world, surface.ng, [surface.dpdu, surface.dpdv]));
     let half = half.unwrap_or_default();
     let [dpdu, dpdv] =
         [(surface.dpdu, Vec2::X, half.x), (surface.dpdv, Vec2::Y, half.y)].map(|(along, axis, half)| {
-            let step = if half > 0.0 { half } else { STEP };
+            let step = if half > 0.0 { half } else { usual };
             let step = step.max(LEAST_STEP * at.uv.abs().max_element());
             let uv = at.uv + step * axis;
             // As far as u or v moves in single precision.

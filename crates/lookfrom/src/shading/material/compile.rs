@@ -48,6 +48,8 @@ impl<'a> Compiler<'a> {
             varies,
             kind,
             bump_mapping,
+            bump_guard: material.bump_guard.filter(|_| material.bump_mapping != written::BumpMapping::None),
+            back_face: material.back_face,
             reflects_outside: is_principled || self.vertex_normals == VertexNormals::Smooth,
             medium: None,
             whitted: self.whitted(&whitted),

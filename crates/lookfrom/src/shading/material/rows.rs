@@ -17,6 +17,10 @@ use crate::shading::texture::{TexturePoint, Textures};
 impl Material {
     /// The class of its BSDFs, if they are computed in lanes: not chosen at random, and the same in all media.
     pub(crate) fn class(&self) -> Option<BsdfClass> {
+        // Guards of bent normals are found one by one.
+        if self.bump_guard.is_some() {
+            return None;
+        }
         match &self.kind {
             MaterialKind::Diffuse { .. } => Some(BsdfClass::Diffuse),
             MaterialKind::Conductor { .. } => Some(BsdfClass::Conductor),

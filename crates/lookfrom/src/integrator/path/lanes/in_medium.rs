@@ -10,7 +10,7 @@ use crate::core::lanes::row;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::path::{Departure, Path, PathTracer, PreviousVertex, StepOutput};
 use crate::integrator::wavefront::Boundary;
-use crate::integrator::{Event, PhaseSample, Probe, SampleStream};
+use crate::integrator::{Event, PhaseSample, Probe, SampleStream, Shadow};
 use crate::shading::bsdf::phase::Phase;
 
 /// A path at a point of a medium that scatters it.
@@ -45,7 +45,8 @@ impl PathTracer {
             let (origin_primitive, boundary) = (OriginPrimitive::NONE, Boundary::None);
             let departure = Departure { path, origin_primitive, boundary };
             let shadow = departure.shadow(ray, (light, contribution), path.interior, last_scattering);
-            output.queues.shadows.push(shadow);
+            let panes = self.panes_before_light(path, &scattered.lights, lane);
+            output.queues.shadows.push(Shadow { panes, ..shadow });
         }
 
         let wi = Vec3::from_array(row(&scattered.wi, lane));

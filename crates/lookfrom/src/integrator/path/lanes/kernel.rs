@@ -132,6 +132,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         let mut sample =
             bsdf.sample(&prepared, which_lobe, streams.two_with_pixel(dimension::DIRECTION)).if_useful();
         let wi = surfaces.render(sample.wi);
+        sample.f = surfaces.guarded(sample.f, wi);
         if traits.needs_agreement {
             sample.is_valid = sample.is_valid & surfaces.agrees(wi);
         }
@@ -190,7 +191,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         if bsdf.traits().needs_agreement {
             f = Spectrum::select(surfaces.agrees(wi), f, Spectrum::splat(zero));
         }
-        let f = f * Float::abs(local.z);
+        let f = surfaces.guarded(f, wi) * Float::abs(local.z);
         connections.weigh(width, task.light_sampling, lights, beta, (f, bsdf_pdf), exits.toward(wi));
     }
 }

@@ -1,12 +1,14 @@
 //! Hits on triangle meshes, shaded in lanes from the hit on: most of most pictures.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, OriginPrimitive};
+use lookfrom_scene::material::BackFace;
 use lookfrom_simd::LaneMask;
 
 use super::Memory;
 use super::kernel::ScatterKernel;
 use super::mesh_points::{MeshKernel, MeshPoints};
+use super::vertices::VertexColumns;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::{LANES, bitmask, by_lane, row, set_row};
 use crate::core::points::StoredPlacement;
@@ -104,6 +106,7 @@ impl PathTracer {
         let varying = varying.as_ref();
         let rows = self.rows::<B, P>(batch, hits, varying, points, output);
         points.bent.bend(&mut points.surfaces, points.front);
+        let active = active & !mesh_hits.are_black(&points.surfaces);
         if P::LISTENS {
             tell_of_shading(world, (hits, active), &rows, points, output);
         }
@@ -203,6 +206,17 @@ impl<'a> MeshHits<'a> {
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
         let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
         Some(Self { hits, vary, are_first, pixels })
+    }
+
+    /// The lanes that see one-sided surfaces from behind.
+    #[inline(always)]
+    fn are_black(&self, surfaces: &VertexColumns) -> u32 {
+        let fronts = bitmask(&by_lane!(lane => self.hits[lane].material.back_face == BackFace::Black));
+        let is_behind = |lane: &usize| {
+            let [wo, ns] = [surfaces.wo(*lane), surfaces.ns(*lane)].map(Vec3::from);
+            wo.dot(ns) <= 0.0
+        };
+        LaneMask(fronts).filter(is_behind).fold(0, |lanes, lane| lanes | 1 << lane)
     }
 
     /// The texture points of materials that vary, with what their pictures are there, if any does.

@@ -6,8 +6,10 @@ use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::Width;
 use crate::core::lanes::{Columns, LANES, load, load_f64, row, set_row, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
+use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::path::Vertex;
+use crate::shading::material::Guard;
 
 /// Eight vertices in memory, by component.
 #[derive(Clone, Copy, Default)]
@@ -22,6 +24,15 @@ pub(super) struct VertexColumns {
     /// The ways to the smooth surfaces that meshes stand for, and the normals of those; in the lanes of a mask.
     lift: [Columns<3>; 2],
     lifted: u32,
+    /// The guards of bent normals, where a lane has one.
+    guards: Option<GuardColumns>,
+}
+
+/// Guards of bent normals, by component; of lanes that need none such that they let everything through.
+#[derive(Clone, Copy)]
+struct GuardColumns {
+    ns: Columns<3>,
+    alpha_squared: [f32; LANES],
 }
 
 impl VertexColumns {
@@ -67,6 +78,7 @@ impl VertexColumns {
                 set_row(&mut columns.lift[1], lane, lift.ns.into());
             }
         }
+        columns.guards = GuardColumns::of_vertices(vertices);
         columns
     }
 
@@ -160,7 +172,30 @@ impl VertexColumns {
                 let none = Vector::splat(way.x, [0.0; 3]);
                 Lift { way: Vector::select(width.mask(self.lifted), way, none), ns }
             }),
+            guard: self.guards.as_ref().map(
+                #[inline(always)]
+                |guards| Guard {
+                    ns: load(width, &guards.ns),
+                    alpha_squared: width.load_f32(&guards.alpha_squared),
+                },
+            ),
         }
+    }
+}
+
+impl GuardColumns {
+    /// Those of vertices, if any of them has one.
+    fn of_vertices(vertices: &[&Vertex]) -> Option<Self> {
+        if vertices.iter().all(|vertex| vertex.shading.guard().is_none()) {
+            return None;
+        }
+        let mut columns = Self { ns: Default::default(), alpha_squared: [0.0; LANES] };
+        for (lane, Vertex { shading, .. }) in vertices.iter().enumerate().take(LANES) {
+            let guard = shading.guard();
+            set_row(&mut columns.ns, lane, guard.map_or(shading.n().into(), |guard| guard.ns.into()));
+            columns.alpha_squared[lane] = guard.map_or(0.0, |guard| guard.alpha_squared);
+        }
+        Some(columns)
     }
 }
 
@@ -179,6 +214,8 @@ pub(super) struct Vertices<R: Real> {
     pub(super) cos_ng: R,
     /// The smooth surfaces that meshes stand for.
     pub(super) lift: Option<Lift<R>>,
+    /// The guards of normals that are bent.
+    pub(super) guard: Option<Guard<R>>,
 }
 
 impl<R: Real> Vertices<R> {
@@ -198,6 +235,15 @@ impl<R: Real> Vertices<R> {
     #[inline(always)]
     pub(super) fn exits(&self) -> Exits<'_, R> {
         self.points.exits(self.ng).lifted(self.lift.as_ref())
+    }
+
+    /// The value of a BSDF for light from `wi`, in render space, less what the guards of bent normals keep off.
+    #[inline(always)]
+    pub(super) fn guarded(&self, f: Spectrum<R>, wi: Vector<R>) -> Spectrum<R> {
+        match &self.guard {
+            Some(guard) => f * guard.lets_through(wi, self.n),
+            None => f,
+        }
     }
 
     /// Whether the geometric and the shading normal agree that `wo` and `wi`, in render space, are on one side, or that
