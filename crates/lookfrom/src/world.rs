@@ -14,6 +14,7 @@ mod memory;
 mod origin;
 mod place;
 mod precision;
+mod quality;
 mod reflectance;
 mod sides;
 

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use glam::DMat4;
 use lookfrom_bvh::{Affine, Builder, Bvh, Quality, Triangles};
-use lookfrom_scene::count::Counts;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
 use lookfrom_scene::motion::Motion;
@@ -16,6 +15,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
 use super::place::{self, Compiler, Group, Labels};
+use super::quality::quality;
 use super::{Instance, Medium, Names, World, origin, reflectance};
 use crate::core::math;
 use crate::light::{Light, LightChoice, LightMotion};
@@ -351,22 +351,6 @@ fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
         }
     }
     are_so
-}
-
-/// The quality of the BVHs, on which the light does not depend. The best tree takes up to 4 µs more for each triangle and
-/// saves 2 to 5 % of a sample's time (docs/benchmarks/shading.md): it is worth that in pictures of many samples. Trees of
-/// few primitives are about the same.
-fn quality(scene: &Scene) -> Quality {
-    const FEW: u64 = 1024;
-    const SAMPLES_OF_PRIMITIVE: u64 = 128;
-    let counts = Counts::of(scene);
-    let primitives = counts.triangles + counts.spheres;
-    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
-    let samples = pixels.saturating_mul(scene.render.samples.into());
-    match primitives >= FEW && samples / primitives >= SAMPLES_OF_PRIMITIVE {
-        true => Quality::Best,
-        false => Quality::Balanced,
-    }
 }
 
 /// The BVH over primitives in their order, and what else the builder has.
