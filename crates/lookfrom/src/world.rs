@@ -87,7 +87,7 @@ pub struct World {
     pub(crate) ambient: SpectrumTexture,
     /// Indices into `lights` of the environments, which rays that hit nothing see.
     pub(crate) environments: Vec<u32>,
-    /// Whether any material transmits light.
+    /// Whether any surface transmits light.
     pub(crate) transmissive: bool,
     /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts.
     pub(crate) has_gaps: bool,

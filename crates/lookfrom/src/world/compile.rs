@@ -1,6 +1,6 @@
 //! Compilation of a scene: names become indices, transforms are applied, lights prepared and BVHs built.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -91,6 +91,7 @@ impl World {
             scene.render.color,
         );
         let need_footprints = need_footprints(&scene.materials, &textures);
+        let in_use = materials_in_use(&scene);
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
@@ -273,7 +274,10 @@ impl World {
             primitives: primitives.into(),
             objects: objects.into(),
             instances,
-            transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
+            transmissive: in_use.iter().any(|&material| {
+                let material = materials.get(material as usize);
+                material.is_some_and(|material| !material.whitted.transmission.is_gray(0.0))
+            }),
             has_gaps: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),
@@ -334,6 +338,13 @@ fn grains(materials: &[Written], need_footprints: &[bool]) -> Vec<bool> {
     let grains =
         materials.iter().zip(need_footprints).map(|(material, filtered)| material.has_grain() || *filtered);
     of_mixtures(materials, grains.collect())
+}
+
+/// The indices of the materials that shapes or instances have.
+fn materials_in_use(scene: &Scene) -> BTreeSet<u32> {
+    let of_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+    let of_shapes = scene.shapes.iter().chain(of_objects).map(|shape| shape.material);
+    of_shapes.chain(scene.instances.iter().filter_map(|instance| instance.material)).map(|id| id.0).collect()
 }
 
 /// What is so of materials, and of mixtures if it is so of any of their parts.
