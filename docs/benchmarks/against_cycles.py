@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
-"""Path tracing by lookfrom and by Blender's Cycles, side by side: glTF models under an environment map, by error and CPU time.
+"""Path tracing by lookfrom and by Blender's Cycles, side by side: glTF models under an environment map, by error and time.
 
 Needs: pip packages bpy (5.0.1 was used, Python 3.11), numpy, OpenEXR; a release build of lookfrom.
 
     against_cycles.py --lookfrom target/release/lookfrom --model FlightHelmet.gltf --environment studio.hdr
 
 Both see the model from the same camera, with a box filter of one pixel and paths of the same length, on one thread. Each picture is compared with
-the converged one of its own program, so that differences of materials do not count as noise; pictures are written, to be looked at. CPU
-time is that of the process, less that of a picture with one sample. Equal-error time is time × mean relative squared error. Last come the pictures
-that each makes by default: ours of a model, and 16 samples of Cycles with OpenImageDenoise.
+the converged one of its own program, so that differences of materials do not count as noise; pictures are written, to be looked at. Time
+is by the clock, less that of a picture with one sample: a thread of Blender's spins while another one renders, so that the CPU time of its process
+is about twice the time. So nothing else should run on the machine; --core pins both programs to one core, on which Blender's threads then take
+turns. Equal-error time is time × mean relative squared error. Last come the pictures that each makes by default: ours of a model,
+and 16 samples of Cycles with OpenImageDenoise.
 """
 
 import argparse
 import json
 import os
-import resource
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -40,15 +42,12 @@ def relmse(image, reference):
     return float((np.square(image - reference) / (np.square(reference) + 0.01)).mean())
 
 
-def cpu_of(command):
-    """Runs a command; its CPU seconds and what it printed."""
-    child = subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    printed = child.stdout.read()
-    _, status, used = os.wait4(child.pid, 0)
-    child.returncode = status
-    if status != 0:
+def seconds_of(command):
+    """Runs a command; the seconds that it takes."""
+    before = time.perf_counter()
+    if subprocess.run([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
         sys.exit(f"failed: {' '.join(str(c) for c in command)}")
-    return used.ru_utime + used.ru_stime, printed
+    return time.perf_counter() - before
 
 
 class Lookfrom:
@@ -64,14 +63,14 @@ class Lookfrom:
         command += ["--lookfrom", vector(args.eye), "--lookat", vector(args.target), "--fov", args.fov, *options]
         if args.environment:
             command += ["--environment", args.environment]
-        return cpu_of(command)[0], read_exr(out)
+        return seconds_of(command), read_exr(out)
 
     def sampled(self, samples, seed, *options, size=None):
         return self.run(size or self.args.size, "--samples", samples, "--seed", seed, "--denoise", "off", *options)
 
     def render(self, samples, seed):
-        cpu, image = self.sampled(samples, seed, "--depth", DEPTH)
-        return (cpu - self.start) * samples / (samples - 1), image
+        seconds, image = self.sampled(samples, seed, "--depth", DEPTH)
+        return (seconds - self.start) * samples / (samples - 1), image
 
     def default(self):
         """The picture of the model without any settings but its view, and the converged one."""
@@ -93,13 +92,13 @@ class Cycles:
         self.process.stdin.flush()
         for line in self.process.stdout:
             if line.startswith("@"):
-                cpu, path = line[1:].split(maxsplit=1)
-                return float(cpu), read_exr(path.strip())
+                seconds, path = line[1:].split(maxsplit=1)
+                return float(seconds), read_exr(path.strip())
         sys.exit("Cycles ended")
 
     def render(self, samples, seed):
-        cpu, image = self.run(samples, seed)
-        return (cpu - self.start) * samples / (samples - 1), image
+        seconds, image = self.run(samples, seed)
+        return (seconds - self.start) * samples / (samples - 1), image
 
     def default(self):
         return *self.run(16, 0, 512, 1), self.run(self.args.reference, 1000, 512)[1]
@@ -162,19 +161,15 @@ def worker(settings):
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.blur_glossy = 0
 
-    def cpu():
-        used = resource.getrusage(resource.RUSAGE_SELF)
-        return used.ru_utime + used.ru_stime
-
     for line in sys.stdin:
         samples, seed, size, denoise = (int(n) for n in line.split())
         scene.render.resolution_x = scene.render.resolution_y = size or settings["size"]
         cycles.samples, cycles.seed, cycles.use_denoising = samples, seed, bool(denoise)
         out = f'{settings["folder"]}/cycles.exr'
         scene.render.filepath = out
-        before = cpu()
+        before = time.perf_counter()
         bpy.ops.render.render(write_still=True)
-        print(f"\n@{cpu() - before} {out}", flush=True)
+        print(f"\n@{time.perf_counter() - before} {out}", flush=True)
 
 
 def main():
@@ -194,23 +189,26 @@ def main():
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--reference", type=int, default=1024, help="samples of each converged picture")
     parser.add_argument("--default", action="store_true", help="the default pictures of 512² as well")
+    parser.add_argument("--core", type=int, help="the core to which both programs are pinned")
     parser.add_argument("--folder", type=Path, default=Path("/tmp/lookfrom-cycles"))
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
+    if args.core is not None:
+        os.sched_setaffinity(0, {args.core})
     found = {}
     for program in (Lookfrom(args), Cycles(args)):
         reference = program.render(args.reference, 1000)[1]
         np.save(args.folder / f"{program.name}.npy", reference)
         rows = [program.render(args.samples, 1 + turn) for turn in range(args.turns)]
-        cpu, error = min(row[0] for row in rows), np.mean([relmse(row[1], reference) for row in rows])
-        found[program.name] = cpu, error
-        print(f"{program.name}: {cpu:.3f} CPU s, relMSE {error:.6f}, mean {reference.mean(axis=(0, 1)).round(4)}", flush=True)
+        seconds, error = min(row[0] for row in rows), np.mean([relmse(row[1], reference) for row in rows])
+        found[program.name] = seconds, error
+        print(f"{program.name}: {seconds:.3f} s, relMSE {error:.6f}, mean {reference.mean(axis=(0, 1)).round(4)}", flush=True)
         if args.default:
             seconds, picture, converged = program.default()
             np.save(args.folder / f"{program.name}-default.npy", np.stack([picture, converged]))
-            print(f"   by default, 512²: relMSE {relmse(picture, converged):.6f}, {seconds:.2f} CPU s", flush=True)
+            print(f"   by default, 512²: relMSE {relmse(picture, converged):.6f}, {seconds:.2f} s", flush=True)
     (ours, our_error), (theirs, their_error) = found["lookfrom"], found["Cycles"]
-    print(f"ours / Cycles: CPU {ours / theirs:.2f}, relMSE {our_error / their_error:.2f}, equal-error **{ours * our_error / theirs / their_error:.2f}**")
+    print(f"ours / Cycles: time {ours / theirs:.2f}, relMSE {our_error / their_error:.2f}, equal-error **{ours * our_error / theirs / their_error:.2f}**")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-//! Benchmark of the kernel with tiny scenes: a box of 36 triangles with two blocks in it, and three spheres on a plane
-//! of two triangles. Prints million rays per second, one by one and in batches: `small_bench [TURNS [WORD]]`; with a word
+//! Benchmark of the kernel with small scenes: a box of 36 triangles with two blocks in it, and three spheres, or 54 in a grid,
+//! on a plane of two triangles. Prints million rays per second, one by one and in batches: `small_bench [TURNS [WORD]]`; with a word
 //! only those that contain it.
 
 use std::time::Instant;
@@ -41,18 +41,28 @@ fn cornell_box() -> Bvh {
     builder.build().expect("a box")
 }
 
-fn three_spheres() -> Bvh {
+fn on_a_plane(spheres: &[Sphere]) -> Bvh {
     let mut builder = Builder::new();
     builder.triangles(Triangles {
         positions: &[[-9.0, -1.0, -9.0], [9.0, -1.0, -9.0], [9.0, -1.0, 9.0], [-9.0, -1.0, 9.0]],
         indices: &[[0, 1, 2], [0, 2, 3]],
     });
-    builder.spheres(&[
+    builder.spheres(spheres);
+    builder.build().expect("spheres")
+}
+
+fn three_spheres() -> Bvh {
+    on_a_plane(&[
         Sphere { center: [-1.1, 0.0, 0.0], radius: 1.0 },
         Sphere { center: [1.1, 0.0, 0.3], radius: 1.0 },
         Sphere { center: [0.0, -0.6, 1.5], radius: 0.4 },
-    ]);
-    builder.build().expect("spheres")
+    ])
+}
+
+fn grid() -> Bvh {
+    let at = |i: usize| [(i % 6) as f32, (i / 6 % 3) as f32, (i / 18) as f32];
+    let ball = |[x, y, z]: Point| Sphere { center: [0.4 * x - 1.0, 0.4 * y - 0.8, 0.4 * z], radius: 0.17 };
+    on_a_plane(&(0..54).map(|i| ball(at(i))).collect::<Vec<_>>())
 }
 
 /// Camera rays of a picture, tile by tile.
@@ -89,7 +99,7 @@ fn further(rays: &[Ray], hits: &[Hit]) -> (Vec<Ray>, Vec<Ray>, Vec<OriginPrimiti
 fn main() {
     let turns = std::env::args().nth(1).and_then(|turns| turns.parse().ok()).unwrap_or(5);
     let word = std::env::args().nth(2).unwrap_or_default();
-    for (name, bvh) in [("box", cornell_box()), ("spheres", three_spheres())] {
+    for (name, bvh) in [("box", cornell_box()), ("spheres", three_spheres()), ("grid", grid())] {
         let rays = camera();
         let mut hits = vec![Hit::MISS; rays.len()];
         bvh.closest_hits(&rays, &mut hits);

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use crate::aabb::Aabb;
 use crate::affine::Affine;
 use crate::conservative::TriangleBlock;
-use crate::item::{Leaf, ProceduralItem, SphereItem};
+use crate::item::{Leaf, ProceduralItem};
 use crate::masks::Masks;
 use crate::node::Node;
 use crate::procedural::Procedural;
+use crate::sphere::SphereBlock;
 use crate::statistics::Statistics;
 use lookfrom_simd::{Level, level};
 
@@ -43,7 +44,7 @@ pub struct Bvh {
     pub(crate) leaves: Vec<Leaf>,
     /// The boxes of `leaves`, as stored in nodes.
     pub(crate) leaf_bounds: Vec<Aabb>,
-    pub(crate) spheres: Vec<SphereItem>,
+    pub(crate) spheres: Vec<SphereBlock>,
     pub(crate) procedurals: Vec<ProceduralItem>,
     pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
     /// By id, as the builder numbered them; shared with the builder.
@@ -162,7 +163,7 @@ impl Bvh {
 
     /// Counts the content, beside which a number of primitives was left out.
     pub(crate) fn count(&self, left_out: usize) -> Statistics {
-        Statistics { left_out, ..Statistics::of(&self.nodes, &self.triangles, &self.leaves) }
+        Statistics { left_out, ..Statistics::of(&self.nodes, &self.triangles, &self.spheres, &self.leaves) }
     }
 
     /// Memory for tracing in bytes, without the trees of instances (which are shared) and without procedural

@@ -310,8 +310,8 @@ impl<S: Shapes> Search<'_, S> {
                     }
                 }
                 Content::Leaf(leaf) => match bvh.leaves[leaf] {
-                    Leaf::Spheres { first, count } => {
-                        for item in &bvh.spheres[first as usize..(first + count) as usize] {
+                    Leaf::Spheres { block } => {
+                        for item in bvh.spheres[block as usize].items() {
                             let ids = [space.instance, item.geometry, item.primitive];
                             let (center, radius) =
                                 self.shapes.sphere(ids, (item.shape.center, item.shape.radius));

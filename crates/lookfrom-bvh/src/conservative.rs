@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 
 use crate::aabb::Aabb;
 use crate::error_bounds::{ERROR, SURE_AFTER, USUAL_UNDERFLOW};
-use crate::lanes::{combined, least_of_each};
+use crate::lanes::{combined, least_of_each, splat_all};
 use crate::prepared::PreparedRay;
 use crate::ray::NONE;
 use lookfrom_simd::{LaneMask, Simd, f32x8, f32x16, prelude::*};
@@ -113,11 +113,6 @@ impl<S: Simd, F: Numbers<S>> RayLanes<S, F> {
         let (rounding, level) = (F::splat(simd, 0.0), PhantomData);
         Self { origin, direction, t_min, sure_before, error, underflow, rounding, level }
     }
-}
-
-#[inline(always)]
-fn splat_all<S: Simd>(simd: S, values: [f32; 3]) -> [Lanes<S>; 3] {
-    [Lanes::splat(simd, values[0]), Lanes::splat(simd, values[1]), Lanes::splat(simd, values[2])]
 }
 
 #[inline(always)]

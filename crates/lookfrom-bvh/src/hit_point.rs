@@ -123,8 +123,8 @@ impl Bvh {
                     }
                 }
                 Content::Leaf(leaf) => {
-                    if let Leaf::Spheres { first, count } = self.leaves[leaf] {
-                        let mut items = self.spheres[first as usize..(first + count) as usize].iter();
+                    if let Leaf::Spheres { block } = self.leaves[leaf] {
+                        let mut items = self.spheres[block as usize].items();
                         if let Some(item) = items.find(|item| (item.geometry, item.primitive) == ids) {
                             return Some(Primitive::Sphere(item.shape));
                         }

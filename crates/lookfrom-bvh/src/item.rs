@@ -1,21 +1,11 @@
-//! Items of leaves that are no triangles: spheres, procedural shapes; the leaves as ranges of them.
+//! Leaves that have no triangles, and their procedural shapes.
 
-use crate::sphere::Sphere;
-
-/// The content of a leaf without triangles: a range of items in the array of their kind.
+/// The content of a leaf without triangles: a block of spheres, or a range of items in the array of their kind.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Leaf {
-    Spheres { first: u32, count: u32 },
+    Spheres { block: u32 },
     Procedurals { first: u32, count: u32 },
     Instances { first: u32, count: u32 },
-}
-
-/// A sphere and its ids.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SphereItem {
-    pub(crate) shape: Sphere,
-    pub(crate) geometry: u32,
-    pub(crate) primitive: u32,
 }
 
 /// One of a procedural's shapes: `shape` is the procedural's index in `Bvh::procedural_shapes`.

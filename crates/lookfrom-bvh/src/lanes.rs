@@ -11,6 +11,12 @@ pub(crate) fn combined<S: Simd>(simd: S, a: [f32x8<S>; 3], b: [f32x8<S>; 3]) -> 
     [simd.combine_f32x8(a[0], b[0]), simd.combine_f32x8(a[1], b[1]), simd.combine_f32x8(a[2], b[2])]
 }
 
+/// A vector in all lanes.
+#[inline(always)]
+pub(crate) fn splat_all<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [f32x8<S>; 3] {
+    [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)]
+}
+
 /// The largest magnitude, lane by lane.
 #[inline(always)]
 pub(crate) fn greatest<S: Simd>([x, y, z]: [f32x8<S>; 3]) -> f32x8<S> {

@@ -110,11 +110,11 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
 }
 
 /// Whether a tree has so few primitives that it is fastest to test any eight rays at once against all of them: measured
-/// by `small_bench`. A sphere costs as much as three triangles; rays of any-hit queries are soon done.
+/// by `small_bench`. Four spheres cost as much as three triangles; rays of any-hit queries are soon done.
 fn is_tiny<C: PacketCollector>(bvh: &Bvh) -> bool {
     let Statistics { triangles, spheres, procedurals, instances, .. } = bvh.statistics;
     let most = if C::ANY_HIT { 72 } else { 48 };
-    triangles + 3 * spheres <= most && procedurals + instances == 0
+    4 * triangles + 3 * spheres <= 4 * most && procedurals + instances == 0
 }
 
 /// Whether the bounds of a full packet are not worth their cost: rays of several origins in a tree of very few leaves.
@@ -255,9 +255,8 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 let (leaf, bounds) = (&bvh.leaves[number], &bvh.leaf_bounds[number]);
                 let meeting = self.meet(simd, bounds);
                 self.coherence.count(&meeting);
-                if let Leaf::Spheres { first, count } = *leaf {
-                    let spheres = &bvh.spheres[first as usize..(first + count) as usize];
-                    self.spheres(simd, spheres, &meeting);
+                if let Leaf::Spheres { block } = *leaf {
+                    self.spheres(simd, &bvh.spheres[block as usize], &meeting);
                     return meeting != [0; GROUPS];
                 }
                 for index in 0..GROUPS {
@@ -265,7 +264,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                         let place = index * LANES + lane;
                         let ray = ExactRay::new(&self.rays[place]);
                         let mut state = self.state(place);
-                        other_leaf(simd, bvh, leaf, &ray, &mut state, stack);
+                        other_leaf(simd, bvh, leaf, (&ray, true), &mut state, stack);
                         self.update(place, &state.collector);
                     }
                 }

@@ -45,7 +45,7 @@ pub(crate) struct ScaledRay {
     largest_reciprocal: [f32; 3],
     /// The error of the origin, beyond its rounding to f32.
     moved: f32,
-    /// The magnitude that the origin's rounding to f32 is relative to; 0 where it is not rounded.
+    /// The magnitude that the origin's rounding to f32 is relative to; 0 for usual rays of the world, of which nothing is rounded.
     pub(crate) rounding: f32,
     /// The conservative triangle test's errors, relative and absolute.
     pub(crate) error: f32,
@@ -73,7 +73,7 @@ impl PreparedRay {
         let origin = exact.origin.map(|x| x as f32);
         let direction = exact.direction.map(|x| x as f32);
         let scaled = if is_usual(simd, origin, direction, exact.t_min, largest) {
-            ScaledRay::usual(origin, direction, greatest(origin))
+            ScaledRay::usual(origin, direction, greater(greatest(origin), f32::MIN_POSITIVE))
         } else {
             ScaledRay::unusual(exact, largest)?
         };
@@ -99,6 +99,12 @@ impl PreparedRay {
             far_product: first_three(far_product),
             near_side: direction.map(|x| (x.to_bits() >> 31) as usize),
         }
+    }
+
+    /// Whether it is a usual ray of the world, as it was given.
+    #[inline(always)]
+    pub(crate) fn is_usual(&self) -> bool {
+        self.scaled.rounding == 0.0
     }
 
     /// A ray's end as a distance, with its margin. 0 or more.
@@ -193,7 +199,7 @@ impl ScaledRay {
             scale,
             largest_reciprocal: origin.map(|x| LARGEST_PRODUCT / x.abs().max(1.0)),
             moved,
-            rounding: farthest + moved,
+            rounding: greater(farthest + moved, f32::MIN_POSITIVE),
             error: if in_range { ERROR * (length * shorten) } else { f32::INFINITY },
             underflow: UNDERFLOW * 4.0,
             sure_before: if may_be_sure { 1.0 / SURE_AFTER } else { -1.0 },

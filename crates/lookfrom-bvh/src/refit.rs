@@ -10,7 +10,7 @@ use std::fmt;
 use crate::build::{Triangles, has_area, has_surface};
 use crate::bvh::Bvh;
 use crate::conservative::TriangleBlock;
-use crate::sphere::Sphere;
+use crate::sphere::{Sphere, SphereBlock};
 
 /// The new positions of a geometry: all of its primitives, in the order in which they were added.
 ///
@@ -135,7 +135,8 @@ impl Bvh {
         };
         let triangles =
             self.triangles.iter().flat_map(|block| (0..block.count()).map(|lane| block.ids(lane)));
-        let spheres = self.spheres.iter().map(|item| (item.geometry, item.primitive));
+        let spheres =
+            self.spheres.iter().flat_map(SphereBlock::items).map(|item| (item.geometry, item.primitive));
         let procedurals = self.procedurals.iter().map(|item| (item.geometry, item.primitive));
 
         // Cross off the primitives of the tree; for those of another kind the refit fails.
@@ -181,8 +182,13 @@ impl Bvh {
     }
 
     fn move_spheres(&mut self, geometry: u32, spheres: &[Sphere]) {
-        for item in self.spheres.iter_mut().filter(|item| item.geometry == geometry) {
-            item.shape = spheres[item.primitive as usize];
+        for block in &mut self.spheres {
+            for lane in 0..block.count() {
+                let item = block.item(lane);
+                if item.geometry == geometry {
+                    block.set_shape(lane, &spheres[item.primitive as usize]);
+                }
+            }
         }
     }
 }

@@ -8,6 +8,10 @@ use crate::exact::{ExactRay, Rounded};
 use crate::vector::{dot, subtract, wide};
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
+mod block;
+
+pub(crate) use block::{SphereBlock, SphereItem};
+
 /// A sphere's surface: rays hit it from both sides.
 ///
 /// ```
@@ -58,7 +62,7 @@ pub(crate) fn intersect_exact<T: Rounded>(ray: &ExactRay<T>, sphere: &Sphere) ->
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
 
-/// Eight rays for the exclusion of spheres in single precision.
+/// Eight rays, or one in all lanes, for the exclusion of spheres in single precision.
 pub(crate) struct SphereFilter<S: Simd> {
     origin: [f32x8<S>; 3],
     d: [f32x8<S>; 3],
@@ -72,25 +76,24 @@ impl<S: Simd> SphereFilter<S> {
         Self { origin, d, a: dot(d, d) }
     }
 
-    /// The rays that may hit a sphere; all others miss it, or have passed it. They must be usual rays.
+    /// The lanes in which a ray may hit a sphere; in all others it misses it, or has passed it. They must be usual rays.
     ///
     /// A line misses the sphere where b² < a (f² − r²). Of these, b² and a f² have errors of at most 9 and 12 units of
     /// rounding of a f², and the margin is 64. It covers the rounding of the exact test, too.
     #[inline(always)]
-    pub(crate) fn may_hit(&self, simd: S, sphere: &Sphere) -> mask32x8<S> {
+    pub(crate) fn may_hit(&self, [x, y, z]: [f32x8<S>; 3], radius: f32x8<S>) -> mask32x8<S> {
         const MARGIN: f32 = 64.0 * f32::EPSILON / 2.0;
         // More than what products lose by underflow.
         const TINY: f32 = 1e-30;
         // The square of a bound of b's error, relative to a f².
         const SURE_SIGN: f32 = 1e-12;
         let Self { origin: [ox, oy, oz], d, a } = *self;
-        let [x, y, z] = sphere.center;
         let f = [ox - x, oy - y, oz - z];
         let (b, ff) = (dot(f, d), dot(f, f));
         let bb = b * b + TINY;
-        let outside = ff * (1.0 - MARGIN) - (sphere.radius * sphere.radius) * (1.0 + MARGIN);
+        let outside = ff * (1.0 - MARGIN) - (radius * radius) * (1.0 + MARGIN);
         let misses = bb.simd_lt(a * outside);
-        let zero = f32x8::splat(simd, 0.0);
+        let zero = b.like(0.0);
         let is_past = b.simd_gt(zero) & outside.simd_gt(zero) & (b * b).simd_gt(a * ff * SURE_SIGN + TINY);
         !(misses | is_past)
     }

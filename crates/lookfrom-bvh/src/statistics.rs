@@ -4,6 +4,7 @@ use crate::aabb::Aabb;
 use crate::conservative::TriangleBlock;
 use crate::item::Leaf;
 use crate::node::{Content, Node};
+use crate::sphere::SphereBlock;
 
 /// Statistics of a tree.
 ///
@@ -41,17 +42,17 @@ pub struct Statistics {
 
 impl Statistics {
     /// The statistics of a tree in which nothing was left out.
-    pub(crate) fn of(nodes: &[Node], blocks: &[TriangleBlock], leaves: &[Leaf]) -> Self {
+    pub(crate) fn of(
+        nodes: &[Node],
+        triangles: &[TriangleBlock],
+        spheres: &[SphereBlock],
+        leaves: &[Leaf],
+    ) -> Self {
         let Some(root) = nodes.first() else { return Self::default() };
         let mut bounds = Aabb::EMPTY;
         root.children().for_each(|(_, child, _)| bounds.unite(&child));
-        let mut walk = Walk {
-            nodes,
-            blocks,
-            leaves,
-            root_area: f64::from(bounds.half_area()),
-            statistics: Self::default(),
-        };
+        let root_area = f64::from(bounds.half_area());
+        let mut walk = Walk { nodes, triangles, spheres, leaves, root_area, statistics: Self::default() };
         walk.visit(0, 1);
         walk.statistics
     }
@@ -60,7 +61,8 @@ impl Statistics {
 /// A walk through a tree that counts its content.
 struct Walk<'a> {
     nodes: &'a [Node],
-    blocks: &'a [TriangleBlock],
+    triangles: &'a [TriangleBlock],
+    spheres: &'a [SphereBlock],
     leaves: &'a [Leaf],
     root_area: f64,
     statistics: Statistics,
@@ -77,9 +79,11 @@ impl Walk<'_> {
             self.statistics.leaves += usize::from(!matches!(content, Content::Node(_)));
             match content {
                 Content::Node(child) => self.visit(child, depth + 1),
-                Content::Triangles(block) => self.statistics.triangles += self.blocks[block].count(),
+                Content::Triangles(block) => self.statistics.triangles += self.triangles[block].count(),
                 Content::Leaf(leaf) => match self.leaves[leaf] {
-                    Leaf::Spheres { count, .. } => self.statistics.spheres += count as usize,
+                    Leaf::Spheres { block } => {
+                        self.statistics.spheres += self.spheres[block as usize].count();
+                    }
                     Leaf::Procedurals { count, .. } => self.statistics.procedurals += count as usize,
                     Leaf::Instances { count, .. } => self.statistics.instances += count as usize,
                 },

@@ -167,7 +167,10 @@ impl<'t> TreePath<'t> {
                 let ray_lanes = RayLanes::new(simd, ray);
                 triangles(simd, block, &ray_lanes, exact, &mut self.end, &mut self.deferred, state)
             }
-            Content::Leaf(number) => other_leaf(simd, bvh, &bvh.leaves[number], &exact(), state, stack),
+            Content::Leaf(number) => {
+                let ray = (&exact(), ray.is_usual());
+                other_leaf(simd, bvh, &bvh.leaves[number], ray, state, stack)
+            }
             Content::Node(_) => false,
         }
     }

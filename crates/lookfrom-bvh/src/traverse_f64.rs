@@ -204,8 +204,8 @@ impl<O: Observer> Traversal<'_, O> {
             Part::Moving(..) => self.outer,
         };
         match part.leaf(leaf) {
-            Leaf::Spheres { first, count } => {
-                for item in &bvh.spheres[range(first, count)] {
+            Leaf::Spheres { block } => {
+                for item in bvh.spheres[block as usize].items() {
                     let ids = (item.geometry, item.primitive);
                     if !self.is_candidate(instance, ids) {
                         continue;

@@ -74,7 +74,7 @@ fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         ("node", &check.nodes),
         ("block", &check.blocks),
         ("leaf", &check.leaves),
-        ("sphere", &check.spheres),
+        ("block of spheres", &check.spheres),
         ("procedural", &check.procedurals),
         ("instance", &check.instances),
     ] {
@@ -165,8 +165,9 @@ impl Check<'_> {
         let bvh = self.bvh;
         let mut inside = Aabb::EMPTY;
         match bvh.leaves[leaf] {
-            Leaf::Spheres { first, count } => {
-                for item in &bvh.spheres[mark(&mut self.spheres, first as usize, count, "sphere")?] {
+            Leaf::Spheres { block } => {
+                mark(&mut self.spheres, block as usize, 1, "block of spheres")?;
+                for item in bvh.spheres[block as usize].items() {
                     inside.unite(&item.shape.bounds());
                     self.ids.push((item.geometry, item.primitive));
                 }

@@ -14,6 +14,7 @@ mod memory;
 mod origin;
 mod place;
 mod precision;
+mod quality;
 mod reflectance;
 mod sides;
 
@@ -86,7 +87,7 @@ pub struct World {
     pub(crate) ambient: SpectrumTexture,
     /// Indices into `lights` of the environments, which rays that hit nothing see.
     pub(crate) environments: Vec<u32>,
-    /// Whether any material transmits light.
+    /// Whether any surface transmits light.
     pub(crate) transmissive: bool,
     /// Whether any material is a pane ([`Material::is_pane`]).
     pub(crate) has_panes: bool,

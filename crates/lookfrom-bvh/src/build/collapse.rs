@@ -5,8 +5,9 @@
 
 use crate::bvh::Bvh;
 use crate::conservative::TriangleBlock;
-use crate::item::{Leaf, ProceduralItem, SphereItem};
+use crate::item::{Leaf, ProceduralItem};
 use crate::node::{Child, Node};
+use crate::sphere::{SphereBlock, SphereItem};
 
 use super::parallel;
 use super::plan::Plan;
@@ -79,14 +80,14 @@ impl Collapse<'_> {
         let bvh = &mut self.bvh;
         let leaf = match kind {
             Kind::Sphere => {
-                let first = bvh.spheres.len() as u32;
-                for (geometry, primitive) in ids {
-                    if let Geometry::Spheres(spheres) = &self.primitives.geometries[geometry as usize] {
-                        let shape = spheres[primitive as usize];
-                        bvh.spheres.push(SphereItem { shape, geometry, primitive });
+                let item = |(geometry, primitive)| match &self.primitives.geometries[geometry as usize] {
+                    Geometry::Spheres(spheres) => {
+                        Some(SphereItem { shape: spheres[primitive as usize], geometry, primitive })
                     }
-                }
-                Leaf::Spheres { first, count }
+                    _ => None,
+                };
+                bvh.spheres.push(SphereBlock::new(ids.filter_map(item)));
+                Leaf::Spheres { block: bvh.spheres.len() as u32 - 1 }
             }
             Kind::Procedural => {
                 let first = bvh.procedurals.len() as u32;

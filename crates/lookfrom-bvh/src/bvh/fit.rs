@@ -23,9 +23,8 @@ impl Bvh {
                     around((0..block.count()).map(|lane| Aabb::around(&block.corners(lane))))
                 }
                 Content::Leaf(leaf) => match self.leaves[leaf] {
-                    Leaf::Spheres { first, count } => {
-                        let range = first as usize..(first + count) as usize;
-                        around(self.spheres[range].iter().map(|item| item.shape.bounds()))
+                    Leaf::Spheres { block } => {
+                        around(self.spheres[block as usize].items().map(|item| item.shape.bounds()))
                     }
                     Leaf::Procedurals { .. } => [kept; 2],
                     Leaf::Instances { first, count } => {

@@ -3,18 +3,18 @@
 use super::Packet;
 use crate::collector::PacketCollector;
 use crate::faces::Faces;
-use crate::item::SphereItem;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, splat_all};
 use crate::ray::{Hit, NONE};
 use crate::ray8::{GROUPS, Ray8};
-use crate::sphere::{self, Line, SphereFilter};
+use crate::sphere::{self, Line, Sphere, SphereBlock, SphereFilter, SphereItem};
 use crate::visibility::Visibility;
-use lookfrom_simd::{LaneMask, Simd, f64x8, mask32x8, prelude::*};
+use lookfrom_simd::{LaneMask, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V> {
     /// Tests spheres against those rays of each group that hit their box.
     #[inline(always)]
-    pub(super) fn spheres(&mut self, simd: S, spheres: &[SphereItem], meeting: &[u32; GROUPS]) {
+    pub(super) fn spheres(&mut self, simd: S, block: &SphereBlock, meeting: &[u32; GROUPS]) {
+        let used = LaneMask(block.used());
         for index in 0..GROUPS {
             if meeting[index] == 0 {
                 continue;
@@ -22,17 +22,20 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
             let Ray8 { origin, direction, .. } = self.groups[index];
             let filter = SphereFilter::new(origin, direction);
             let mut lines = None;
-            for item in spheres {
+            for lane in used {
+                let item = block.item(lane);
                 if V::SELECTS && !V::of(self.settings, 0).shows(item.geometry, item.primitive) {
                     continue;
                 }
-                let may_hit = filter.may_hit(simd, &item.shape).to_bitmask() as u32 & meeting[index];
+                let Sphere { center, radius } = item.shape;
+                let may_hit = filter.may_hit(splat_all(simd, center), f32x8::splat(simd, radius));
+                let may_hit = may_hit.to_bitmask() as u32 & meeting[index];
                 if may_hit != 0 {
                     if lines.is_none() {
                         lines = Some(sphere::lines(origin, direction));
                     }
                     let Some(lines) = &lines else { continue };
-                    self.sphere(simd, item, lines, index, may_hit);
+                    self.sphere(simd, &item, lines, index, may_hit);
                 }
             }
         }

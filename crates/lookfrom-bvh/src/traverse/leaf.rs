@@ -6,44 +6,56 @@ use super::{TraversalState, trace_any};
 use crate::bvh::Bvh;
 use crate::collector::Collector;
 use crate::exact::ExactRay;
-use crate::item::{Leaf, SphereItem};
+use crate::item::Leaf;
 use crate::observer::Observer;
 use crate::ray::{Hit, NONE, Ray};
-use crate::sphere;
+use crate::sphere::{self, SphereBlock, SphereItem};
 use crate::stack::TraversalStack;
 use crate::visibility::Visibility;
-use lookfrom_simd::Simd;
+use lookfrom_simd::{LaneMask, Simd};
 
-/// Tests the primitives of a leaf without triangles.
+/// Tests the primitives of a leaf without triangles. A ray is usual if it is one of the world whose numbers need no care.
 #[inline(never)]
 pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     simd: S,
     bvh: &Bvh,
     leaf: &Leaf,
-    ray: &ExactRay,
+    (ray, is_usual): (&ExactRay, bool),
     state: &mut TraversalState<C, V, O>,
     stack: &mut TraversalStack<'_>,
 ) -> bool {
     let range = |first: u32, count: u32| first as usize..(first + count) as usize;
     match *leaf {
-        Leaf::Spheres { first, count } => spheres(&bvh.spheres[range(first, count)], ray, state),
+        Leaf::Spheres { block } => spheres(simd, &bvh.spheres[block as usize], (ray, is_usual), state),
         Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, state),
         Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, state, stack),
     }
 }
 
-fn spheres<'a, C: Collector, V: Visibility<'a>, O: Observer>(
-    spheres: &[SphereItem],
-    ray: &ExactRay,
+#[inline(always)]
+fn spheres<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    simd: S,
+    block: &SphereBlock,
+    (ray, is_usual): (&ExactRay, bool),
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
-    for item in spheres {
-        let (geometry, primitive, instance) = (item.geometry, item.primitive, state.instance);
-        state.observer.candidate(instance, geometry, primitive);
+    let instance = state.instance;
+    if O::LISTENS {
+        block.items().for_each(|item| state.observer.candidate(instance, item.geometry, item.primitive));
+    }
+    let kept = match is_usual {
+        true => simd.vectorize(
+            #[inline(always)]
+            || block.may_hit(simd, ray),
+        ),
+        false => LaneMask(block.used()),
+    };
+    for lane in kept {
+        let SphereItem { shape, geometry, primitive } = block.item(lane);
         if V::SELECTS && !state.visibility.shows(geometry, primitive) {
             continue;
         }
-        let Some([t1, t2]) = sphere::intersect_exact(ray, &item.shape) else { continue };
+        let Some([t1, t2]) = sphere::intersect_exact(ray, &shape) else { continue };
         if V::SELECTS && state.visibility.crossings() && t1 == t2 {
             continue;
         }

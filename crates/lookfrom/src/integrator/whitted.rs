@@ -152,6 +152,12 @@ fn shade_bare_hits<P: Probe>(
         eight.set_other_albedos(world, modes, target);
         first_surfaces.leave_block();
     }
+    let departure = |lane: usize| {
+        let front = shaded.front & 1 << lane != 0;
+        let boundary = Boundary::Bare { material: eight.materials[lane], front };
+        let origin_primitive = OriginPrimitive::of(eight.bare.hits[lane]);
+        Departure { path: eight.paths[lane], origin_primitive, boundary }
+    };
     for lane in 0..count {
         let (path, hit) = (eight.paths[lane], eight.bare.hits[lane]);
         let absorbed;
@@ -162,11 +168,10 @@ fn shade_bare_hits<P: Probe>(
             }
             false => path,
         };
-        let front = shaded.front & 1 << lane != 0;
-        let boundary = Boundary::Bare { material: eight.materials[lane], front };
-        let departure = Departure { path, origin_primitive: OriginPrimitive::of(hit), boundary };
-        shaded.finish(world, (&PathHit { departure, hit }, lane), tree, output);
+        let departure = Departure { path, ..departure(lane) };
+        shaded.add_own_light(world, (&PathHit { departure, hit }, lane), output);
     }
+    shaded.go_on(world, ((1 << count) - 1, departure), tree, output);
 }
 
 /// The step of one path, whatever it has hit.
@@ -213,7 +218,8 @@ pub(super) fn step<P: Probe>(
     shade_one(world, (path, stream), (&mode, output.time(path)), surface, &coefficients, wanted, shaded);
     let (origin_primitive, boundary) = (OriginPrimitive::of(hit), Boundary::Surface(surface));
     let departure = Departure { path, origin_primitive, boundary };
-    shaded.finish(world, (&PathHit { departure, hit }, 0), tree, output);
+    shaded.add_own_light(world, (&PathHit { departure, hit }, 0), output);
+    shaded.go_on(world, (1, |_| departure), tree, output);
 }
 
 fn wanted<'a, P: Probe>(tree: Option<&'a Whitted>, output: &StepOutput<'_, P>) -> Wanted<'a> {

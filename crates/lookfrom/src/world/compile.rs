@@ -1,11 +1,10 @@
 //! Compilation of a scene: names become indices, transforms are applied, lights prepared and BVHs built.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use glam::DMat4;
 use lookfrom_bvh::{Affine, Builder, Bvh, Quality, Triangles};
-use lookfrom_scene::count::Counts;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
 use lookfrom_scene::motion::Motion;
@@ -16,6 +15,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
 use super::lights::Lights;
 use super::place::{self, Compiler, Group, Labels};
+use super::quality::quality;
 use super::{Instance, Medium, Names, World, origin, reflectance};
 use crate::core::math;
 use crate::light::{Light, LightChoice, LightMotion};
@@ -91,6 +91,7 @@ impl World {
             scene.render.color,
         );
         let need_footprints = need_footprints(&scene.materials, &textures);
+        let in_use = materials_in_use(&scene);
         let mut compiler = Compiler {
             scene: &scene,
             warnings,
@@ -273,7 +274,10 @@ impl World {
             primitives: primitives.into(),
             objects: objects.into(),
             instances,
-            transmissive: materials.iter().any(|material| !material.whitted.transmission.is_gray(0.0)),
+            transmissive: in_use.iter().any(|&material| {
+                let material = materials.get(material as usize);
+                material.is_some_and(|material| !material.whitted.transmission.is_gray(0.0))
+            }),
             has_panes: materials.iter().any(Material::is_pane),
             has_gaps: !alphas.is_empty()
                 || has_media
@@ -337,6 +341,13 @@ fn grains(materials: &[Written], need_footprints: &[bool]) -> Vec<bool> {
     of_mixtures(materials, grains.collect())
 }
 
+/// The indices of the materials that shapes or instances have.
+fn materials_in_use(scene: &Scene) -> BTreeSet<u32> {
+    let of_objects = scene.objects.iter().flat_map(|object| &object.shapes);
+    let of_shapes = scene.shapes.iter().chain(of_objects).map(|shape| shape.material);
+    of_shapes.chain(scene.instances.iter().filter_map(|instance| instance.material)).map(|id| id.0).collect()
+}
+
 /// What is so of materials, and of mixtures if it is so of any of their parts.
 fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
     let mut has_changed = true;
@@ -352,22 +363,6 @@ fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
         }
     }
     are_so
-}
-
-/// The quality of the BVHs, on which the light does not depend. The best tree takes up to 4 µs more for each triangle and
-/// saves 2 to 5 % of a sample's time (docs/benchmarks/shading.md): it is worth that in pictures of many samples. Trees of
-/// few primitives are about the same.
-fn quality(scene: &Scene) -> Quality {
-    const FEW: u64 = 1024;
-    const SAMPLES_OF_PRIMITIVE: u64 = 128;
-    let counts = Counts::of(scene);
-    let primitives = counts.triangles + counts.spheres;
-    let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
-    let samples = pixels.saturating_mul(scene.render.samples.into());
-    match primitives >= FEW && samples / primitives >= SAMPLES_OF_PRIMITIVE {
-        true => Quality::Best,
-        false => Quality::Balanced,
-    }
 }
 
 /// The BVH over primitives in their order, and what else the builder has.

@@ -1,9 +1,11 @@
 //! Events, light, shadow rays and branches of the tree from shaded hits, path by path (Whitted 1980).
 
-use lookfrom_bvh::Hit;
+use lookfrom_bvh::{Hit, Ray};
+use lookfrom_simd::LaneMask;
 
 use super::Whitted;
 use super::shaded::Shaded;
+use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Boundary, Departure};
 use crate::integrator::{Branch, Event, Path, Probe, StepOutput, Term};
 use crate::world::World;
@@ -43,13 +45,12 @@ impl Shaded {
         }
     }
 
-    /// Adds the light of the surface in a lane to the sample of its path, and the paths that go on in the tree, if there is one.
+    /// Adds the ambient light of the surface in a lane to the sample of its path.
     #[inline(always)]
-    pub(super) fn finish<P: Probe>(
+    pub(super) fn add_own_light<P: Probe>(
         &self,
         world: &World,
         (path_hit, lane): (&PathHit<'_>, usize),
-        tree: Option<&Whitted>,
         output: &mut StepOutput<'_, P>,
     ) {
         let Departure { path, boundary, .. } = path_hit.departure;
@@ -62,61 +63,63 @@ impl Shaded {
         {
             told.events[lane].iter().for_each(|event| output.probe.notice(|| event.clone()));
         }
-        self.add_lights(world, (path_hit, lane), output);
-        if let Some(tree) = tree {
-            for branch in [Branch::Mirrored, Branch::Refracted] {
-                self.grow(world, (path_hit, lane), (tree, branch), output);
+    }
+
+    /// Casts the shadow rays of the surfaces in some lanes, and adds the paths that go on in the tree, if there is one: light by
+    /// light and branch by branch, so that neighbours go the same way.
+    #[inline(always)]
+    pub(super) fn go_on<'a, P: Probe>(
+        &self,
+        world: &World,
+        (lanes, departure): (u32, impl Fn(usize) -> Departure<'a>),
+        tree: Option<&Whitted>,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        for from in &self.lights[..self.light_count] {
+            for lane in LaneMask(from.lit & lanes) {
+                let departure = departure(lane);
+                let interior = departure.interior_beside(world);
+                let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
+                let light = (from.light, from.contribution[lane]);
+                let shadow = departure.shadow(from.rays[lane], light, interior, last_scattering);
+                output.queues.shadows.push(shadow);
+            }
+        }
+        let Some(tree) = tree else { return };
+        for (branch, rays) in [Branch::Mirrored, Branch::Refracted].into_iter().zip(&self.branches) {
+            for lane in LaneMask(rays.exist & lanes) {
+                grow(world, &departure(lane), (tree, branch), (rays.rays[lane], rays.beta[lane]), output);
             }
         }
     }
+}
 
-    #[inline(always)]
-    fn add_lights<P: Probe>(
-        &self,
-        world: &World,
-        (path_hit, lane): (&PathHit<'_>, usize),
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let departure = &path_hit.departure;
-        let interior = departure.interior_beside(world);
-        for from in self.lights[..self.light_count].iter().filter(|from| from.lit & 1 << lane != 0) {
-            let last_scattering = output.last_scattering(departure.path, false, || from.diffuse[lane]);
-            let light = (from.light, from.contribution[lane]);
-            output.queues.shadows.push(departure.shadow(from.rays[lane], light, interior, last_scattering));
-        }
+/// Adds the path that goes on in a branch of the tree, if it is not cut.
+#[inline(always)]
+fn grow<P: Probe>(
+    world: &World,
+    departure: &Departure<'_>,
+    (tree, branch): (&Whitted, Branch),
+    (ray, beta): (Ray, Spectrum),
+    output: &mut StepOutput<'_, P>,
+) {
+    let path = departure.path;
+    if tree.cut(path, beta).is_some() {
+        return;
     }
-
-    #[inline(always)]
-    fn grow<P: Probe>(
-        &self,
-        world: &World,
-        (path_hit, lane): (&PathHit<'_>, usize),
-        (tree, branch): (&Whitted, Branch),
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let Departure { path, .. } = path_hit.departure;
-        let crosses = branch == Branch::Refracted;
-        let rays = &self.branches[usize::from(crosses)];
-        if rays.exist & 1 << lane == 0 {
-            return;
-        }
-        let (ray, beta) = (rays.rays[lane], rays.beta[lane]);
-        if tree.cut(path, beta).is_none() {
-            let departure = &path_hit.departure;
-            let interior = match branch {
-                Branch::Refracted => departure.interior(world, ray.direction.into(), true),
-                Branch::Mirrored => departure.interior_beside(world),
-            };
-            let light_path = output.scattered(path, [true, false, crosses]);
-            output.paths.push(Path {
-                ray,
-                beta,
-                depth: path.depth + 1,
-                address: path.address << 1 | u64::from(crosses),
-                interior,
-                light_path,
-                ..*path
-            });
-        }
-    }
+    let crosses = branch == Branch::Refracted;
+    let interior = match branch {
+        Branch::Refracted => departure.interior(world, ray.direction.into(), true),
+        Branch::Mirrored => departure.interior_beside(world),
+    };
+    let light_path = output.scattered(path, [true, false, crosses]);
+    output.paths.push(Path {
+        ray,
+        beta,
+        depth: path.depth + 1,
+        address: path.address << 1 | u64::from(crosses),
+        interior,
+        light_path,
+        ..*path
+    });
 }
