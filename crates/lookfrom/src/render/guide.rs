@@ -3,6 +3,8 @@
 //! It depends on the world, the camera and the integrator alone, by random numbers of its own: the same guide for any number of samples
 //! and threads, any part of the picture, and any seed.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use lookfrom_bvh::{OriginPrimitive, Ray};
 use lookfrom_scene::settings::{Background, Integrator as Kind, Portals};
@@ -43,7 +45,7 @@ impl Renderer {
         let world = &self.world;
         let visibility = |queries: &[Query]| visibility(world, light, &visited, queries);
         if let Some(guide) = Guide::learn(environment, &world.textures, &points, &visibility) {
-            self.world = world.guided(light, guide).into();
+            self.world = world.guided(light, &Arc::new(guide)).into();
         }
         self
     }

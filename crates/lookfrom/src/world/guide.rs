@@ -18,8 +18,8 @@ impl World {
     }
 
     /// This world with a guide to the environment that is the light of that index.
-    pub(crate) fn guided(&self, light: u32, guide: Guide) -> Self {
-        self.with_guides(|index| (index == light).then(|| Arc::new(guide.clone())))
+    pub(crate) fn guided(&self, light: u32, guide: &Arc<Guide>) -> Self {
+        self.with_guides(|index| (index == light).then(|| guide.clone()))
     }
 
     /// This world without guides.
