@@ -23,8 +23,8 @@ use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{
-    Allocation, ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Sampler,
-    Sensor, SpectralFilm, Tonemap,
+    Allocation, ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Portals,
+    Sampler, Sensor, SpectralFilm, Tonemap,
 };
 
 use crate::terminal::{Show, Way};
@@ -409,6 +409,10 @@ pub(crate) struct Overrides {
     /// Choice of one of many lights for next-event estimation: uniform, by power, or by a light tree (bvh)
     #[arg(long, value_name = "NAME", value_parser = values::word(LightSampler::WORDS))]
     pub(crate) light_sampler: Option<LightSampler>,
+
+    /// Openings through which environments are sampled: those that lights name, or found by a pre-pass (auto)
+    #[arg(long, value_name = "NAME", value_parser = values::word(Portals::WORDS))]
+    pub(crate) portals: Option<Portals>,
 
     /// AOVs of an EXR besides the picture: geometry is albedo, normals, position, depth, uv and variance
     #[arg(long, value_name = "NAME", value_parser = values::word(Layers::WORDS))]

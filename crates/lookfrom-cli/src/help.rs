@@ -34,7 +34,17 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Films and parts of pictures", &["film", "checkpoint", "go_on", "part"]),
     (
         "Light transport",
-        &["integrator", "depth", "color", "light_sampler", "min_contribution", "sampler", "seed", "filter"],
+        &[
+            "integrator",
+            "depth",
+            "color",
+            "light_sampler",
+            "portals",
+            "min_contribution",
+            "sampler",
+            "seed",
+            "filter",
+        ],
     ),
     ("Layers of an EXR", &["layers", "light_path", "spectral_buckets", "wavelengths"]),
     ("The call", &["watch", "quiet", "verbose", "json", "strict", "threads", "memory"]),

@@ -36,6 +36,7 @@ impl Overrides {
             integrator: self.integrator,
             color: self.color,
             light_sampler: self.light_sampler,
+            portals: self.portals,
             layers: self.layers,
             light_paths: self.light_path.clone(),
             spectral_buckets: self.spectral_buckets,

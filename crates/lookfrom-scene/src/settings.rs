@@ -348,6 +348,8 @@ pub struct RenderSettings {
     pub color: ColorMode,
     /// The light sampler: the choice of one light of many.
     pub light_sampler: LightSampler,
+    /// The openings through which path tracing samples an environment.
+    pub portals: Portals,
     /// Whether the path tracer roughens BSDFs after the first diffuse bounce (regularization): less noise, but biased.
     pub regularize: bool,
     /// The maximum distance of ambient occlusion.
@@ -405,6 +407,26 @@ impl ColorMode {
     }
 }
 
+/// The openings through which path tracing samples an environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Portals {
+    /// The portals that environment lights name.
+    #[default]
+    Named,
+    /// Where there is none: those directions in which a pre-pass has seen the environment, from all places that paths visit.
+    Auto,
+}
+
+impl Portals {
+    /// The words for the choices, in scene files and on the command line.
+    pub const WORDS: &'static [(&'static str, Self)] = &[("named", Self::Named), ("auto", Self::Auto)];
+
+    /// The word for this choice.
+    pub fn word(self) -> &'static str {
+        word_of(Self::WORDS, self)
+    }
+}
+
 /// The light sampler: the choice of one light of many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightSampler {
@@ -441,6 +463,7 @@ impl Default for RenderSettings {
             transparent_shadows: true,
             color: ColorMode::Rgb,
             light_sampler: LightSampler::Bvh,
+            portals: Portals::default(),
             regularize: false,
             occlusion_distance: f32::INFINITY,
             media: true,

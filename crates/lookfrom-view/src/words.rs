@@ -133,6 +133,7 @@ fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
             settings.light_sampler != default.light_sampler,
             word(settings.light_sampler.word()),
         ),
+        ("portals", settings.portals != default.portals, word(settings.portals.word())),
         ("regularize", settings.regularize, "true".to_owned()),
         ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
         ("thin_passages_count", !settings.thin_passages_count, "false".to_owned()),

@@ -9,6 +9,7 @@ mod camera_warnings;
 mod cost;
 mod driver;
 mod footprint;
+mod guide;
 mod interior;
 mod labels;
 mod progress;
@@ -156,6 +157,12 @@ impl Renderer {
     /// # Errors
     /// `Invalid` for no samples, or a crop without pixels.
     pub fn new(world: Arc<World>, view: View, settings: RenderSettings) -> Result<Self> {
+        Self::check(&view, &settings)?;
+        Ok(Self::without_guide(world.unguided(), view, settings)?.with_guide())
+    }
+
+    /// Whether there are samples and pixels.
+    fn check(view: &View, settings: &RenderSettings) -> Result<()> {
         let invalid = |message: String| Err(Error::new(ErrorKind::Invalid, &Location::default(), message));
         let image = &view.image;
         if settings.samples == 0 {
@@ -169,7 +176,11 @@ impl Renderer {
                 image.width, image.height
             ));
         }
-        spectral_film::check(image, &settings)?;
+        spectral_film::check(image, settings)
+    }
+
+    /// [`Renderer::new`] for settings that have been checked, which learns no guide.
+    fn without_guide(world: Arc<World>, view: View, settings: RenderSettings) -> Result<Self> {
         let world = match world.needs_footprint() {
             true => world.seen_by(footprint::of_pixels(&view.camera)),
             false => world,
@@ -178,13 +189,13 @@ impl Renderer {
         let ray_start = start::ray_start(&world, &view.camera, eye);
         let interior = interior::interior_at(&world, ray_start, world.space_of(view.medium));
         Ok(Self {
-            filter: Filter::new(image.filter),
+            filter: Filter::new(view.image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
-            sensor: Sensor::new(&image.sensor),
-            keeps_rgb: image.sensor == SensorSettings::default(),
+            sensor: Sensor::new(&view.image.sensor),
+            keeps_rgb: view.image.sensor == SensorSettings::default(),
             integrator: transport::of_settings(&settings, &view.camera, eye),
             is_plugged_in: false,
-            light_paths: light_paths(&world, &image.light_paths)?.map(Arc::new),
+            light_paths: light_paths(&world, &view.image.light_paths)?.map(Arc::new),
             world,
             view,
             settings,
@@ -249,6 +260,12 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn with_settings(&self, settings: RenderSettings) -> Result<Self> {
+        // A guide does not depend on the number of samples and the seed.
+        let RenderSettings { samples, allocation, seed, .. } = settings;
+        if (RenderSettings { samples, allocation, seed, ..self.settings.clone() }) == settings {
+            Self::check(&self.view, &settings)?;
+            return Self::without_guide(self.world.clone(), self.view.clone(), settings);
+        }
         Self::new(self.world.clone(), self.view.clone(), settings)
     }
 

@@ -7,6 +7,7 @@
 mod catcher;
 mod class;
 mod compile;
+mod guide;
 mod instance;
 mod lights;
 mod medium;

@@ -72,6 +72,7 @@ class Options(TypedDict, total=False):
     depth: int
     color: str
     light_sampler: str
+    portals: str
     min_contribution: float
     sampler: str
     seed: int

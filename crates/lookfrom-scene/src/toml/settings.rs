@@ -7,8 +7,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::scene::VertexNormals;
 use crate::settings::{
     Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
-    LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm,
-    Tonemap,
+    LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, Portals, RenderSettings, Sampler, Sensor,
+    SpectralFilm, Tonemap,
 };
 use crate::spectrum::CameraSensor;
 
@@ -45,6 +45,7 @@ pub(super) const RENDER: &[&str] = &[
     "transparent_shadows",
     "color",
     "light_sampler",
+    "portals",
     "regularize",
     "occlusion_distance",
     "thin_passages_count",
@@ -235,6 +236,7 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         color: table.or("color", default.color, |value| value.choice(ColorMode::WORDS)),
         light_sampler: table
             .or("light_sampler", default.light_sampler, |value| value.choice(LightSampler::WORDS)),
+        portals: table.or("portals", default.portals, |value| value.choice(Portals::WORDS)),
         regularize: table.or("regularize", default.regularize, Value::boolean),
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),

@@ -76,7 +76,9 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
     use super::{directional, physical, sky, solid};
-    use crate::settings::{Allocation, ColorMode, Filter, Integrator, LightSampler, Sampler, Tonemap};
+    use crate::settings::{
+        Allocation, ColorMode, Filter, Integrator, LightSampler, Portals, Sampler, Tonemap,
+    };
 
     fn words<T>(words: &[(&'static str, T)]) -> Vec<&'static str> {
         words.iter().map(|(word, _)| *word).collect()
@@ -114,5 +116,6 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("sampler", words(Sampler::WORDS)),
         ("color", words(ColorMode::WORDS)),
         ("light_sampler", words(LightSampler::WORDS)),
+        ("portals", words(Portals::WORDS)),
     ]
 }

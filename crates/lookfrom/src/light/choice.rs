@@ -32,6 +32,7 @@ pub struct ChosenLight {
 /// A distribution over lights.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
+    kind: Kind,
     /// Lights without a position (or, if there is no tree, all lights) …
     listed: Vec<u32>,
     /// … by weight; uniform if `None`.
@@ -46,7 +47,15 @@ impl LightChoice {
     /// The distribution over the lights that need to be sampled, given the brightness of each; `radius` is that of the
     /// scene, for the power of lights infinitely far away.
     pub fn new(kind: Kind, lights: &[Light], brightness: Vec<f32>, radius: f32) -> Self {
-        let powers = Powers::new(lights, brightness, radius);
+        Self::of_powers(kind, lights, Powers::new(lights, brightness, radius))
+    }
+
+    /// The distribution over the same lights, of which others may need to be sampled.
+    pub(crate) fn among(&self, lights: &[Light]) -> Self {
+        Self::of_powers(self.kind, lights, self.powers.among(lights))
+    }
+
+    fn of_powers(kind: Kind, lights: &[Light], powers: Powers) -> Self {
         let mut listed: Vec<u32> = Vec::new();
         let mut weights: Vec<f32> = Vec::new();
         let mut with_place: Vec<(u32, LightBounds)> = Vec::new();
@@ -65,7 +74,7 @@ impl LightChoice {
             places[*light as usize] = Some(place);
         }
         let weights = (kind == Kind::Power && !listed.is_empty()).then(|| Discrete::new(&weights));
-        Self { listed, weights, places, tree: Tree::new(&with_place, lights.len()), powers }
+        Self { kind, listed, weights, places, tree: Tree::new(&with_place, lights.len()), powers }
     }
 
     /// The light to sample at a point, for `u ∈ [0, 1)`.
@@ -135,6 +144,16 @@ impl LightChoice {
             }
         }
         chosen
+    }
+
+    /// Whether no light needs to be sampled.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.listed.is_empty() && self.tree.is_empty()
+    }
+
+    /// Whether a light is sampled that has no place in the light tree.
+    pub(crate) fn is_listed(&self, light: u32) -> bool {
+        self.places[light as usize].is_some()
     }
 
     /// The only light that is sampled, if there is only one.

@@ -1,8 +1,9 @@
 //! Environment lights: a constant, a gradient or an environment map, optionally with a portal.
 //!
-//! `lanes`: environment maps for eight paths at once; `derivation`: for the inspector.
+//! `guided`: sampling by a guide; `lanes`: environment maps for eight paths at once; `derivation`: for the inspector.
 
 mod derivation;
+mod guided;
 mod lanes;
 
 use std::f32::consts::PI;
@@ -13,6 +14,7 @@ use lookfrom_scene::image::Image;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Real};
 
+use super::guide::Guide;
 use super::portal::{Opening, Portal};
 use super::{EmissionSpectrum, IncompletePdf, LightSample, LightSampleContext, Target};
 use crate::core::distribution::Piecewise2D;
@@ -31,6 +33,8 @@ pub struct Environment {
     pub portal: Option<Box<Portal>>,
     /// Whether it illuminates surfaces; otherwise it is only visible.
     pub illuminates: bool,
+    /// Where it is visible from, if that is known; not of one with a portal.
+    pub(crate) guide: Option<Arc<Guide>>,
 }
 
 /// The colours of an environment.
@@ -110,7 +114,7 @@ impl Environment {
     }
 
     /// Radiance from a unit direction, ignoring the portal.
-    fn color(&self, textures: &Textures, direction: Vec3, mode: &SpectralMode) -> Spectrum {
+    pub(super) fn color(&self, textures: &Textures, direction: Vec3, mode: &SpectralMode) -> Spectrum {
         match &self.sky {
             Sky::Constant(emission_spectrum) => emission_spectrum.even(textures, mode),
             Sky::Gradient { zenith, horizon, nadir } => {
@@ -132,7 +136,7 @@ impl Environment {
         let world_from_light = (*rotation * sky.world_from_light.as_dmat3()).as_mat3();
         let sky = SkyImage { world_from_light, ..(**sky).clone() };
         let portal = self.portal.as_ref().map(|portal| Box::new(sky.through(portal.opening(), textures)));
-        Self { sky: Sky::Image(Box::new(sky)), portal, illuminates: self.illuminates }
+        Self { sky: Sky::Image(Box::new(sky)), portal, illuminates: self.illuminates, guide: None }
     }
 
     /// Unoccluded irradiance on a surface with the unit normal `n`, in linear Rec. 709: the integral of radiance times
@@ -168,7 +172,7 @@ impl Environment {
 
     /// Whether light sampling is worthwhile: its light is far from uniform.
     pub(super) fn is_uneven(&self) -> bool {
-        self.portal.is_some() || matches!(self.sky, Sky::Image(_))
+        self.portal.is_some() || matches!(self.sky, Sky::Image(_)) || self.guide.is_some()
     }
 
     /// A sampled direction: through the portal, by the brightness of the map, or by the cosine to the normal.
@@ -182,6 +186,9 @@ impl Environment {
     ) -> Option<LightSample> {
         if !self.illuminates {
             return None;
+        }
+        if let (Some(guide), IncompletePdf::Allowed) = (&self.guide, incomplete_pdf) {
+            return self.sample_guided(guide, textures, at, u, mode);
         }
         let (wi, pdf, li) = match (&self.portal, &self.sky, incomplete_pdf) {
             (Some(portal), ..) => {
@@ -211,11 +218,11 @@ impl Environment {
     pub(super) fn pdf(&self, at: &LightSampleContext, wi: Vec3, incomplete_pdf: IncompletePdf) -> f32 {
         match (&self.portal, &self.sky, incomplete_pdf) {
             _ if !self.illuminates => 0.0,
-            (Some(portal), ..) => finite(portal.pdf(at.point, wi)),
-            (None, Sky::Image(sky), _) => {
-                let (uv, per_solid_angle) = sky.uv(wi);
-                finite(sky.choice(incomplete_pdf).pdf(uv) * per_solid_angle)
+            _ if self.guide.is_some() && incomplete_pdf == IncompletePdf::Allowed => {
+                self.mixed_pdf(self.histogram(at), wi, self.unguided_pdf(wi))
             }
+            (Some(portal), ..) => finite(portal.pdf(at.point, wi)),
+            (None, Sky::Image(sky), _) => sky.pdf(wi, incomplete_pdf),
             (None, _, IncompletePdf::Allowed) => 0.0,
             (None, _, IncompletePdf::Forbidden) => even_pdf(at.n, wi),
         }
@@ -235,6 +242,12 @@ fn finite(pdf: f32) -> f32 {
 }
 
 impl SkyImage {
+    /// The solid angle density of a unit direction, without a guide.
+    fn pdf(&self, wi: Vec3, incomplete_pdf: IncompletePdf) -> f32 {
+        let (uv, per_solid_angle) = self.uv(wi);
+        finite(self.choice(incomplete_pdf).pdf(uv) * per_solid_angle)
+    }
+
     fn choice(&self, incomplete_pdf: IncompletePdf) -> &Piecewise2D {
         match incomplete_pdf {
             IncompletePdf::Forbidden => &self.complete,

@@ -32,6 +32,11 @@ impl Powers {
         powers
     }
 
+    /// The powers of the same lights, of which others may be sampled.
+    pub(super) fn among(&self, lights: &[Light]) -> Self {
+        Self::new(lights, self.brightness.clone(), self.radius)
+    }
+
     fn absolute(&self, index: u32, light: &Light) -> f64 {
         f64::from(self.brightness[index as usize]) * light.unit_power(self.radius).value
     }

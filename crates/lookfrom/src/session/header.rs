@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
-use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Sensor};
+use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Portals, Sensor};
 
 use super::{Development, Fireflies, Session, spectral};
 use crate::core::color;
@@ -36,6 +36,9 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
         ("camera.distance", camera.distance.to_string()),
     ];
     texts.extend(sensor(image));
+    if render.portals != Portals::default() {
+        texts.push(("portals", render.portals.word().to_owned()));
+    }
     if let Some(noise) = session.stop.noise {
         texts.push((NOISE, noise.to_string()));
     }

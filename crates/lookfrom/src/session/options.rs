@@ -11,7 +11,7 @@ use lookfrom_scene::image::Image;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{
     Allocation, Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, RenderSettings, Sampler, SpectralFilm, Tonemap,
+    LightSampler, PixelBounds, Portals, RenderSettings, Sampler, SpectralFilm, Tonemap,
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
@@ -49,6 +49,8 @@ pub struct Options {
     pub color: Option<ColorMode>,
     /// The light sampler.
     pub light_sampler: Option<LightSampler>,
+    /// The openings through which environments are sampled.
+    pub portals: Option<Portals>,
     /// AOVs besides the picture.
     pub layers: Option<Layers>,
     /// Layers of light-path expressions: those of the file's with the same names are replaced.
@@ -188,6 +190,7 @@ impl Options {
         replace(&mut render.integrator, self.integrator);
         replace(&mut render.color, self.color);
         replace(&mut render.light_sampler, self.light_sampler);
+        replace(&mut render.portals, self.portals);
         replace(&mut image.layers, self.layers);
         for layer in &self.light_paths {
             image.light_paths.retain(|other| other.name != layer.name);

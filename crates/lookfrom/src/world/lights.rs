@@ -174,7 +174,8 @@ impl<'a> Lights<'a> {
                     let opening = Opening::new(corners.map(|corner| corner - origin));
                     Box::new(self.portal(opening, &sky))
                 });
-                let light = Light::Environment(Environment { sky, portal, illuminates: *illuminates });
+                let light =
+                    Light::Environment(Environment { sky, portal, illuminates: *illuminates, guide: None });
                 ("environment", light, brightness)
             }
         };

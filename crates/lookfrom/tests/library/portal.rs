@@ -4,6 +4,15 @@ use crate::support::{Compiled, scene};
 
 /// A room of 4 × 4 × 4 around the origin, open on a window of 1 × 1 in the wall at z = −2; the camera looks at its back wall.
 fn room(integrator: &str, color: &str, sky: &str, portal: bool) -> [f64; 3] {
+    let film = compiled(integrator, color, sky, portal, "named").film();
+    assert_eq!(film.dropped(), 0);
+    let pixels = film.picture().pixels;
+    let mean = |c: usize| pixels.iter().map(|pixel| f64::from(pixel[c])).sum::<f64>() / pixels.len() as f64;
+    std::array::from_fn(mean)
+}
+
+/// That room, with portals as named or found.
+fn compiled(integrator: &str, color: &str, sky: &str, portal: bool, portals: &str) -> Compiled {
     let portal = if portal {
         "portal = [[-0.5, -0.5, -2], [0.5, -0.5, -2], [0.5, 0.5, -2], [-0.5, 0.5, -2]]"
     } else {
@@ -33,6 +42,7 @@ height = 12
 [render]
 integrator = "{integrator}"
 color = "{color}"
+portals = "{portals}"
 samples = 256
 depth = 3
 [camera]
@@ -50,11 +60,30 @@ type = "environment"
 "#,
         walls.concat()
     );
-    let film = Compiled::new(scene(&text)).film();
-    assert_eq!(film.dropped(), 0);
-    let pixels = film.picture().pixels;
-    let mean = |c: usize| pixels.iter().map(|pixel| f64::from(pixel[c])).sum::<f64>() / pixels.len() as f64;
-    std::array::from_fn(mean)
+    Compiled::new(scene(&text))
+}
+
+/// A window that is found lets in as much light as one that is not, and there is less noise, with the same bits for any number
+/// of threads.
+#[test]
+fn a_window_is_found() {
+    let sky = "zenith = [1, 2, 6]\nhorizon = [3, 3, 3]";
+    // Brightness of each pixel: means of all, and the mean squared difference of pairs that are seen alike, left and right.
+    let measure = |portals: &str| {
+        let compiled = compiled("path", "rgb", sky, false, portals);
+        let film = compiled.render(1).film;
+        assert!(film == compiled.render(2).film, "{portals}");
+        let pixels: Vec<f64> = film.picture().pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+        let pairs = (0..72).map(|k| (pixels[k / 6 * 12 + k % 6], pixels[k / 6 * 12 + 11 - k % 6]));
+        let noise = pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / 144.0;
+        (pixels.iter().sum::<f64>() / 144.0, noise)
+    };
+    let (named, noise) = measure("named");
+    let (found, noise_of_found) = measure("auto");
+    // The mean of 144 pixels, each with half the variance of a difference.
+    let z = (named - found) / ((noise + noise_of_found) / 144.0).sqrt();
+    assert!(z.abs() < 4.0, "{named} {found}, {z} standard deviations");
+    assert!(noise_of_found < 0.5 * noise, "{noise_of_found}, not far below {noise}");
 }
 
 #[test]

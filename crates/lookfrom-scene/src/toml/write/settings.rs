@@ -7,7 +7,8 @@ use crate::light::{Light, LightKind};
 use crate::scene::{Scene, VertexNormals};
 use crate::settings::{
     Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
-    LightPathLayer, LightSampler, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm,
+    Tonemap,
 };
 use crate::toml::settings::{BACKGROUNDS, VERTEX_NORMALS};
 use crate::toml::word_of;
@@ -85,6 +86,7 @@ impl Writer<'_> {
             transparent_shadows,
             color,
             light_sampler,
+            portals,
             regularize,
             occlusion_distance,
             media,
@@ -113,6 +115,9 @@ impl Writer<'_> {
         }
         if *light_sampler != LightSampler::default() {
             fields.put("light_sampler", light_sampler.word());
+        }
+        if *portals != Portals::default() {
+            fields.put("portals", portals.word());
         }
         fields.put_unless("regularize", *regularize, usual.regularize);
         fields.put_unless("occlusion_distance", *occlusion_distance, usual.occlusion_distance);

@@ -20,7 +20,7 @@ use lookfrom_scene::scene::{
 };
 use lookfrom_scene::settings::{
     Allocation, Background, ColorMode, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
 };
 use lookfrom_scene::shape::{Emission, Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand};
 use lookfrom_scene::spectrum::{self, CameraSensor, Curve};
@@ -876,6 +876,7 @@ fn settings() -> Vec<(String, Scene)> {
             transparent_shadows: false,
             color: ColorMode::Spectral,
             light_sampler: LightSampler::Power,
+            portals: Portals::Auto,
             regularize: true,
             occlusion_distance: 1.5,
             media: false,

@@ -4,7 +4,7 @@
 //! are sampled in lanes; every other light by [`Light::sample`], lane by lane.
 
 use lookfrom_bvh::Point;
-use lookfrom_simd::{Float, LaneMask, Real, Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, LaneMask, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::modes::Modes;
 use crate::core::lanes::width::{Mask, Width};
@@ -205,7 +205,9 @@ impl LightSamples {
             }
         }
         let on_skies = match at.incomplete_pdf {
-            IncompletePdf::Allowed => self.sample_skies(simd, world, numbers, at.modes.all()),
+            IncompletePdf::Allowed => {
+                self.sample_skies(simd, world, (at.points, at.n), numbers, at.modes.all())
+            }
             IncompletePdf::Forbidden => 0,
         };
 
@@ -276,6 +278,7 @@ impl LightSamples {
         &mut self,
         simd: S,
         world: &World,
+        places: (Vector<f64x8<S>>, Vector<f32x8<S>>),
         u: [[f32; LANES]; 2],
         modes: &[&SpectralMode; LANES],
     ) -> u32 {
@@ -287,7 +290,7 @@ impl LightSamples {
             else {
                 continue;
             };
-            let samples = sky.sample_lanes(simd, &world.textures, u, modes);
+            let samples = environment.sample_lanes(simd, (sky, &world.textures), places, u, modes);
             for lane in (0..LANES).filter(|lane| chosen & 1 << lane != 0) {
                 set_row(&mut self.wi, lane, samples.wi[lane]);
                 set_row(&mut self.li, lane, samples.li[lane].0);

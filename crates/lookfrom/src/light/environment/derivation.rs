@@ -10,6 +10,7 @@ use crate::core::distribution::Cell;
 use crate::light::derivation::{
     Derivation, OCTAHEDRAL, as_spectrum, cell_of_density, color_of, in_space, lanes, place, texel_at, vector,
 };
+use crate::light::guide::GuideCell;
 use crate::light::{IncompletePdf, LightSample, LightSampleContext};
 use crate::shading::texture::{SpectralMode, Textures};
 
@@ -28,6 +29,9 @@ impl Environment {
     ) -> Vec<Derivation> {
         let LightSample { wi, pdf, .. } = *sample;
         let mut all = match (&self.portal, &self.sky, incomplete_pdf) {
+            _ if self.guide.is_some() && incomplete_pdf == IncompletePdf::Allowed => {
+                self.of_guide(textures, at, wi, mode)
+            }
             (Some(portal), sky, _) => {
                 let scale = if let Sky::Image(sky) = sky { sky.scale } else { [1.0; 3] };
                 portal.derivations(at.point, wi, pdf, scale, mode)
@@ -48,6 +52,43 @@ impl Environment {
             ));
         }
         all
+    }
+}
+
+impl Environment {
+    /// The formulas where a guide is known.
+    fn of_guide(
+        &self,
+        textures: &Textures,
+        at: &LightSampleContext,
+        wi: Vec3,
+        mode: &SpectralMode,
+    ) -> Vec<Derivation> {
+        let unguided = self.unguided_pdf(wi);
+        let of_guide = self.histogram(at).map(|histogram| {
+            let share = f64::from(self.guided_share());
+            let mut numbers = vec![("w", vec![share])];
+            if let Some(GuideCell { place, probabilities, length }) = histogram.cell(wi) {
+                numbers.extend([
+                    ("column, row", place.map(|index| index as f64).to_vec()),
+                    ("P(column), P(row)", probabilities.map(f64::from).to_vec()),
+                    ("l", vec![f64::from(length)]),
+                ]);
+            }
+            numbers.push(("G", vec![f64::from(histogram.pdf(wi))]));
+            numbers.push(("D", vec![f64::from(unguided)]));
+            Derivation::new(
+                "pdf = w G + (1 − w) D, D the density without the guide; G = P(column) P(row) · 64² / 4 · l³, 0 where the guide has \
+                 seen nothing; l = |q|, q = wi / (|x| + |y| + |z|); column = ⌊32 (q_x + 1)⌋, row = ⌊32 (q_y + 1)⌋, where q_z < 0 with \
+                 (1 − |q_y|, 1 − |q_x|) and the signs of q",
+                numbers,
+            )
+        });
+        let of_map = match &self.sky {
+            Sky::Image(sky) => sky.derivations(textures, wi, unguided, mode, IncompletePdf::Allowed),
+            _ => Vec::new(),
+        };
+        of_guide.into_iter().chain(of_map).collect()
     }
 }
 

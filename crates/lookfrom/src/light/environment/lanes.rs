@@ -1,16 +1,18 @@
-//! Environment maps for eight paths at once: directions sampled and their radiance, and what escaped rays see.
+//! Environment maps for eight paths at once: directions sampled, with guides or without, and their radiance, and what escaped rays see.
 //!
 //! Those of latitude and longitude without a portal. The bits are those of [`Environment`]'s scalar methods.
 
 use glam::Vec3;
 use lookfrom_scene::texture::Wrap;
-use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, level, prelude::*};
+use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, f64x8, level, prelude::*};
 
+use super::guided::Chosen;
 use super::{
     Environment, MapLayout, Sky, SkyImage, finite, latitude_longitude, latitude_longitude_direction,
 };
-use crate::core::lanes::{LANES, by_lane, gather, scatter};
+use crate::core::lanes::{LANES, by_lane, gather, row, scatter, store};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::light::IncompletePdf;
 use crate::shading::texture::{self, SpectralMode, Textures};
 
@@ -30,7 +32,38 @@ impl SkySamples {
     }
 }
 
+/// Points that lights are sampled from, and their normals.
+pub(crate) type Places<S> = (Vector<f64x8<S>>, Vector<f32x8<S>>);
+
 impl Environment {
+    /// As [`Environment::sample`] with incomplete densities, for the environment map that is `sky`, from points with their normals.
+    #[inline(always)]
+    pub(crate) fn sample_lanes<S: Simd>(
+        &self,
+        simd: S,
+        (sky, textures): (&SkyImage, &Textures),
+        (points, n): Places<S>,
+        u: [[f32; LANES]; 2],
+        modes: &[&SpectralMode; LANES],
+    ) -> SkySamples {
+        let Some(guide) = &self.guide else { return sky.sample_lanes(simd, textures, u, modes) };
+        let (points, n) = (store(Vector::<f32x8<S>>::narrow(points)), store(n));
+        let histograms = by_lane!(lane => guide.histogram(row(&points, lane).into(), row(&n, lane).into()));
+        let chosen = by_lane!(lane => self.choose(histograms[lane], row(&u, lane)));
+        let numbers = by_lane!(lane => match chosen[lane] {
+            Chosen::Environment(u) => u,
+            Chosen::Guide(..) => [0.0; 2],
+        });
+        let unguided = sky.directions(simd, [0, 1].map(|axis| by_lane!(lane => numbers[lane][axis])));
+        let directions = by_lane!(lane => match chosen[lane] {
+            Chosen::Guide(histogram, u) => histogram.sample(u),
+            Chosen::Environment(_) => Vec3::from_array(unguided[lane]),
+        });
+        let mut samples = sky.seen(textures, &directions, modes, (1 << LANES) - 1);
+        samples.pdf = by_lane!(lane => self.mixed_pdf(histograms[lane], directions[lane], samples.pdf[lane]));
+        samples
+    }
+
     /// The environment map, if it is sampled and looked up in lanes.
     #[inline]
     pub(crate) fn map_in_lanes(&self) -> Option<&SkyImage> {
@@ -65,6 +98,15 @@ impl SkyImage {
         SkySamples { wi, li, pdf: pdf.into() }
     }
 
+    /// Sampled directions.
+    #[inline(always)]
+    fn directions<S: Simd>(&self, simd: S, u: [[f32; LANES]; 2]) -> [[f32; 3]; LANES] {
+        let (uv, _) = self.choice(IncompletePdf::Allowed).sample_lanes(u);
+        let u = f32x8::load_array(simd, by_lane!(lane => uv[lane][0]));
+        let v = f32x8::load_array(simd, by_lane!(lane => uv[lane][1]));
+        scatter(self.in_world(latitude_longitude_direction([u, v]).0))
+    }
+
     /// The map's colours at (u, v).
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, textures: &Textures, uv: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
@@ -85,7 +127,7 @@ impl SkyImage {
         with_density: u32,
     ) -> SkySamples {
         let wi = by_lane!(lane => directions[lane].to_array());
-        let Places { uv, per_solid_angle, rgb } =
+        let Looked { uv, per_solid_angle, rgb } =
             dispatch(level(), Seen { sky: self, textures, directions: &wi });
         let choice = self.choice(IncompletePdf::Allowed);
         let pdf = by_lane!(lane => match with_density & 1 << lane {
@@ -97,7 +139,7 @@ impl SkyImage {
 }
 
 /// Places in an environment map, the factors there from densities over the map to those over solid angle, and the colours.
-struct Places {
+struct Looked {
     uv: [[f32; 2]; LANES],
     per_solid_angle: [f32; LANES],
     rgb: [[f32; 3]; LANES],
@@ -111,15 +153,15 @@ struct Seen<'a> {
 }
 
 impl Kernel for Seen<'_> {
-    type Output = Places;
+    type Output = Looked;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Places {
+    fn run<S: Simd>(self, simd: S) -> Looked {
         let Self { sky, textures, directions } = self;
         let ([u, v], per_solid_angle) = latitude_longitude(sky.of_light(gather(simd, directions)));
         let rgb = sky.texels(simd, textures, [u, v]);
         let [u, v]: [[f32; LANES]; 2] = [u.into(), v.into()];
-        Places { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }
+        Looked { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }
     }
 }
 

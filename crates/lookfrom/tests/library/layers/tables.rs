@@ -50,7 +50,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("primitive", "lanes math points interaction texture vector warp"),
     (
         "light",
-        "distribution elementary lanes math parallel points sampler primitive spectrum interaction \
+        "distribution elementary hash lanes math parallel points sampler primitive spectrum interaction \
          texture vector warp",
     ),
     ("medium", "bsdf color elementary hash lanes light noise spectrum texture vector"),

@@ -61,8 +61,12 @@ impl PathTracer {
             let modes = by_lane!(lane => &output.queues.modes[paths[lane].slot as usize]);
             let seen = sky.seen(&world.textures, &directions, &modes, with_density);
             for (lane, path) in paths.iter().enumerate().filter(|(lane, _)| lanes & 1 << lane != 0) {
-                let pdf =
-                    || world.light_choice.probability(&path.state.light_context(0.0), index) * seen.pdf[lane];
+                let pdf = || {
+                    let at = path.state.light_context(0.0);
+                    let histogram = environment.histogram(&at);
+                    let of_direction = environment.mixed_pdf(histogram, directions[lane], seen.pdf[lane]);
+                    world.light_choice.probability(&at, index) * of_direction
+                };
                 self.add_found(path, index, seen.li[lane], pdf, output);
             }
         }

@@ -9,10 +9,13 @@ use lookfrom_scene::settings::ColorMode;
 use super::*;
 use crate::core::distribution::Piecewise2D;
 use crate::core::hash;
-use crate::light::{Light, LightSampleContext};
+use crate::core::lanes::gather_f64;
+use crate::light::{Guide, GuidePoint, Light, LightSampleContext, Query};
 
 struct Sample<'a> {
+    environment: &'a Environment,
     sky: &'a SkyImage,
+    points: &'a [DVec3; LANES],
     textures: &'a Textures,
     u: [[f32; LANES]; 2],
 }
@@ -22,7 +25,10 @@ impl Kernel for Sample<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> SkySamples {
-        self.sky.sample_lanes(simd, self.textures, self.u, &[&SpectralMode::Rgb; LANES])
+        let points = gather_f64(simd, &by_lane!(lane => self.points[lane].to_array()));
+        let n = Vector::splat(f32x8::splat(simd, 0.0), Vec3::Z.to_array());
+        let modes = &[&SpectralMode::Rgb; LANES];
+        self.environment.sample_lanes(simd, (self.sky, self.textures), (points, n), self.u, modes)
     }
 }
 
@@ -47,15 +53,34 @@ fn eight_at_once_are_eight_one_by_one() {
         mean: 0.0,
         sums: [0.0; 2],
     };
-    let environment = Environment { sky: Sky::Image(Box::new(sky.clone())), portal: None, illuminates: true };
-    let light = Light::Environment(environment.clone());
-    let at = LightSampleContext { point: DVec3::ZERO, n: Vec3::Z, time: 0.0 };
-    for round in 0..2000 {
+    let sky_alone = Sky::Image(Box::new(sky.clone()));
+    let unguided = Environment { sky: sky_alone, portal: None, illuminates: true, guide: None };
+    // A guide that has seen the half of the sky with x > 0 from one half of the points.
+    let points: Vec<GuidePoint> = (0..500)
+        .map(|k| Vec3::new(number(k) - 0.5, number(k + 500), 0.0))
+        .map(|point| GuidePoint { point, n: Vec3::Z, facing: Vec3::Z, transmits: false })
+        .collect();
+    let visibility = |queries: &[Query]| {
+        let is_seen = |(index, wi): &Query| points[*index as usize].point.x > 0.0 && wi.x > 0.9;
+        queries.iter().map(|query| f32::from(u8::from(is_seen(query)))).collect()
+    };
+    let guide = Guide::learn(&unguided, &textures, &points, &visibility).expect("a guide");
+    let guided = Environment { guide: Some(Arc::new(guide)), ..unguided.clone() };
+    let mut with_histogram = 0;
+    for (environment, round) in
+        [unguided, guided].iter().flat_map(|sky| (0..2000).map(move |round| (sky, round)))
+    {
+        let light = Light::Environment(environment.clone());
+        let points = by_lane!(lane => DVec3::new(f64::from(number(8 * round + lane as u64)) - 0.5, 0.5, 0.0));
         let u = [0, 1].map(|axis| by_lane!(lane => number(1000 + 16 * round + 2 * lane as u64 + axis)));
-        let samples = dispatch(level(), Sample { sky: &sky, textures: &textures, u });
+        let samples =
+            dispatch(level(), Sample { environment, sky: &sky, points: &points, textures: &textures, u });
         let directions = by_lane!(lane => Vec3::from_array(samples.wi[lane]));
         let seen = sky.seen(&textures, &directions, &[&SpectralMode::Rgb; LANES], 0xff);
         for lane in 0..LANES {
+            let at = LightSampleContext { point: points[lane], n: Vec3::Z, time: 0.0 };
+            let histogram = environment.histogram(&at);
+            with_histogram += u32::from(histogram.is_some());
             let alone = light.sample(
                 &textures,
                 &at,
@@ -71,9 +96,10 @@ fn eight_at_once_are_eight_one_by_one() {
             let wi = directions[lane];
             let alone = environment.radiance(&textures, DVec3::ZERO, wi, &SpectralMode::Rgb);
             assert_eq!(
-                (seen.li[lane], seen.pdf[lane]),
+                (seen.li[lane], environment.mixed_pdf(histogram, wi, seen.pdf[lane])),
                 (alone, light.pdf(&at, wi, None, IncompletePdf::Allowed))
             );
         }
     }
+    assert!((4000..12_000).contains(&with_histogram), "{with_histogram}");
 }

@@ -1,0 +1,140 @@
+//! Guides: the directions in which an environment is visible from the places of a scene, learned before the picture.
+//!
+//! A kd-tree over points that paths visit, one for each of six main directions of their normals and one for media (spatial
+//! trees of directional histograms: Müller, Gross & Novák 2017, here of next-event estimation as in Vorba et al. 2019). Each leaf
+//! has a histogram over directions, of the radiance of the environment that is visible from there, times the cosine. A guide
+//! never decides what light there is: directions are sampled by a mixture with another density, and what has density 0
+//! is left to BSDF sampling. `learn` makes guides, `steps` are their histograms, `octahedron` is the square of directions.
+
+mod learn;
+mod octahedron;
+mod steps;
+
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3;
+
+use octahedron::Direction;
+use steps::Steps;
+
+pub(crate) use learn::{GuidePoint, Query};
+
+/// Cells along each side of the square of directions.
+const SIDE: usize = 64;
+
+/// Classes of normals: six main directions, and none.
+const CLASSES: usize = 7;
+
+/// Where an environment is visible from.
+#[derive(Clone, Debug, Default)]
+pub struct Guide {
+    /// The roots of the trees, by class of the normal; `None` where there are too few points.
+    roots: [Option<u32>; CLASSES],
+    nodes: Vec<Node>,
+    histograms: Vec<Histogram>,
+}
+
+/// A node of a tree.
+#[derive(Clone, Copy, Debug)]
+enum Node {
+    /// Points below a coordinate are in the first child, which follows; others in the second.
+    Split { axis: usize, at: f32, second: u32 },
+    /// The histogram there; `None` where a guide would not help.
+    Leaf(Option<u32>),
+}
+
+/// A density over the square of directions: columns, and the rows of each.
+#[derive(Clone, Debug)]
+pub(crate) struct Histogram {
+    columns: Steps,
+    rows: Vec<Steps>,
+}
+
+/// A cell of the square, and the probabilities that its density is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GuideCell {
+    /// Column and row.
+    pub(crate) place: [usize; 2],
+    /// The probability of the column, and that of the row within it.
+    pub(crate) probabilities: [f32; 2],
+    /// Length of the direction's point of the octahedron.
+    pub(crate) length: f32,
+}
+
+impl Guide {
+    /// The histogram at a point with a unit normal, or zero in a medium.
+    #[inline]
+    pub(super) fn histogram(&self, p: Vec3, n: Vec3) -> Option<&Histogram> {
+        let mut node = self.roots[class_of(n)]?;
+        loop {
+            match self.nodes[node as usize] {
+                Node::Leaf(histogram) => return histogram.map(|index| &self.histograms[index as usize]),
+                Node::Split { axis, at, second } => node = if p[axis] < at { node + 1 } else { second },
+            }
+        }
+    }
+}
+
+impl Histogram {
+    /// By the weights of cells, row by row; `None` if none is positive.
+    fn new(weights: &[f32]) -> Option<Self> {
+        let mut rows = Vec::new();
+        let columns = (0..SIDE).map(|column| {
+            let of_column = (0..SIDE).map(|row| weights[row * SIDE + column]);
+            rows.extend(Steps::new(of_column.clone()));
+            of_column.sum()
+        });
+        let columns = Steps::new(columns)?;
+        Some(Self { columns, rows })
+    }
+
+    /// A unit direction for `u` in [0, 1)².
+    #[inline]
+    pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {
+        let (index, column, s) = self.columns.choose(u[0]);
+        let (_, row, t) = self.rows[index].choose(u[1]);
+        let square =
+            [(column, s), (row, t)].map(|(cell, rest)| (cell as f32 + rest) / SIDE as f32 * 2.0 - 1.0);
+        Direction::of_square(square).unit()
+    }
+
+    /// The density of a unit direction over solid angle.
+    #[inline]
+    pub(super) fn pdf(&self, wi: Vec3) -> f32 {
+        self.cell(wi).map_or(0.0, GuideCell::pdf)
+    }
+
+    /// The cell of a direction; `None` where it has no probability.
+    #[inline]
+    pub(super) fn cell(&self, wi: Vec3) -> Option<GuideCell> {
+        let direction = Direction::of_unit(wi);
+        let place = direction.square().map(|x| (((x + 1.0) * (0.5 * SIDE as f32)) as usize).min(SIDE - 1));
+        let (index, of_column) = self.columns.find(place[0])?;
+        let (_, of_row) = self.rows[index].find(place[1])?;
+        Some(GuideCell { place, probabilities: [of_column, of_row], length: direction.length() })
+    }
+}
+
+impl GuideCell {
+    /// Cells per area of the square, which is 2 wide.
+    const PER_AREA: f32 = 0.25 * (SIDE * SIDE) as f32;
+
+    /// The density there over solid angle.
+    #[inline]
+    fn pdf(self) -> f32 {
+        let [column, row] = self.probabilities;
+        column * row * Self::PER_AREA * (self.length * self.length * self.length)
+    }
+}
+
+/// The class of a normal.
+#[inline]
+fn class_of(n: Vec3) -> usize {
+    if n == Vec3::ZERO {
+        return CLASSES - 1;
+    }
+    let size = n.abs();
+    let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
+    2 * axis + usize::from(n[axis] < 0.0)
+}

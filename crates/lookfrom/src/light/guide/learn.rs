@@ -1,0 +1,282 @@
+//! How guides are learned: by rays from visited points into all directions, first from few groups of them, then from many
+//! into those directions in which the environment was seen.
+
+use glam::Vec3;
+
+use super::octahedron::Direction;
+use super::{CLASSES, Guide, Histogram, Node, SIDE, class_of};
+use crate::core::hash;
+use crate::core::warp;
+use crate::light::{Environment, IncompletePdf, LightSampleContext};
+use crate::shading::texture::{SpectralMode, Textures};
+
+/// Points of a group from which all directions are tested.
+const GROUP: usize = 512;
+
+/// The least number of points of a leaf.
+const LEAF: usize = 12;
+
+/// Rays into each cell of directions: from a group, and from a leaf.
+const RAYS_OF_GROUP: u32 = 2;
+const RAYS_OF_LEAF: u32 = 4;
+
+/// The weight of a group's visibility in that of its leaves, in rays.
+const PRIOR: f32 = 0.5;
+
+/// Rays of a group into directions that would be sampled without a guide, and the share of them that find the
+/// environment from which on a guide would not help.
+const UNGUIDED_RAYS: u32 = 128;
+const OPEN: f32 = 0.4;
+
+/// The least share of points that are in leaves with histograms, for a guide to be worth while.
+const LEAST_GUIDED: f32 = 0.02;
+
+/// The part of the sphere that is as bright as its brightest direction, as far as histograms are concerned: smaller lights, like the
+/// sun, are found without guides.
+const BRIGHTEST: f64 = 0.01;
+
+/// Directions along each side of a cell by which its brightness is known.
+const PARTS: usize = 4;
+
+/// A point that paths visit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GuidePoint {
+    /// In render space.
+    pub(crate) point: Vec3,
+    /// The normal with which lights are sampled there; zero in a medium.
+    pub(crate) n: Vec3,
+    /// The normal to the side that the path came from; zero in a medium.
+    pub(crate) facing: Vec3,
+    /// Whether light from the other side counts as well.
+    pub(crate) transmits: bool,
+}
+
+/// A ray whose visibility is asked for: the index of a point, and a unit direction.
+pub(crate) type Query = (u32, Vec3);
+
+struct Learner<'a> {
+    environment: &'a Environment,
+    textures: &'a Textures,
+    points: &'a [GuidePoint],
+    /// The part of the light from outside that arrives along each ray.
+    visibility: &'a dyn Fn(&[Query]) -> Vec<f32>,
+    /// The light of each cell of directions.
+    light: Vec<f32>,
+    guide: Guide,
+    /// Number of points in leaves with histograms.
+    guided: usize,
+    /// Number of random numbers taken.
+    count: u64,
+}
+
+impl Guide {
+    /// The guide to an environment from points that paths visit; `None` where it would not help, since what is sampled
+    /// without it is mostly visible, or nothing is.
+    pub(crate) fn learn(
+        environment: &Environment,
+        textures: &Textures,
+        points: &[GuidePoint],
+        visibility: &dyn Fn(&[Query]) -> Vec<f32>,
+    ) -> Option<Self> {
+        let light = light_of_cells(environment, textures);
+        let guide = Self::default();
+        let mut learner =
+            Learner { environment, textures, points, visibility, light, guide, guided: 0, count: 0 };
+        for class in 0..CLASSES {
+            let is_of_class = |index: &u32| class_of(points[*index as usize].n) == class;
+            let mut members: Vec<u32> = (0..points.len() as u32).filter(is_of_class).collect();
+            if members.len() >= LEAF {
+                learner.guide.roots[class] = Some(learner.branch(&mut members, None));
+            }
+        }
+        (learner.guided as f32 > LEAST_GUIDED * points.len() as f32).then_some(learner.guide)
+    }
+}
+
+impl Learner<'_> {
+    /// Adds the subtree of these points, with the visibility from the group that they belong to, if they are of one. Returns its
+    /// root.
+    fn branch(&mut self, members: &mut [u32], of_group: Option<&[f32]>) -> u32 {
+        let mut own = Vec::new();
+        let of_group = of_group.or_else(|| {
+            (members.len() <= GROUP).then(|| {
+                own = self.visibility_of_group(members);
+                own.as_slice()
+            })
+        });
+        let node = self.guide.nodes.len() as u32;
+        self.guide.nodes.push(Node::Leaf(None));
+        if of_group.is_some_and(<[f32]>::is_empty) {
+            return node;
+        }
+        match self.split(members) {
+            Some((axis, at, middle)) => {
+                let (first, others) = members.split_at_mut(middle);
+                self.branch(first, of_group);
+                let second = self.branch(others, of_group);
+                self.guide.nodes[node as usize] = Node::Split { axis, at, second };
+            }
+            None => {
+                let own;
+                let of_group = match of_group {
+                    Some(of_group) => of_group,
+                    None => {
+                        own = self.visibility_of_group(members);
+                        &own
+                    }
+                };
+                if let Some(histogram) = self.histogram(members, of_group) {
+                    self.guided += members.len();
+                    self.guide.nodes[node as usize] = Node::Leaf(Some(self.guide.histograms.len() as u32));
+                    self.guide.histograms.push(histogram);
+                }
+            }
+        }
+        node
+    }
+
+    /// Halves points along the longest side of their box, and orders them; `None` where they are few, or in one place. Returns the axis,
+    /// the coordinate from which on they are in the second half, and the number of the others.
+    fn split(&self, members: &mut [u32]) -> Option<(usize, f32, usize)> {
+        if members.len() < 2 * LEAF {
+            return None;
+        }
+        let place = |index: u32| self.points[index as usize].point;
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for &index in members.iter() {
+            (low, high) = (low.min(place(index)), high.max(place(index)));
+        }
+        let size = high - low;
+        let axis = (1..3).fold(0, |longest, axis| if size[axis] > size[longest] { axis } else { longest });
+        let coordinate = |index: u32| place(index)[axis];
+        members.sort_unstable_by(|a, b| coordinate(*a).total_cmp(&coordinate(*b)).then(a.cmp(b)));
+        let at = coordinate(members[members.len() / 2]);
+        let middle = members.partition_point(|&index| coordinate(index) < at);
+        (middle > 0).then_some((axis, at, middle))
+    }
+
+    /// The visibility of each cell of directions from a group, weighted by the cosine and blurred; empty where nothing is visible or a
+    /// guide would not help.
+    fn visibility_of_group(&mut self, members: &[u32]) -> Vec<f32> {
+        let unguided: Vec<_> = (0..UNGUIDED_RAYS).filter_map(|_| self.unguided_ray(members)).collect();
+        let seen: f32 = (self.visibility)(&unguided).iter().sum();
+        if seen > OPEN * UNGUIDED_RAYS as f32 {
+            return Vec::new();
+        }
+        let mut sharp = vec![0.0; SIDE * SIDE];
+        self.add_visibility(members, RAYS_OF_GROUP, |_| true, &mut sharp);
+        if sharp.iter().all(|seen| *seen == 0.0) {
+            return Vec::new();
+        }
+        (0..SIDE * SIDE)
+            .map(|cell| {
+                let around = |at: usize| at.saturating_sub(1)..(at + 2).min(SIDE);
+                let rows = around(cell / SIDE).map(|row| &sharp[row * SIDE..][around(cell % SIDE)]);
+                rows.flatten().sum::<f32>() / 9.0
+            })
+            .collect()
+    }
+
+    /// The histogram of a leaf.
+    fn histogram(&mut self, members: &[u32], of_group: &[f32]) -> Option<Histogram> {
+        if of_group.is_empty() {
+            return None;
+        }
+        let mut weights: Vec<f32> = of_group.iter().map(|prior| PRIOR * prior).collect();
+        self.add_visibility(members, RAYS_OF_LEAF, |cell| of_group[cell] > 0.0, &mut weights);
+        weights.iter_mut().zip(&self.light).for_each(|(weight, light)| *weight *= light);
+        Histogram::new(&weights)
+    }
+
+    /// Adds to cells of directions how much of the environment rays see, times the cosine.
+    fn add_visibility(
+        &mut self,
+        members: &[u32],
+        rays: u32,
+        is_tested: impl Fn(usize) -> bool,
+        cells: &mut [f32],
+    ) {
+        let (mut queries, mut weights) = (Vec::new(), Vec::new());
+        for cell in (0..SIDE * SIDE).filter(|cell| is_tested(*cell)) {
+            for _ in 0..rays {
+                let (index, [s, t]) = self.any(members);
+                let place = [(cell % SIDE) as f32 + s, (cell / SIDE) as f32 + t];
+                let wi = Direction::of_square(place.map(|x| x / SIDE as f32 * 2.0 - 1.0)).unit();
+                let weight = self.points[index as usize].cosine(wi);
+                if weight > 0.0 {
+                    queries.push((index, wi));
+                    weights.push((cell, weight));
+                }
+            }
+        }
+        for ((cell, weight), seen) in weights.into_iter().zip((self.visibility)(&queries)) {
+            cells[cell] += weight * seen;
+        }
+    }
+
+    /// A ray into a direction that is sampled without a guide: as light samples, or, where they leave an environment to BSDFs, by the
+    /// cosine.
+    fn unguided_ray(&mut self, members: &[u32]) -> Option<Query> {
+        let (index, u) = self.any(members);
+        let point = &self.points[index as usize];
+        let wi = match self.environment.is_uneven() {
+            true => {
+                let at = LightSampleContext { point: point.point.as_dvec3(), n: point.n, time: 0.0 };
+                let (textures, mode) = (self.textures, SpectralMode::Rgb);
+                self.environment.sample(textures, &at, u, &mode, IncompletePdf::Allowed)?.wi
+            }
+            false if point.facing == Vec3::ZERO => warp::uniform_sphere(u),
+            false => warp::cosine_hemisphere(u, point.facing),
+        };
+        (point.cosine(wi) > 0.0).then_some((index, wi))
+    }
+
+    /// Any of these points, and two numbers in [0, 1).
+    fn any(&mut self, members: &[u32]) -> (u32, [f32; 2]) {
+        self.count += 1;
+        let (which, u) = (hash::pair(self.count, 0), hash::pair(self.count, 1));
+        let number = |bits: u64| (bits & 0xff_ffff) as f32 / 16_777_216.0;
+        (members[(which % members.len() as u64) as usize], [number(u), number(u >> 32)])
+    }
+}
+
+impl GuidePoint {
+    /// How much light from a unit direction counts.
+    fn cosine(&self, wi: Vec3) -> f32 {
+        if self.facing == Vec3::ZERO {
+            return 1.0;
+        }
+        let cos = self.facing.dot(wi);
+        if self.transmits { cos.abs() } else { cos.max(0.0) }
+    }
+}
+
+/// The light of an environment from each cell of directions, in any unit.
+fn light_of_cells(environment: &Environment, textures: &Textures) -> Vec<f32> {
+    const FINE: usize = SIDE * PARTS;
+    let direction = |index: usize| {
+        let place = [index % FINE, index / FINE].map(|i| (i as f32 + 0.5) / FINE as f32 * 2.0 - 1.0);
+        Direction::of_square(place)
+    };
+    let parts = (0..FINE * FINE).map(|index| {
+        let direction = direction(index);
+        let rgb = environment.color(textures, direction.unit(), &SpectralMode::Rgb).rgb();
+        let length = f64::from(direction.length());
+        (rgb.into_iter().fold(0.0, f32::max), (length * length * length).recip())
+    });
+    let parts: Vec<(f32, f64)> = parts.collect();
+    let mut by_brightness = parts.clone();
+    by_brightness.sort_unstable_by(|(a, _), (b, _)| b.total_cmp(a));
+    let mut left = BRIGHTEST * parts.iter().map(|(_, angle)| angle).sum::<f64>();
+    let brightest = by_brightness.into_iter().find(|(_, angle)| {
+        left -= angle;
+        left <= 0.0
+    });
+    let brightest = brightest.map_or(0.0, |(brightness, _)| brightness);
+    let mut cells = vec![0.0; SIDE * SIDE];
+    for (index, (brightness, angle)) in parts.into_iter().enumerate() {
+        let cell = index / FINE / PARTS * SIDE + index % FINE / PARTS;
+        cells[cell] += brightness.min(brightest) * angle as f32;
+    }
+    cells
+}

@@ -1,0 +1,129 @@
+//! Guides of places whose visibility is known.
+
+use glam::Vec3;
+use lookfrom_scene::material::Color;
+use lookfrom_scene::settings::ColorMode;
+
+use super::*;
+use crate::core::hash;
+use crate::core::statistics::chi_square_deviate;
+use crate::core::warp;
+use crate::light::{EmissionSpectrum, Environment, Sky};
+use crate::shading::texture::{SpectrumType, Textures};
+
+fn number(k: u64, salt: u64) -> f32 {
+    (hash::pair(k, salt) >> 40) as f32 / 16_777_216.0
+}
+
+fn textures() -> Textures {
+    Textures::new(&[], Vec::new(), Vec::new(), ColorMode::Rgb)
+}
+
+/// A sky of one colour.
+fn even_sky(textures: &Textures) -> Environment {
+    let color = textures.spectrum_texture(Color::gray(1.0), SpectrumType::Illuminant);
+    let sky = Sky::Constant(EmissionSpectrum { color, scale: 1.0 });
+    Environment { sky, portal: None, illuminates: true, guide: None }
+}
+
+/// Points on a floor of 4 × 4 at y = 0.
+fn floor() -> Vec<GuidePoint> {
+    let at = |k| Vec3::new(4.0 * number(k, 1) - 2.0, 0.0, 4.0 * number(k, 2) - 2.0);
+    let point = |k| GuidePoint { point: at(k), n: Vec3::Y, facing: Vec3::Y, transmits: false };
+    (0..4000).map(point).collect()
+}
+
+/// Whether a ray leaves through a window of 1 × 1 in the wall at x = 3, from y = 1 on.
+fn is_lit(point: Vec3, wi: Vec3) -> bool {
+    let at = point + wi * ((3.0 - point.x) / wi.x);
+    wi.x > 0.0 && (1.0..2.0).contains(&at.y) && (-0.5..0.5).contains(&at.z)
+}
+
+fn learn(points: &[GuidePoint], is_lit: impl Fn(Vec3, Vec3) -> bool) -> Option<Guide> {
+    let textures = textures();
+    let visibility = |queries: &[Query]| {
+        let lit = |(index, wi): &Query| is_lit(points[*index as usize].point, *wi);
+        queries.iter().map(|query| f32::from(u8::from(lit(query)))).collect()
+    };
+    Guide::learn(&even_sky(&textures), &textures, points, &visibility)
+}
+
+#[test]
+fn most_directions_lead_through_the_window() {
+    let guide = learn(&floor(), is_lit).expect("a window");
+    let (mut lit, mut unguided) = (0, 0);
+    const N: u64 = 20_000;
+    for k in 0..N {
+        let p = Vec3::new(4.0 * number(k, 3) - 2.0, 0.0, 4.0 * number(k, 4) - 2.0);
+        let u = [number(k, 5), number(k, 6)];
+        let histogram = guide.histogram(p, Vec3::Y).expect("light everywhere");
+        lit += u32::from(is_lit(p, histogram.sample(u)));
+        unguided += u32::from(is_lit(p, warp::cosine_hemisphere(u, Vec3::Y)));
+    }
+    assert!(unguided < 600, "{unguided}");
+    assert!(lit > 10 * unguided && u64::from(lit) > N / 2, "{lit}, {unguided} without a guide");
+    assert!(guide.histogram(Vec3::ZERO, -Vec3::Y).is_none(), "no point has such a normal");
+}
+
+#[test]
+fn guides_are_learned_where_they_help() {
+    assert!(learn(&floor(), |_, _| true).is_none(), "an open place");
+    assert!(learn(&floor(), |_, _| false).is_none(), "a closed room");
+    assert!(learn(&[], is_lit).is_none());
+    // Between both, each place on its own.
+    let guide = learn(&floor(), |p, wi| if p.x < 0.0 { true } else { is_lit(p, wi) }).expect("a window");
+    assert!(guide.histogram(Vec3::new(-1.9, 0.0, 0.0), Vec3::Y).is_none());
+    assert!(guide.histogram(Vec3::new(1.9, 0.0, 0.0), Vec3::Y).is_some());
+}
+
+#[test]
+fn densities_are_those_of_samples() {
+    let guide = learn(&floor(), is_lit).expect("a window");
+    let histogram = guide.histogram(Vec3::new(1.0, 0.0, 0.3), Vec3::Y).expect("light");
+    // The integral over solid angle in cells of a fine grid, which do not cross those of the guide.
+    const FINE: usize = SIDE * 4;
+    let mut expected = vec![0.0; SIDE * SIDE];
+    for index in 0..FINE * FINE {
+        let place = [index % FINE, index / FINE].map(|i| (i as f32 + 0.5) / FINE as f32 * 2.0 - 1.0);
+        let direction = Direction::of_square(place);
+        let area = 4.0 / (FINE * FINE) as f64;
+        let density = f64::from(histogram.pdf(direction.unit()));
+        let cell = index / FINE / 4 * SIDE + index % FINE / 4;
+        expected[cell] += density * area / f64::from(direction.length()).powi(3);
+    }
+    let sum: f64 = expected.iter().sum();
+    assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+    const N: u64 = 200_000;
+    let mut counts = vec![0; SIDE * SIDE];
+    for k in 0..N {
+        let wi = histogram.sample([number(k, 7), number(k, 8)]);
+        assert!((wi.length() - 1.0).abs() < 1e-6);
+        let square = Direction::of_unit(wi).square();
+        let [column, row] = square.map(|x| (((x + 1.0) * 0.5 * SIDE as f32) as usize).min(SIDE - 1));
+        counts[row * SIDE + column] += 1;
+    }
+    let (counts, expected): (Vec<u64>, Vec<f64>) = counts
+        .into_iter()
+        .zip(expected)
+        .map(|(n, share)| (n, share * N as f64))
+        .filter(|(_, e)| *e > 20.0)
+        .unzip();
+    assert!(counts.len() > 20);
+    let deviate = chi_square_deviate(&counts, &expected);
+    assert!(deviate < 4.5, "{deviate}");
+}
+
+#[test]
+fn normals_have_classes() {
+    for (n, class) in [
+        (Vec3::X, 0),
+        (-Vec3::X, 1),
+        (Vec3::new(0.1, 0.9, -0.3), 2),
+        (Vec3::new(0.1, -0.9, -0.3), 3),
+        (Vec3::new(-0.5, 0.5, 0.6), 4),
+        (-Vec3::Z, 5),
+        (Vec3::ZERO, 6),
+    ] {
+        assert_eq!(class_of(n), class, "{n}");
+    }
+}
