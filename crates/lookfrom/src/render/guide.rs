@@ -126,9 +126,10 @@ fn visibility(world: &World, light: u32, visited: &[Visited], queries: &[Query])
                 term: Term::Light(light),
                 interior: InteriorStack::default(),
                 last_scattering: Shadow::NO_SCATTERING,
+                panes: u32::MAX,
             });
         }
-        resolve_shadows(world, ShadowTransparency::AlphaTested, &mut output);
+        resolve_shadows(world, ShadowTransparency::Panes, &mut output);
         let arrived: Vec<f32> = output.queues.radiance.iter().map(|light| light.0[0]).collect();
         arrived
     });

@@ -28,6 +28,10 @@ const PRIOR: f32 = 0.5;
 const UNGUIDED_RAYS: u32 = 128;
 const OPEN: f32 = 0.4;
 
+/// The same of a leaf: where the sun shines in, it is found without a guide, and would be found less often with one.
+const RAYS_OF_BRIGHT_LEAF: u32 = 64;
+const BRIGHT: f32 = 0.15;
+
 /// The least share of points that are in leaves with histograms, for a guide to be worth while.
 const LEAST_GUIDED: f32 = 0.02;
 
@@ -158,9 +162,7 @@ impl Learner<'_> {
     /// The visibility of each cell of directions from a group, weighted by the cosine and blurred; empty where nothing is visible or a
     /// guide would not help.
     fn visibility_of_group(&mut self, members: &[u32]) -> Vec<f32> {
-        let unguided: Vec<_> = (0..UNGUIDED_RAYS).filter_map(|_| self.unguided_ray(members)).collect();
-        let seen: f32 = (self.visibility)(&unguided).iter().sum();
-        if seen > OPEN * UNGUIDED_RAYS as f32 {
+        if self.sees_unguided(members, UNGUIDED_RAYS) > OPEN {
             return Vec::new();
         }
         let mut sharp = vec![0.0; SIDE * SIDE];
@@ -179,7 +181,7 @@ impl Learner<'_> {
 
     /// The histogram of a leaf.
     fn histogram(&mut self, members: &[u32], of_group: &[f32]) -> Option<Histogram> {
-        if of_group.is_empty() {
+        if of_group.is_empty() || self.sees_unguided(members, RAYS_OF_BRIGHT_LEAF) > BRIGHT {
             return None;
         }
         let mut weights: Vec<f32> = of_group.iter().map(|prior| PRIOR * prior).collect();
@@ -212,6 +214,12 @@ impl Learner<'_> {
         for ((cell, weight), seen) in weights.into_iter().zip((self.visibility)(&queries)) {
             cells[cell] += weight * seen;
         }
+    }
+
+    /// The share of rays into directions that are sampled without a guide which find the environment.
+    fn sees_unguided(&mut self, members: &[u32], rays: u32) -> f32 {
+        let unguided: Vec<_> = (0..rays).filter_map(|_| self.unguided_ray(members)).collect();
+        (self.visibility)(&unguided).iter().sum::<f32>() / rays as f32
     }
 
     /// A ray into a direction that is sampled without a guide: as light samples, or, where they leave an environment to BSDFs, by the
