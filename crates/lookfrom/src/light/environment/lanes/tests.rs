@@ -56,8 +56,8 @@ fn eight_at_once_are_eight_one_by_one() {
     let sky_alone = Sky::Image(Box::new(sky.clone()));
     let unguided = Environment { sky: sky_alone, portal: None, illuminates: true, guide: None };
     // A guide that has seen the half of the sky with x > 0 from one half of the points.
-    let points: Vec<GuidePoint> = (0..500)
-        .map(|k| Vec3::new(number(k) - 0.5, number(k + 500), 0.0))
+    let points: Vec<GuidePoint> = (0..2000)
+        .map(|k| Vec3::new(number(k) - 0.5, number(k + 2000), 0.0))
         .map(|point| GuidePoint { point, n: Vec3::Z, facing: Vec3::Z, transmits: false })
         .collect();
     let visibility = |queries: &[Query]| {
