@@ -63,7 +63,7 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Bump or normal mapping.
     pub bump_mapping: BumpMapping,
-    /// What is done about normals that bump or normal mapping bends too far; `None` for what the scene does
+    /// Guard of normals that bump or normal mapping bends too far; `None` for that of the scene
     /// ([`crate::scene::VertexNormals`]).
     pub bump_guard: Option<BumpGuard>,
     /// Medium inside closed bodies of it; `None` where they only absorb, by the material itself.

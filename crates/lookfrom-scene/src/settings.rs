@@ -413,7 +413,7 @@ pub enum Portals {
     /// The portals that environment lights name.
     #[default]
     Named,
-    /// Where there is none: those directions in which a pre-pass has seen the environment, from all places that paths visit.
+    /// Those, and without one the directions in which a pre-pass has seen the environment from the places that paths visit.
     Auto,
 }
 

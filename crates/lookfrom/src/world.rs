@@ -90,7 +90,7 @@ pub struct World {
     pub(crate) environments: Vec<u32>,
     /// Whether any surface transmits light.
     pub(crate) transmissive: bool,
-    /// Whether any material is a pane ([`Material::is_pane`]).
+    /// Whether any surface is a pane ([`Material::is_pane`]).
     pub(crate) has_panes: bool,
     /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts.
     pub(crate) has_gaps: bool,

@@ -33,7 +33,7 @@ pub struct Environment {
     pub portal: Option<Box<Portal>>,
     /// Whether it illuminates surfaces; otherwise it is only visible.
     pub illuminates: bool,
-    /// Where it is visible from, if that is known; not of one with a portal.
+    /// Directions in which it is visible, by place; `None` where they are not known, and behind a portal.
     pub(crate) guide: Option<Arc<Guide>>,
 }
 

@@ -26,7 +26,7 @@ const SIDE: usize = 64;
 /// Classes of normals: six main directions, and none.
 const CLASSES: usize = 7;
 
-/// Where an environment is visible from.
+/// Histograms of the directions in which an environment is visible, by place and normal.
 #[derive(Clone, Debug, Default)]
 pub struct Guide {
     /// The roots of the trees, by class of the normal; `None` where there are too few points.

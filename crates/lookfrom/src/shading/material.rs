@@ -62,7 +62,7 @@ pub struct Material {
     pub kind: MaterialKind,
     /// Perturbation of the shading normal.
     pub bump_mapping: BumpMapping,
-    /// What is done about normals that it bends too far, in place of [`Self::reflects_outside`].
+    /// Guard of normals that it bends too far, in place of [`Self::reflects_outside`].
     pub bump_guard: Option<BumpGuard>,
     /// Its look from behind.
     pub back_face: BackFace,
@@ -134,21 +134,19 @@ impl Shading {
 
     /// A BSDF at a surface without bump mapping.
     pub(crate) fn plain(surface: &SurfaceInteraction, bsdf: Bsdf) -> Self {
-        Self {
-            bsdf,
-            frame: bump::plain(&surface.shading_geometry()),
-            ng: surface.ng.as_vec3(),
-            lift: surface.lift(),
-            guard: None,
-            is_one_sided: false,
-        }
+        Self::with_frame(surface, bump::plain(&surface.shading_geometry()), bsdf)
     }
 
     /// A BSDF at a surface in the frame of these axes, the third of which is the shading normal.
     pub(crate) fn in_frame(surface: &SurfaceInteraction, axes: [[f32; 3]; 3], bsdf: Bsdf) -> Self {
         let [s, t, n] = axes.map(Vec3::from);
+        Self::with_frame(surface, Frame { s, t, n }, bsdf)
+    }
+
+    /// A BSDF at a surface in a frame, without a guard, that is seen from both sides.
+    fn with_frame(surface: &SurfaceInteraction, frame: Frame, bsdf: Bsdf) -> Self {
         let (ng, lift) = (surface.ng.as_vec3(), surface.lift());
-        Self { bsdf, frame: Frame { s, t, n }, ng, lift, guard: None, is_one_sided: false }
+        Self { bsdf, frame, ng, lift, guard: None, is_one_sided: false }
     }
 
     /// The shading normal to the outside, unit length.
@@ -253,8 +251,8 @@ impl Material {
     /// Its BSDF at a surface, in a frame.
     fn shading(&self, surface: &SurfaceInteraction, frame: Frame, bsdf: Bsdf) -> Shading {
         let guard = self.bump_guard.map(|guard| Guard::of(guard, surface.ns.into(), frame.n.into()));
-        let (ng, lift) = (surface.ng.as_vec3(), surface.lift());
-        Shading { bsdf, frame, ng, lift, guard, is_one_sided: self.back_face == BackFace::Black }
+        let is_one_sided = self.back_face == BackFace::Black;
+        Shading { guard, is_one_sided, ..Shading::with_frame(surface, frame, bsdf) }
     }
 
     /// Whether it is a thin sheet that light passes straight on, and is not dispersed by.

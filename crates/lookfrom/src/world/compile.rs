@@ -265,6 +265,9 @@ impl World {
             materials.push(material);
             names.materials.push(written.name);
         }
+        let is_any_in_use = |is_so: fn(&Material) -> bool| {
+            in_use.iter().filter_map(|&index| materials.get(index as usize)).any(is_so)
+        };
         let is_environment = |index: &u32| matches!(lights[*index as usize], Light::Environment(_));
         let mut world = Self {
             origin,
@@ -274,11 +277,8 @@ impl World {
             primitives: primitives.into(),
             objects: objects.into(),
             instances,
-            transmissive: in_use.iter().any(|&material| {
-                let material = materials.get(material as usize);
-                material.is_some_and(|material| !material.whitted.transmission.is_gray(0.0))
-            }),
-            has_panes: materials.iter().any(Material::is_pane),
+            transmissive: is_any_in_use(|material| !material.whitted.transmission.is_gray(0.0)),
+            has_panes: is_any_in_use(Material::is_pane),
             has_gaps: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),

@@ -92,10 +92,10 @@ pub(super) fn let_through<P: Probe>(
                 // Behind interfaces rays go on side by side.
                 match (&surface, interface) {
                     (Some(surface), _) => {
-                        light.go_on_behind(world, &mut ray, &hit, surface);
-                        if shadow_transparency == ShadowTransparency::Panes
+                        let crosses = light.go_on_behind(world, &mut ray, &hit, surface);
+                        if crosses
+                            && shadow_transparency == ShadowTransparency::Panes
                             && world.materials[surface.material as usize].is_pane()
-                            && meets(world, &rays[place], &hit, surface)
                         {
                             light.leave_pane(light_paths, last_scatterings);
                         }
@@ -177,13 +177,22 @@ impl ShadowLight {
         }
     }
 
-    /// Continues the ray behind a surface that lets light pass.
-    fn go_on_behind(&mut self, world: &World, ray: &mut Ray, hit: &Hit, surface: &SurfaceInteraction) {
+    /// Continues the ray behind a surface that lets light pass. Returns whether it crosses the surface, which is not so where that fails
+    /// the alpha test or is an open front.
+    fn go_on_behind(
+        &mut self,
+        world: &World,
+        ray: &mut Ray,
+        hit: &Hit,
+        surface: &SurfaceInteraction,
+    ) -> bool {
         let direction = Vec3::from_array(ray.direction);
         ray.origin = surface.origin(direction);
-        if !world.is_open_front(surface) && meets(world, ray, hit, surface) {
+        let crosses = !world.is_open_front(surface) && meets(world, ray, hit, surface);
+        if crosses {
             self.interior = self.interior.leaving(&world.materials, surface, direction, true);
         }
+        crosses
     }
 }
 

@@ -53,9 +53,7 @@ impl Environment {
         }
         all
     }
-}
 
-impl Environment {
     /// The formulas where a guide is known.
     fn of_guide(
         &self,

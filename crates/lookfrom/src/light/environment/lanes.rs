@@ -127,7 +127,7 @@ impl SkyImage {
         with_density: u32,
     ) -> SkySamples {
         let wi = by_lane!(lane => directions[lane].to_array());
-        let Looked { uv, per_solid_angle, rgb } =
+        let MapPoints { uv, per_solid_angle, rgb } =
             dispatch(level(), Seen { sky: self, textures, directions: &wi });
         let choice = self.choice(IncompletePdf::Allowed);
         let pdf = by_lane!(lane => match with_density & 1 << lane {
@@ -138,8 +138,8 @@ impl SkyImage {
     }
 }
 
-/// Places in an environment map, the factors there from densities over the map to those over solid angle, and the colours.
-struct Looked {
+/// Points of an environment map, the factors there from densities over the map to those over solid angle, and the colours.
+struct MapPoints {
     uv: [[f32; 2]; LANES],
     per_solid_angle: [f32; LANES],
     rgb: [[f32; 3]; LANES],
@@ -153,15 +153,15 @@ struct Seen<'a> {
 }
 
 impl Kernel for Seen<'_> {
-    type Output = Looked;
+    type Output = MapPoints;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> Looked {
+    fn run<S: Simd>(self, simd: S) -> MapPoints {
         let Self { sky, textures, directions } = self;
         let ([u, v], per_solid_angle) = latitude_longitude(sky.of_light(gather(simd, directions)));
         let rgb = sky.texels(simd, textures, [u, v]);
         let [u, v]: [[f32; LANES]; 2] = [u.into(), v.into()];
-        Looked { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }
+        MapPoints { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }
     }
 }
 

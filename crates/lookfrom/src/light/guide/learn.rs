@@ -1,4 +1,4 @@
-//! How guides are learned: by rays from visited points into all directions, first from few groups of them, then from many
+//! Learning of guides: by rays from visited points into all directions, first from few groups of them, then from many
 //! into those directions in which the environment was seen.
 
 use glam::Vec3;
@@ -249,7 +249,7 @@ impl Learner<'_> {
 }
 
 impl GuidePoint {
-    /// How much light from a unit direction counts.
+    /// Weight of light from a unit direction: the cosine, or 1 in a medium.
     fn cosine(&self, wi: Vec3) -> f32 {
         if self.facing == Vec3::ZERO {
             return 1.0;

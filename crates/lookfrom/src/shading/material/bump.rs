@@ -1,7 +1,7 @@
 //! Bump and normal maps: the shading frame.
 //!
-//! Materials of pbrt's scenes take the perturbed normal as it is, those of Mitsuba's one that is [guarded](Guard). Others take one that is [`valid`](Bending::valid), so that
-//! reflected directions leave the surface: the surface neither turns black where a reflection would point inside, as at
+//! Materials of pbrt's scenes take the perturbed normal as it is, those of Mitsuba's one that is [guarded](Guard). Others take
+//! one that is [`valid`](Bending::valid), so that reflected directions leave the surface: the surface neither turns black where a reflection would point inside, as at
 //! the silhouettes of coarse meshes with smooth normals, nor is lit through itself.
 //!
 //! Blinn 1978 (bumps).

@@ -106,7 +106,6 @@ impl PathTracer {
         let varying = varying.as_ref();
         let rows = self.rows::<B, P>(batch, hits, varying, points, output);
         points.bent.bend(&mut points.surfaces, points.front);
-        let active = active & !mesh_hits.are_black(&points.surfaces);
         if P::LISTENS {
             tell_of_shading(world, (hits, active), &rows, points, output);
         }
@@ -116,7 +115,8 @@ impl PathTracer {
             output.queues.first_surfaces.leave_block();
         }
 
-        // Scatter.
+        // Scatter, but for what is black from behind.
+        let active = active & !mesh_hits.are_black(&points.surfaces);
         let Some(first) = &rows[0] else { return };
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
         let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
@@ -208,15 +208,15 @@ impl<'a> MeshHits<'a> {
         Some(Self { hits, vary, are_first, pixels })
     }
 
-    /// The lanes that see one-sided surfaces from behind.
+    /// The lanes that see surfaces from behind which are black there.
     #[inline(always)]
     fn are_black(&self, surfaces: &VertexColumns) -> u32 {
-        let fronts = bitmask(&by_lane!(lane => self.hits[lane].material.back_face == BackFace::Black));
+        let black = bitmask(&by_lane!(lane => self.hits[lane].material.back_face == BackFace::Black));
         let is_behind = |lane: &usize| {
             let [wo, ns] = [surfaces.wo(*lane), surfaces.ns(*lane)].map(Vec3::from);
             wo.dot(ns) <= 0.0
         };
-        LaneMask(fronts).filter(is_behind).fold(0, |lanes, lane| lanes | 1 << lane)
+        LaneMask(black).filter(is_behind).fold(0, |lanes, lane| lanes | 1 << lane)
     }
 
     /// The texture points of materials that vary, with what their pictures are there, if any does.
