@@ -101,6 +101,13 @@ pub enum TextureKind {
         /// The direction, of unit length.
         direction: Vec3,
     },
+    /// Another colour for each side of a surface.
+    Sides {
+        /// The value where it is seen from the outside, the side of its geometric normal.
+        outside: Color,
+        /// The value where it is seen from the inside.
+        inside: Color,
+    },
     /// Bilinear interpolation in u and v between four corners.
     Bilinear {
         /// The values at (0,0), (0,1), (1,0), (1,1).
@@ -216,6 +223,7 @@ impl TextureKind {
             | Self::Marble { vein: a, base: b, .. }
             | Self::DirectionMix { low: a, high: b, .. }
             | Self::Mix { low: a, high: b, .. }
+            | Self::Sides { outside: a, inside: b }
             | Self::Dots { inside: a, outside: b, .. } => vec![*a, *b],
             Self::Bilinear { corners, .. } => corners.to_vec(),
             _ => Vec::new(),
@@ -264,6 +272,7 @@ impl TextureKind {
             | Self::Marble { vein: a, base: b, .. }
             | Self::DirectionMix { low: a, high: b, .. }
             | Self::Product { a, b }
+            | Self::Sides { outside: a, inside: b }
             | Self::Dots { inside: a, outside: b, .. } => vec![*a, *b],
             Self::Scale { color, by } => vec![*color, scalar(by)],
             Self::Mix { low, high, amount } => vec![*low, *high, scalar(amount)],

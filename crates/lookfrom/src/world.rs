@@ -242,6 +242,7 @@ impl World {
             world,
             color: surface.color,
             n: surface.ng.as_vec3(),
+            is_inside: !surface.front,
             ..TexturePoint::NOWHERE
         };
         let Some(index) = surface.vertex_data else { return point };
@@ -263,7 +264,7 @@ impl World {
         point
     }
 
-    /// [`World::texture_point`] of a hit on a mesh, by position and geometric normal, and texture coordinates.
+    /// [`World::texture_point`] of a hit on the outside of a mesh, by position and geometric normal, and texture coordinates.
     #[inline]
     pub(crate) fn texture_point_on_mesh<'a>(
         &self,

@@ -86,7 +86,7 @@ impl Reader<'_, '_> {
         let surface = self.within(plugin, |reader| match &*plugin.kind {
             "twosided" => {
                 let outside = std::mem::replace(&mut reader.is_two_sided, true);
-                let surface = reader.nested(plugin);
+                let surface = reader.two_sided(plugin);
                 reader.is_two_sided = outside;
                 surface
             }
@@ -134,14 +134,29 @@ impl Reader<'_, '_> {
     /// The surface of the only BSDF in another one.
     fn nested(&mut self, plugin: &Plugin) -> Result<Surface> {
         let parts = plugin.parts("bsdf", &self.ids)?;
-        match &parts[..] {
-            [(_, inner)] => self.surface(&inner.clone()),
+        self.only(plugin, &parts)
+    }
+
+    /// The surface of the BSDF in another one, if these are one.
+    fn only(&mut self, plugin: &Plugin, parts: &[(&Property, Rc<Plugin>)]) -> Result<Surface> {
+        match parts {
+            [(_, inner)] => self.surface(inner),
             [] => Err(Error::invalid(&plugin.at, format!("the {} has no bsdf in it", plugin.title()))),
             _ => {
                 let message = format!("a {} with several bsdfs is not supported", plugin.title());
                 Err(Error::new(ErrorKind::Unsupported, &plugin.at, message))
             }
         }
+    }
+
+    /// A BSDF for both sides, or two: that of the outside and that of the inside.
+    fn two_sided(&mut self, plugin: &Plugin) -> Result<Surface> {
+        let parts = plugin.parts("bsdf", &self.ids)?;
+        let [(_, front), (_, back)] = &parts[..] else { return self.only(plugin, &parts) };
+        let sides = TextureKind::Sides { outside: Color::gray(0.0), inside: Color::gray(1.0) };
+        let amount = Scalar::Texture(self.push_texture(plugin, sides));
+        let kind = self.blend(plugin, [front, back], amount)?;
+        Ok(Surface::opaque(self.push_material(plugin, kind)))
     }
 
     /// A BSDF under a bump map or a normal map.
@@ -231,14 +246,7 @@ impl Reader<'_, '_> {
                     let message = format!("a blendbsdf has two bsdfs in it, this one has {}", parts.len());
                     return Err(Error::invalid(&plugin.at, message));
                 };
-                let surfaces = [self.surface(first)?, self.surface(second)?];
-                if surfaces.iter().any(|surface| surface.alpha.is_some()) {
-                    let message = "a mask in a blendbsdf is not supported";
-                    return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message)
-                        .hint("write the mask around it"));
-                }
-                let materials = surfaces.map(|surface| surface.material);
-                self.blend(plugin, materials, amount)
+                self.blend(plugin, [first, second], amount)?
             }
             "hair" => self.hair(plugin)?,
             "measured" => {
@@ -252,10 +260,23 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A blend of two materials: of diffuse ones another diffuse one, which has less noise.
-    fn blend(&mut self, plugin: &Plugin, materials: [MaterialId; 2], amount: Scalar) -> MaterialKind {
+    /// A blend of two BSDFs: of diffuse ones another diffuse one, which has less noise.
+    fn blend(
+        &mut self,
+        plugin: &Plugin,
+        [first, second]: [&Rc<Plugin>; 2],
+        amount: Scalar,
+    ) -> Result<MaterialKind> {
+        let surfaces = [self.surface(first)?, self.surface(second)?];
+        if surfaces.iter().any(|surface| surface.alpha.is_some()) {
+            let message = format!("a mask in a {} of two bsdfs is not supported", plugin.title());
+            return Err(
+                Error::new(ErrorKind::Unsupported, &plugin.at, message).hint("write the mask around it")
+            );
+        }
+        let materials = surfaces.map(|surface| surface.material);
         let [first, second] = materials.map(|id| &self.scene.materials[id.index()]);
-        match (&first.kind, &second.kind) {
+        Ok(match (&first.kind, &second.kind) {
             (&MaterialKind::Diffuse { reflectance: low }, &MaterialKind::Diffuse { reflectance: high })
                 if first.bump_mapping == BumpMapping::None
                     && second.bump_mapping == BumpMapping::None
@@ -265,7 +286,7 @@ impl Reader<'_, '_> {
                 MaterialKind::Diffuse { reflectance: Color::Texture(mix) }
             }
             _ => MaterialKind::Mix { materials, amount },
-        }
+        })
     }
 
     fn metal(&mut self, plugin: &Plugin) -> Result<Metal> {

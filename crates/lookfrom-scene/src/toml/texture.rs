@@ -41,6 +41,7 @@ pub(super) const KEYS: Kinds = &[
     ("scale", &["color", "by"]),
     ("mix", &["low", "high", "amount"]),
     ("direction_mix", &["low", "high", "direction"]),
+    ("sides", &["outside", "inside"]),
     ("vertex_color", &["tint"]),
     ("vertex_alpha", &[]),
     ("product", &["a", "b"]),
@@ -82,7 +83,9 @@ const fn mip(filter: MipFilter) -> TexelFilter {
 
 /// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
-    !["scale", "mix", "direction_mix", "vertex_color", "vertex_alpha", "product", "threshold"].contains(&kind)
+    const WITHOUT: [&str; 8] =
+        ["scale", "mix", "direction_mix", "sides", "vertex_color", "vertex_alpha", "product", "threshold"];
+    !WITHOUT.contains(&kind)
 }
 
 impl Reader<'_, '_> {
@@ -200,6 +203,10 @@ impl Reader<'_, '_> {
                 low: self.color_or(table, "low", 0.0),
                 high: self.color_or(table, "high", 1.0),
                 direction: table.need("direction", "[0, 1, 0]", DVec3::Y, unit).as_vec3(),
+            },
+            "sides" => TextureKind::Sides {
+                outside: self.color_or(table, "outside", 0.0),
+                inside: self.color_or(table, "inside", 1.0),
             },
             "vertex_alpha" => TextureKind::VertexAlpha,
             "product" => {

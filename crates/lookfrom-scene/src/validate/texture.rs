@@ -65,6 +65,7 @@ fn check_texture(part: &Part<'_>, kind: &TextureKind) -> Result<()> {
         TextureKind::Threshold { edge, .. } => part.finite("edge", &[f64::from(*edge)]),
         TextureKind::Scale { .. }
         | TextureKind::Mix { .. }
+        | TextureKind::Sides { .. }
         | TextureKind::Product { .. }
         | TextureKind::VertexAlpha => Ok(()),
     }

@@ -337,6 +337,12 @@ fn bsdfs_become_materials() {
     let backs: Vec<BackFace> =
         read.shapes.iter().map(|shape| read.materials[shape.material.index()].back_face).collect();
     assert_eq!(backs, [BackFace::Black, BackFace::Own]);
+    // The first BSDF is that of the outside; two diffuse ones are one with a texture.
+    let two = |back: &str| {
+        material(&format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\"/><bsdf type=\"{back}\"/></bsdf>")).0
+    };
+    assert!(matches!(two("conductor"), MaterialKind::Mix { amount: Scalar::Texture(_), .. }));
+    assert!(matches!(two("diffuse"), MaterialKind::Diffuse { reflectance: Color::Texture(_) }));
     let mix = material(
         "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.2\"/><bsdf type=\"diffuse\"/><bsdf type=\"conductor\"/></bsdf>",
     );

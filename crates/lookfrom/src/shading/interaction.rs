@@ -73,6 +73,8 @@ pub(crate) struct ShadingGeometry {
     pub(crate) dpdu: Vec3,
     /// [`SurfaceInteraction::shading_dpdv`].
     pub(crate) dpdv: Vec3,
+    /// [`SurfaceInteraction::dpdu`] and [`SurfaceInteraction::dpdv`].
+    pub(crate) derivatives: [Vec3; 2],
     /// [`SurfaceInteraction::wo`].
     pub(crate) wo: Vec3,
     /// [`SurfaceInteraction::front`].
@@ -90,7 +92,15 @@ impl SurfaceInteraction {
     /// The directions that the shading frame depends on.
     pub(crate) fn shading_geometry(&self) -> ShadingGeometry {
         let Self { ns, wo, front, shading_dpdu: dpdu, shading_dpdv: dpdv, .. } = *self;
-        ShadingGeometry { ng: self.ng.as_vec3(), ns, dpdu, dpdv, wo, front }
+        ShadingGeometry {
+            ng: self.ng.as_vec3(),
+            ns,
+            dpdu,
+            dpdv,
+            derivatives: [self.dpdu, self.dpdv],
+            wo,
+            front,
+        }
     }
 
     /// The geometric normal on the side of `wo`.

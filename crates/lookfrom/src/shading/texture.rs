@@ -104,6 +104,8 @@ pub struct TexturePoint<'a> {
     pub opacity: f32,
     /// Normal in world space, of unit length, on either side. pbrt-v4 takes the geometric one.
     pub n: Vec3,
+    /// Whether it is seen from the side opposite to the surface's geometric normal.
+    pub is_inside: bool,
     /// The part of the surface that a pixel shows; `None` for a point alone.
     pub footprint: Option<SurfaceFootprint>,
     /// Pictures that were looked up here beforehand.
@@ -141,6 +143,7 @@ impl TexturePoint<'_> {
         color: [1.0; 3],
         opacity: 1.0,
         n: Vec3::Z,
+        is_inside: false,
         footprint: None,
         looked_up: None,
         values: None,
@@ -328,6 +331,9 @@ impl Textures {
             Node::Mix { low, high, amount } => self.blend(low, high, self.float(*amount, at), at, evaluation),
             Node::DirectionMix { low, high, direction } => {
                 self.blend(low, high, at.n.dot(*direction).abs(), at, evaluation)
+            }
+            Node::Sides { outside, inside } => {
+                self.read(if at.is_inside { inside } else { outside }, at, evaluation)
             }
             Node::Bilinear { corners, mapping } => {
                 let Vec3 { x: u, y: v, .. } = space(mapping);

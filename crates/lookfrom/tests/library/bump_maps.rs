@@ -7,7 +7,7 @@ use lookfrom_scene::scene::{MaterialId, MeshId};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
 
 /// The picture of a wall of 2 × 2 with bumps of noise, whose u and v go to `span`, seen from a distance.
-fn wall(span: f32, distance: f64, fov: f64) -> Vec<[f32; 3]> {
+fn wall(span: Vec2, distance: f64, fov: f64) -> Vec<[f32; 3]> {
     let mut scene = scene(&format!(
         r#"
         [camera]
@@ -52,11 +52,13 @@ fn difference(a: &[[f32; 3]], b: &[[f32; 3]]) -> f32 {
 
 #[test]
 fn slopes_do_not_depend_on_the_scale_of_u_and_v() {
-    let plain = wall(1.0, 5.0, 20.0);
+    let plain = wall(Vec2::ONE, 5.0, 20.0);
     let mean = plain.iter().map(|rgb| rgb[1]).sum::<f32>() / plain.len() as f32;
     let relief = plain.iter().map(|rgb| (rgb[1] - mean).abs()).sum::<f32>() / plain.len() as f32;
     assert!(relief > 0.1 * mean, "it has bumps: {relief} of {mean}");
-    for span in [1e-3, 30.0, 1e4] {
+    let equal = [1e-3, 30.0, 1e4].map(Vec2::splat);
+    let unequal = [Vec2::new(1.0, 30.0), Vec2::new(4.0, 1e-3)];
+    for span in equal.into_iter().chain(unequal) {
         let difference = difference(&plain, &wall(span, 5.0, 20.0));
         assert!(difference < 0.01 * relief, "u and v to {span}: {difference}, relief {relief}");
     }

@@ -346,7 +346,9 @@ impl<'a> Places<'a> {
                 self.scalar(amount);
             }
             TextureKind::Bilinear { corners, .. } => corners.iter_mut().for_each(|color| self.color(color)),
-            TextureKind::DirectionMix { low: a, high: b, .. } | TextureKind::Product { a, b } => {
+            TextureKind::DirectionMix { low: a, high: b, .. }
+            | TextureKind::Sides { outside: a, inside: b }
+            | TextureKind::Product { a, b } => {
                 self.color(a);
                 self.color(b);
             }

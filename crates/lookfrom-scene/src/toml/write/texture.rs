@@ -58,6 +58,9 @@ impl Writer<'_> {
                 self.two(&mut fields, "direction_mix", [("low", *low, 0.0), ("high", *high, 1.0)])?;
                 fields.put("direction", direction.to_array().map(Item::exact));
             }
+            TextureKind::Sides { outside, inside } => {
+                self.two(&mut fields, "sides", [("outside", *outside, 0.0), ("inside", *inside, 1.0)])?;
+            }
             TextureKind::Bilinear { corners, mapping } => {
                 fields.put("type", "bilinear");
                 let corners = corners

@@ -427,6 +427,7 @@ fn textures() -> Vec<(String, Scene)> {
         TextureKind::VertexAlpha,
         TextureKind::Product { a: low, b: high },
         TextureKind::Threshold { value: TEXTURE, edge: 0.25 },
+        TextureKind::Sides { outside: low, inside: high },
     ];
     let index = |kind: &TextureKind| match kind {
         TextureKind::Image { .. } => 0,
@@ -446,6 +447,7 @@ fn textures() -> Vec<(String, Scene)> {
         TextureKind::VertexAlpha => 14,
         TextureKind::Product { .. } => 15,
         TextureKind::Threshold { .. } => 16,
+        TextureKind::Sides { .. } => 17,
     };
     each("texture", variants, index, put_texture)
 }

@@ -1,6 +1,6 @@
 //! Whitted's coefficients at eight bare surfaces side by side. The bits are those of [`Coefficients::at`].
 
-use glam::{DVec3, Vec2};
+use glam::{DVec3, Vec2, Vec3};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
@@ -157,6 +157,7 @@ pub(super) fn texture_point<'a>(
     (position, ng): ([f64; 3], [f32; 3]),
 ) -> TexturePoint<'a> {
     let (ray, hit) = (bare.rays[lane], bare.hits[lane]);
+    let is_inside = Vec3::from(ng).dot(ray.direction.into()) > 0.0;
     let is_filtered = |material: u32| world.materials[material as usize].needs_footprint;
     if world.footprint.is_some() && world.bare_surface(hit).is_some_and(|bare| is_filtered(bare.material)) {
         return world.shading_point(&world.surface(ray, hit));
@@ -165,9 +166,10 @@ pub(super) fn texture_point<'a>(
         let Hit { u, v, primitive, .. } = *hit;
         let [uv0, uv1, uv2] = mesh.corner_uvs(primitive as usize);
         let uv = (1.0 - u - v) * uv0 + u * uv1 + v * uv2;
-        return world.texture_point_on_mesh(mesh, hit, (position, ng.into()), uv.into());
+        let on_outside = world.texture_point_on_mesh(mesh, hit, (position, ng.into()), uv.into());
+        return TexturePoint { is_inside, ..on_outside };
     }
     let uv = bare_hits::sphere(world, hit).map_or(Vec2::ZERO, |(_, binding)| binding.uv(ng.into()));
     let world = world.origin + DVec3::from_array(position);
-    TexturePoint { uv, world, color: [1.0; 3], n: ng.into(), ..TexturePoint::NOWHERE }
+    TexturePoint { uv, world, color: [1.0; 3], n: ng.into(), is_inside, ..TexturePoint::NOWHERE }
 }

@@ -49,16 +49,16 @@ pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
     around(surface.ns, surface.dpdu)
 }
 
-/// The shading frame at a surface: its normal on the side of the geometric one, its first axis along ∂p/∂u.
+/// The shading frame at a surface as in pbrt-v4, where the smoothed ∂p/∂v of meshes is as long as ∂p/∂u: its normal on the side of
+/// the geometric one, its first axis along ∂p/∂u.
 pub(super) fn frame(
     bump_mapping: &BumpMapping,
     relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    let bent = bent(bump_mapping, relief, surface, at);
-    let side = if bent.dot(surface.ng) < 0.0 { -bent } else { bent };
-    around(side, surface.dpdu)
+    let bent = bent(bump_mapping, relief, surface, [surface.dpdu, surface.dpdv], at);
+    around(outward(bent, surface), surface.dpdu)
 }
 
 /// The shading frame with a normal that is [`valid`](Bending::valid).
@@ -68,7 +68,8 @@ pub(super) fn valid_frame(
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    around(valid(bent(bump_mapping, relief, surface, at), surface), surface.dpdu)
+    let bent = bent(bump_mapping, relief, surface, surface.derivatives, at);
+    around(valid(bent, surface), surface.dpdu)
 }
 
 /// The shading frame with a normal that is guarded as Mitsuba's.
@@ -81,15 +82,21 @@ pub(super) fn guarded_frame(
 ) -> Frame {
     // Mitsuba differentiates pictures between their texels, whatever is seen of them.
     let fine = Relief { step: FINE_STEP, footprint: None, ..relief };
-    let Frame { n, .. } = frame(bump_mapping, fine, surface, at);
+    let n = outward(bent(bump_mapping, fine, surface, surface.derivatives, at), surface);
     around(if guard.turns { guard::turned(n, surface.ns, surface.wo) } else { n }, surface.dpdu)
 }
 
-/// The perturbed normal, of unit length.
+/// A normal on the side of the geometric one.
+fn outward(n: Vec3, surface: &ShadingGeometry) -> Vec3 {
+    if n.dot(surface.ng) < 0.0 { -n } else { n }
+}
+
+/// The perturbed normal, of unit length, by the derivatives that heights have their slopes along.
 fn bent(
     bump_mapping: &BumpMapping,
     relief: Relief<'_>,
     surface: &ShadingGeometry,
+    derivatives: [Vec3; 2],
     at: &TexturePoint,
 ) -> Vec3 {
     let plain = || plain(surface);
@@ -103,7 +110,7 @@ fn bent(
             plain().render(local)
         }
         BumpMapping::NormalTexture(map) => return mapped(map, relief.textures, surface, at),
-        BumpMapping::Bump(height) => bumped(*height, relief, surface, at),
+        BumpMapping::Bump(height) => bumped(*height, relief, surface, derivatives, at),
     };
     bent.normalize_or(surface.ns)
 }
@@ -223,27 +230,33 @@ fn normalized_or<R: Real>(v: Vector<R>, other: Vector<R>) -> Vector<R> {
 }
 
 /// The normal of the surface displaced along its shading normal; not of unit length.
-fn bumped(height: FloatTexture, relief: Relief<'_>, surface: &ShadingGeometry, at: &TexturePoint) -> Vec3 {
+fn bumped(
+    height: FloatTexture,
+    relief: Relief<'_>,
+    surface: &ShadingGeometry,
+    derivatives: [Vec3; 2],
+    at: &TexturePoint,
+) -> Vec3 {
     let Relief { textures, footprint, step: usual } = relief;
     let n = surface.ns;
     let here = textures.float(height, at);
-    let half = footprint.and_then(|pixels| pixels.half(at.world, surface.ng, [surface.dpdu, surface.dpdv]));
+    let half = footprint.and_then(|pixels| pixels.half(at.world, surface.ng, derivatives));
     let half = half.unwrap_or_default();
-    let [dpdu, dpdv] =
-        [(surface.dpdu, Vec2::X, half.x), (surface.dpdv, Vec2::Y, half.y)].map(|(along, axis, half)| {
-            let step = if half > 0.0 { half } else { usual };
-            let step = step.max(LEAST_STEP * at.uv.abs().max_element());
-            let uv = at.uv + step * axis;
-            // As far as u or v moves in single precision.
-            let step = (uv - at.uv).dot(axis);
-            let world = at.world + (step * along).as_dvec3();
-            let moved = TexturePoint { uv, world, looked_up: None, values: None, ..*at };
-            // In the tangent plane of the shading normal.
-            let tangent = along - n * n.dot(along);
-            tangent + n * ((textures.float(height, &moved) - here) / step)
-        });
+    let [along_u, along_v] = derivatives;
+    let [dpdu, dpdv] = [(along_u, Vec2::X, half.x), (along_v, Vec2::Y, half.y)].map(|(along, axis, half)| {
+        let step = if half > 0.0 { half } else { usual };
+        let step = step.max(LEAST_STEP * at.uv.abs().dot(axis));
+        let uv = at.uv + step * axis;
+        // As far as u or v moves in single precision.
+        let step = (uv - at.uv).dot(axis);
+        let world = at.world + (step * along).as_dvec3();
+        let moved = TexturePoint { uv, world, looked_up: None, values: None, ..*at };
+        // In the tangent plane of the shading normal.
+        let tangent = along - n * n.dot(along);
+        tangent + n * ((textures.float(height, &moved) - here) / step)
+    });
     let across = dpdu.cross(dpdv);
-    if surface.dpdu.cross(surface.dpdv).dot(n) < 0.0 { -across } else { across }
+    if along_u.cross(along_v).dot(n) < 0.0 { -across } else { across }
 }
 
 /// The frame about a normal with the first axis along ∂p/∂u.

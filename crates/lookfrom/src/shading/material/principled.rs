@@ -93,8 +93,15 @@ pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option
     if look.is_solid || look.anisotropy.is_some() || !is_even || !is_plain {
         return None;
     }
-    let surface =
-        ShadingGeometry { ng: Vec3::Z, ns: Vec3::Z, dpdu: Vec3::X, dpdv: Vec3::Y, wo: Vec3::Z, front: true };
+    let surface = ShadingGeometry {
+        ng: Vec3::Z,
+        ns: Vec3::Z,
+        dpdu: Vec3::X,
+        dpdv: Vec3::Y,
+        derivatives: [Vec3::X, Vec3::Y],
+        wo: Vec3::Z,
+        front: true,
+    };
     let (mut mode, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
     let interior = InteriorStack::default();
     let context =
@@ -351,6 +358,7 @@ mod tests {
                 ns: Vec3::new(0.0, 0.6, 0.8),
                 dpdu: Vec3::X,
                 dpdv: Vec3::Y,
+                derivatives: [Vec3::X, Vec3::Y],
                 wo: Vec3::Z,
                 front: true,
             };

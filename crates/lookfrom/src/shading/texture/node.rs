@@ -51,6 +51,10 @@ pub(super) enum Node {
         high: Input,
         direction: Vec3,
     },
+    Sides {
+        outside: Input,
+        inside: Input,
+    },
     Bilinear {
         corners: [Input; 4],
         mapping: Mapping,
@@ -143,6 +147,9 @@ impl Node {
             }
             TextureKind::DirectionMix { low, high, direction } => {
                 Self::DirectionMix { low: input(low), high: input(high), direction }
+            }
+            TextureKind::Sides { outside, inside } => {
+                Self::Sides { outside: input(outside), inside: input(inside) }
             }
             TextureKind::Bilinear { corners, mapping } => {
                 Self::Bilinear { corners: corners.map(input), mapping }

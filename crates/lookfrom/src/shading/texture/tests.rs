@@ -139,6 +139,10 @@ fn blends() {
     assert_eq!([Vec3::Y, Vec3::NEG_Y, Vec3::X].map(tilted), [6.0, 6.0, 2.0]);
     assert!((tilted(Vec3::new(0.8, -0.6, 0.0)) - 4.4).abs() < 1e-6);
 
+    let sides = only(TextureKind::Sides { outside: low, inside: high });
+    let seen = |is_inside| number(&sides, &TexturePoint { is_inside, ..at(0.0, 0.0) });
+    assert_eq!([false, true].map(seen), [2.0, 6.0]);
+
     let corners = [1.0, 2.0, 3.0, 5.0].map(Color::gray);
     let bilinear = only(TextureKind::Bilinear { corners, mapping: Mapping::UV });
     let found = [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0), (0.5, 0.25)]

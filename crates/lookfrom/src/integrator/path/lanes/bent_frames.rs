@@ -15,6 +15,8 @@ pub(super) struct BentFrames {
     pub(super) ns: Columns<3>,
     pub(super) dpdu: Columns<3>,
     pub(super) dpdv: Columns<3>,
+    /// The derivatives of the surface without smoothing, where a material has a bump map.
+    pub(super) derivatives: [Columns<3>; 2],
     /// The normals of normal maps along the tangents and the shading normals, and the lanes that have one.
     local: Columns<3>,
     mapped: u32,
@@ -31,6 +33,7 @@ impl BentFrames {
             ns: row(&self.ns, lane).into(),
             dpdu: row(&self.dpdu, lane).into(),
             dpdv: row(&self.dpdv, lane).into(),
+            derivatives: [0, 1].map(|axis| row(&self.derivatives[axis], lane).into()),
             wo: surfaces.wo(lane).into(),
             front,
         }

@@ -224,7 +224,7 @@ impl<'a> MeshHits<'a> {
     fn texture_points<'b>(
         &self,
         world: &'b World,
-        MeshPoints { surfaces, uv, footprints, .. }: &MeshPoints,
+        MeshPoints { surfaces, uv, front, footprints, .. }: &MeshPoints,
         look_ups: &'b mut Option<LookUps>,
     ) -> Option<[TexturePoint<'b>; LANES]>
     where
@@ -237,6 +237,7 @@ impl<'a> MeshHits<'a> {
         for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
             let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
             points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
+            points[lane].is_inside = front & 1 << lane == 0;
             if self.pixels.is_some() && hit.material.needs_footprint {
                 points[lane].footprint = Some(footprints.of(lane));
             }

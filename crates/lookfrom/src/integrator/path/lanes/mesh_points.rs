@@ -96,6 +96,10 @@ impl Kernel for MeshKernel<'_> {
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
             points.bent.dpdv = store(dpdv);
         }
+        if hits.iter().any(|hit| hit.material.has_bump_map()) {
+            let [dpdu, dpdv]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.dpdu), Vector::narrow(at.dpdv)];
+            points.bent.derivatives = [store(dpdu), store(dpdv)];
+        }
         if let Some(pixels) = pixels {
             let like = at.ng.x;
             let position = Vector::splat(like, world.origin.to_array()) + at.points.position;

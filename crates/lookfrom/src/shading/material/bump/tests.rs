@@ -8,7 +8,15 @@ use crate::core::lanes::{LANES, by_lane, gather, scatter};
 use crate::core::math;
 
 fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> ShadingGeometry {
-    ShadingGeometry { ng, ns, dpdu: Vec3::X, dpdv: Vec3::Y, wo, front: ng.dot(wo) > 0.0 }
+    ShadingGeometry {
+        ng,
+        ns,
+        dpdu: Vec3::X,
+        dpdv: Vec3::Y,
+        derivatives: [Vec3::X, Vec3::Y],
+        wo,
+        front: ng.dot(wo) > 0.0,
+    }
 }
 
 #[test]
@@ -91,7 +99,7 @@ fn eight_frames_at_once_are_eight_one_by_one() {
                 _ => size(lane, 8) * direction(lane, 9),
             };
             let dpdv = size(lane, 11) * direction(lane, 12);
-            ShadingGeometry { ng, ns, dpdu, dpdv, wo, front: ng.dot(wo) > 0.0 }
+            ShadingGeometry { ng, ns, dpdu, dpdv, derivatives: [dpdu, dpdv], wo, front: ng.dot(wo) > 0.0 }
         });
         let locals: [[f32; 3]; LANES] = std::array::from_fn(|lane| match number(lane, 14) {
             u if u < 0.1 => [0.0; 3],
