@@ -121,7 +121,7 @@ pub enum BumpMapping {
     /// None.
     #[default]
     None,
-    /// A bump map: heights along the normal, in the shape's unit of length.
+    /// A bump map: heights along the normal, in the world's unit of length.
     Bump(Scalar),
     /// A normal map in the tangent frame (u, v, outward): x, y, z are 2·texel − 1. Row 0 is v = 1.
     NormalMap(ImageId),

@@ -267,7 +267,7 @@ pub enum SubsurfaceMedium {
 pub enum BumpMapping {
     /// Nothing.
     None,
-    /// Heights along the normal, in the shape's unit of length.
+    /// Heights along the normal, in the world's unit of length.
     Bump(FloatTexture),
     /// A normal map in the tangent frame (u, v, outward), by its image index: x, y, z are 2·texel − 1. Row 0 is v =
     /// 1.
