@@ -232,6 +232,7 @@ fn projection_in_words(projection: &Projection) -> String {
         Projection::Orthographic { height } => format!("orthographic, height {}", digits(*height)),
         Projection::Equirectangular | Projection::EquirectangularPbrt => "equirectangular".to_owned(),
         Projection::Octahedral => "octahedral".to_owned(),
+        Projection::Irradiance { surface } => format!("irradiance of {surface:?}"),
         Projection::LensSystem(system) => format!(
             "lens {:?} of {}, film diagonal {} mm, focus distance {}",
             system.name,

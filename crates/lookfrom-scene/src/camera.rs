@@ -173,6 +173,20 @@ pub enum Projection {
     Octahedral,
     /// Through a lens system onto a film, whose middle is at the position of the camera.
     LensSystem(Arc<LensSystem>),
+    /// No picture, but a measurement: each pixel is the irradiance on a surface, in the mean over its area. Rays start anywhere on the
+    /// outside of the surface, with directions in proportion to the cosine to its geometric normal, and their light counts π times: under a
+    /// constant radiance of 1 the picture is π. Position, orientation, lens and window of the camera have no effect.
+    Irradiance {
+        /// The name of the shapes that the surface is made of. They are in no object.
+        surface: String,
+    },
+}
+
+impl Projection {
+    /// Whether it makes a measurement on a surface of the scene, not a picture of it.
+    pub fn is_measurement(&self) -> bool {
+        matches!(self, Self::Irradiance { .. })
+    }
 }
 
 /// A part of the image plane, in units of half the projection's height: x to the right, y up. Without one the image shows

@@ -30,6 +30,7 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{BackFace, Color, Material, MaterialKind};
 use crate::scene::{ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals};
+use crate::validate;
 
 /// Reads a scene of Mitsuba with all its includes. Files are looked up in the folder of the scene and those of its `path` elements. The
 /// [variables](crate::Variables) are its parameters.
@@ -104,6 +105,9 @@ struct Reader<'s, 'f> {
     warned: BTreeSet<String>,
 }
 
+/// The name of shapes without an `id` whose irradiance is measured.
+const MEASURED: &str = "measured surface";
+
 /// Maximum depth of plugins that are parts of others.
 const DEEPEST: usize = 64;
 
@@ -117,19 +121,18 @@ impl Reader<'_, '_> {
         let integrator = root.part("integrator", &self.ids)?;
         self.integrator(integrator.as_deref())?;
         let sensors = root.parts("sensor", &self.ids)?;
-        for (order, (_, sensor)) in sensors.iter().enumerate() {
-            if order == 0 {
-                self.sensor(sensor)?;
-            } else {
-                self.context.warn(&sensor.at, "only the first sensor is rendered");
-            }
+        for (_, sensor) in &sensors {
+            self.first_sensor(sensor, None)?;
         }
         for (_, emitter) in root.parts("emitter", &self.ids)? {
             self.emitter(&emitter)?;
         }
         for (_, shape) in root.parts("shape", &self.ids)? {
+            let first = self.scene.shapes.len();
             self.shape(&shape)?;
+            self.sensors_of_shape(&shape, first)?;
         }
+        validate::check_surface(&self.scene)?;
         // They are for references.
         for class in
             ["bsdf", "texture", "medium", "phase", "volume", "spectrum", "film", "sampler", "rfilter"]
@@ -139,6 +142,16 @@ impl Reader<'_, '_> {
         let textures = chain::check(&self.scene.textures, 0..self.scene.textures.len());
         let materials = chain::check(&self.scene.materials, 0..self.scene.materials.len());
         textures.into_iter().chain(materials).next().map_or(Ok(()), Err)
+    }
+
+    /// The sensors of a shape that has been read, the first of the scene's shapes with this number.
+    fn sensors_of_shape(&mut self, shape: &Plugin, first: usize) -> Result<()> {
+        for (_, sensor) in shape.parts("sensor", &self.ids)? {
+            let surface = shape.id.clone().unwrap_or_else(|| MEASURED.to_owned());
+            self.first_sensor(&sensor, Some(&surface))?;
+            self.scene.shapes[first..].iter_mut().for_each(|part| part.name = Some(surface.clone()));
+        }
+        Ok(())
     }
 
     /// Reads a part of a plugin.

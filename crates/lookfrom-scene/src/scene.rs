@@ -214,6 +214,11 @@ impl Scene {
             + self.media.iter().map(Medium::bytes).sum::<u64>()
     }
 
+    /// The shapes with a name that are placed in the world itself, in no object.
+    pub fn shapes_named(&self, name: &str) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().filter(move |shape| shape.name.as_deref() == Some(name))
+    }
+
     /// The bounding box of everything that is placed in the world, at all times of the shutter.
     pub fn bounds(&self) -> Bounds {
         let of = |shapes: &[Shape]| {

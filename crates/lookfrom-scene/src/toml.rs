@@ -79,6 +79,7 @@ use crate::scene::{
 use crate::settings::Integrator;
 use crate::shape::Emission;
 use crate::suggest::nearest;
+use crate::validate;
 
 pub use self::vocabulary::vocabulary;
 
@@ -134,6 +135,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
     let mut scene = reader.scene;
     scene.contents.duration = reader.variables.duration();
     scene.contents.variables = reader.variables.into_all();
+    validate::check_surface(&scene)?;
     let is_physical = |kind: &MaterialKind| !matches!(kind, MaterialKind::Whitted(_));
     if !reader.names_integrator
         && (!scene.media.is_empty() || scene.materials.iter().any(|material| is_physical(&material.kind)))

@@ -1,6 +1,7 @@
 //! Validation of a scene that no reader has made: that every id leads to something, every array has the length that it
 //! should, and numbers are those that their documentation allows. A world compiled from a valid scene renders without a panic.
 
+mod camera;
 mod light;
 mod material;
 mod settings;
@@ -21,6 +22,8 @@ use crate::medium::{DROPLETS, Density, Medium};
 use crate::scene::{CurveId, ImageId, Instance, MaterialId, MediumId, Scene, TextureId};
 use crate::spectrum::Curve;
 
+pub(crate) use camera::check_surface;
+
 impl Scene {
     /// Checks that the scene is as the documentation of its parts says. Scenes from readers are.
     ///
@@ -28,6 +31,7 @@ impl Scene {
     /// `Invalid` for an id without a target, an array of the wrong length, a number out of range, or a texture or material
     /// that is made of itself; `Limit` for too deep chains of textures or materials, and too large a picture.
     pub fn validate(&self) -> Result<()> {
+        camera::check(self)?;
         settings::check(self)?;
         let nowhere = Location::default();
         for (index, curve) in self.curves.iter().enumerate() {

@@ -80,6 +80,7 @@ fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
         Projection::Equirectangular | Projection::EquirectangularPbrt => (None, "equirectangular"),
         Projection::Octahedral => (None, "octahedral"),
         Projection::LensSystem(_) => (None, "lens"),
+        Projection::Irradiance { .. } => (None, "irradiance"),
     };
     CameraAnswer {
         lookfrom: look.lookfrom.into(),

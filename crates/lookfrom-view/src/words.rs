@@ -78,6 +78,9 @@ fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
         }
         Projection::Octahedral => vec![("projection", "\"octahedral\"".to_owned())],
         Projection::LensSystem(system) => lens_system(system),
+        Projection::Irradiance { surface } => {
+            vec![("projection", "\"irradiance\"".to_owned()), ("surface", format!("{surface:?}"))]
+        }
     };
     if matches!(camera.projection, Projection::Perspective { .. } | Projection::Orthographic { .. }) {
         if let Some(lens) = &camera.lens {

@@ -124,8 +124,8 @@ export interface CameraSteps {
     p_k: Quadruple;
     /** `P_world`: the point of the image plane in the world. */
     p_world: Vector;
-    /** How the camera projects: `perspective`, `orthographic`, all around, or `lens system`. */
-    projection: "perspective" | "orthographic" | "equirectangular" | "equirectangular, as pbrt's" | "octahedral" | "lens system";
+    /** How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or `irradiance`. */
+    projection: "perspective" | "orthographic" | "equirectangular" | "equirectangular, as pbrt's" | "octahedral" | "lens system" | "irradiance";
     /** Each matrix by name, its product with those before, and the point after it. */
     steps: MatrixStep[];
     /** To the viewer's left. */

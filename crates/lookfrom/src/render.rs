@@ -23,8 +23,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_scene::camera::Projection;
 use lookfrom_scene::settings::{
-    ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
+    Background, ImageSettings, LightPathLayer, PixelBounds, RenderSettings, Sensor as SensorSettings,
 };
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Scene, Warning};
 
@@ -43,7 +44,7 @@ use crate::integrator::{
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
 use crate::view::View;
-use crate::world::World;
+use crate::world::{MeasuredSurface, World};
 
 pub(crate) use camera_warnings::Subject;
 pub use cost::Cost;
@@ -78,7 +79,9 @@ pub struct Renderer {
     /// The point in render space that its rays start at or around: the eye, or of a parallel camera far away a point nearer
     /// to the scene.
     ray_start: DVec3,
-    /// The bodies and the medium around it.
+    /// The surface of a camera that measures irradiance, on which its rays start.
+    surface: Option<Arc<MeasuredSurface>>,
+    /// The bodies and the medium around it, or around that surface.
     interior: InteriorStack,
     filter: Filter,
     sampler: Sampler,
@@ -124,7 +127,8 @@ pub struct Traced {
     pub radiance: Spectrum,
     /// The spectral mode of `radiance`.
     pub mode: SpectralMode,
-    /// The filter's weight, which is 1 for filters without negative lobes, times that of a ray through a lens system.
+    /// The filter's weight, which is 1 for filters without negative lobes, times that of a ray through a lens system or from a surface that
+    /// is measured.
     pub weight: f32,
     /// The filter's weight alone.
     pub filter_weight: f32,
@@ -187,7 +191,15 @@ impl Renderer {
         };
         let eye = view.camera.lookfrom() - world.origin();
         let ray_start = start::ray_start(&world, &view.camera, eye);
-        let interior = interior::interior_at(&world, ray_start, world.space_of(view.medium));
+        let surface = match &view.camera.projection {
+            Projection::Irradiance { surface } => Some(Arc::new(world.measured_surface(surface, &view.at)?)),
+            _ => None,
+        };
+        let space = world.space_of(view.medium);
+        let interior = match &surface {
+            None => interior::interior_at(&world, ray_start, space),
+            Some(surface) => interior::interior_around(&world, surface, space),
+        };
         Ok(Self {
             filter: Filter::new(view.image.filter),
             sampler: Sampler::new(settings.sampler, settings.seed),
@@ -201,6 +213,7 @@ impl Renderer {
             settings,
             eye,
             ray_start,
+            surface,
             interior,
         })
     }
@@ -298,6 +311,11 @@ impl Renderer {
         &self.view.image
     }
 
+    /// What rays of the camera see that hit nothing; a measurement is of light alone.
+    fn background(&self) -> Background {
+        if self.surface.is_some() { Background::Environment } else { self.image().background }
+    }
+
     /// The path that begins with a ray of the camera, of one sample in RGB.
     fn root<S: PathState>(&self, ray: Ray) -> Path<S> {
         Path {
@@ -344,7 +362,7 @@ impl Renderer {
         let mut output = StepOutput {
             queues: std::mem::take(queues),
             paths: next,
-            background: self.image().background,
+            background: self.background(),
             light_paths,
             probe,
         };

@@ -6,7 +6,7 @@ pub mod lens_system;
 use lookfrom_scene::camera::Camera as Written;
 use lookfrom_scene::scene::MediumId;
 use lookfrom_scene::settings::ImageSettings;
-use lookfrom_scene::{Result, Scene};
+use lookfrom_scene::{Location, Result, Scene};
 
 use crate::view::camera::Camera;
 
@@ -14,6 +14,8 @@ use crate::view::camera::Camera;
 /// picture. A world can have any number of views.
 #[derive(Clone, Debug)]
 pub struct View {
+    /// The location of the camera in its file.
+    pub(crate) at: Location,
     /// The camera, in the world's coordinates.
     pub(crate) camera: Camera,
     /// The medium around the camera; `None` is a vacuum.
@@ -28,7 +30,8 @@ impl View {
     /// # Errors
     /// `Invalid` for a degenerate camera, see [`Camera::new`].
     pub fn new(camera: &Written, image: ImageSettings) -> Result<Self> {
-        Ok(Self { camera: Camera::new(camera, image.width, image.height)?, medium: camera.medium, image })
+        let at = camera.at.clone();
+        Ok(Self { at, camera: Camera::new(camera, image.width, image.height)?, medium: camera.medium, image })
     }
 
     /// The view by a scene's own camera (the default one where it has none) with the scene's settings.

@@ -10,6 +10,7 @@ mod compile;
 mod guide;
 mod instance;
 mod lights;
+mod measured;
 mod medium;
 mod memory;
 mod origin;
@@ -23,6 +24,7 @@ use class::Class;
 pub(crate) use compile::Kept;
 pub(crate) use instance::Instance;
 pub use instance::PlacedInstance;
+pub(crate) use measured::MeasuredSurface;
 
 use std::sync::Arc;
 

@@ -72,6 +72,9 @@ struct ProjectionObject {
     fov: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     height: Option<f64>,
+    /// The name of the shapes whose irradiance is measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    surface: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -189,15 +192,20 @@ impl<'a> From<&'a CameraEntry> for CameraEntryObject<'a> {
 }
 
 impl From<&Projection> for ProjectionObject {
-    fn from(projection: &Projection) -> Self {
-        let (projection, fov, height) = match *projection {
+    fn from(written: &Projection) -> Self {
+        let (projection, fov, height) = match *written {
             Projection::Perspective { fov } => ("perspective", Some(fov), None),
             Projection::Orthographic { height } => ("orthographic", None, Some(height)),
             Projection::LensSystem(_) => ("lens", None, None),
             Projection::Equirectangular | Projection::EquirectangularPbrt => ("equirectangular", None, None),
             Projection::Octahedral => ("octahedral", None, None),
+            Projection::Irradiance { .. } => ("irradiance", None, None),
         };
-        Self { projection, fov, height }
+        let surface = match &written {
+            Projection::Irradiance { surface } => Some(surface.clone()),
+            _ => None,
+        };
+        Self { projection, fov, height, surface }
     }
 }
 

@@ -19,8 +19,8 @@ Convention = Literal["opencv", "opengl"]
 class Camera:
     """The camera of a session, as others need it.
 
-    projection: "perspective", "orthographic", "equirectangular" or "octahedral". A lens system is "perspective": the pinhole that
-        sees its plane of focus as large.
+    projection: "perspective", "orthographic", "equirectangular", "octahedral" or "irradiance". A lens system is
+        "perspective": the pinhole that sees its plane of focus as large.
     width, height: of the picture in pixels. The middle of the upper left pixel is at (0.5, 0.5).
     lookfrom: its position in the world, shape (3,).
     right, up, forward: its axes in the world; unit vectors, but for cameras of pbrt's scenes that scale or mirror.

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 ///
 /// A lens system is "perspective": the pinhole that sees its plane of focus as large.
 ///
-/// projection: "perspective", "orthographic", "equirectangular" or "octahedral".
+/// projection: "perspective", "orthographic", "equirectangular", "octahedral" or "irradiance".
 /// lookfrom, and the axes right, up and forward, in the world.
 /// pixel: rows of the matrix from (x, y, 1), in pixels from the top left, to the point of the image plane, at distance 1 in the
 /// coordinates right, down, forward.
@@ -33,6 +33,7 @@ pub(super) fn described<'py>(py: Python<'py>, camera: &Camera) -> PyResult<Bound
             Projection::Perspective { .. } | Projection::LensSystem(_) => "perspective",
             Projection::Orthographic { .. } => "orthographic",
             Projection::Octahedral => "octahedral",
+            Projection::Irradiance { .. } => "irradiance",
             _ => "equirectangular",
         },
     )?;

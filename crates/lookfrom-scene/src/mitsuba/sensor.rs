@@ -3,7 +3,8 @@
 use super::Reader;
 use super::plugin::Plugin;
 use crate::camera::{Camera, Lens, Projection, View, Window};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::scene::MediumId;
 use crate::settings::{Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 
 /// Maximum width and height.
@@ -15,6 +16,8 @@ const MOST_SAMPLES: i64 = 1 << 24;
 const DEEPEST: u32 = 1000;
 
 const SENSORS: &[&str] = &["orthographic", "perspective", "radiancemeter", "thinlens"];
+/// Those that are parts of a shape.
+const SENSORS_OF_SHAPES: &[&str] = &["irradiancemeter"];
 /// Films whose pictures are those of `hdrfilm`.
 const FILMS: &[&str] = &["hdrfilm", "ldrfilm", "specfilm", "tiledhdrfilm"];
 const SAMPLERS: &[&str] =
@@ -34,19 +37,50 @@ enum Axis {
 }
 
 impl Reader<'_, '_> {
-    pub(super) fn sensor(&mut self, plugin: &Plugin) -> Result<()> {
-        if !SENSORS.contains(&&*plugin.kind) {
-            return Err(plugin.unsupported(SENSORS));
+    /// A sensor, if it is the first one, of a scene or of the shapes with a name.
+    pub(super) fn first_sensor(&mut self, plugin: &Plugin, surface: Option<&str>) -> Result<()> {
+        if self.scene.camera.is_some() {
+            self.context.warn(&plugin.at, "only the first sensor is rendered");
+            return Ok(());
         }
+        match (&*plugin.kind, surface) {
+            ("irradiancemeter", Some(surface)) => self.irradiance_meter(plugin, surface),
+            ("irradiancemeter", None) => {
+                let message = "an irradiancemeter is a part of the shape whose irradiance it measures";
+                Err(Error::invalid(&plugin.at, message).hint("write it within a <shape>"))
+            }
+            (_, Some(_)) => Err(plugin.unsupported(SENSORS_OF_SHAPES)),
+            (_, None) => self.sensor(plugin),
+        }
+    }
+
+    /// A sensor that measures the irradiance on the shapes with a name.
+    fn irradiance_meter(&mut self, plugin: &Plugin, surface: &str) -> Result<()> {
+        let medium = self.film_and_sampler(plugin)?;
+        if (self.scene.image.width, self.scene.image.height) != (1, 1) {
+            let message = "each pixel of this irradiancemeter measures the whole shape: in Mitsuba each measures a part of it, with the                            same mean";
+            self.warn_once(&plugin.at, message);
+        }
+        let projection = Projection::Irradiance { surface: surface.to_owned() };
+        self.scene.camera = Some(Camera { at: plugin.at.clone(), projection, medium, ..Camera::default() });
+        Ok(())
+    }
+
+    /// The film and the sampler of a sensor; the medium around it.
+    fn film_and_sampler(&mut self, plugin: &Plugin) -> Result<Option<MediumId>> {
         plugin.ignore(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
         let film = plugin.part("film", &self.ids)?;
         self.film(film.as_deref())?;
         let sampler = plugin.part("sampler", &self.ids)?;
         self.sampler(sampler.as_deref())?;
-        let medium = match plugin.part("medium", &self.ids)? {
-            Some(medium) => Some(self.medium(&medium)?),
-            None => None,
-        };
+        plugin.part("medium", &self.ids)?.map(|medium| self.medium(&medium)).transpose()
+    }
+
+    fn sensor(&mut self, plugin: &Plugin) -> Result<()> {
+        if !SENSORS.contains(&&*plugin.kind) {
+            return Err(plugin.unsupported(SENSORS));
+        }
+        let medium = self.film_and_sampler(plugin)?;
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
         let projection = match &*plugin.kind {
             "orthographic" => Projection::Orthographic { height: 2.0 / aspect },
@@ -190,10 +224,7 @@ impl Reader<'_, '_> {
     fn within_integrator(&mut self, outer: &Plugin, inner: Option<&std::rc::Rc<Plugin>>) -> Result<()> {
         match inner {
             Some(inner) => self.within(inner, |reader| reader.integrator(Some(inner))),
-            None => Err(crate::error::Error::invalid(
-                &outer.at,
-                format!("the {} has no integrator in it", outer.title()),
-            )),
+            None => Err(Error::invalid(&outer.at, format!("the {} has no integrator in it", outer.title()))),
         }
     }
 }

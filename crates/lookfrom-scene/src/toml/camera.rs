@@ -35,6 +35,7 @@ pub(super) const KEYS: &[&str] = &[
     "stop",
     "lens_convention",
     "motion",
+    "surface",
 ];
 /// Those that only a lens system has.
 const OF_LENS: [&str; 5] = ["film", "aperture_shape", "millimetre", "stop", "lens_convention"];
@@ -108,10 +109,19 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
     if table.has("matrix") {
         return camera_by_matrix(table);
     }
-    let lookfrom = table.need("lookfrom", "[0, 1, 5]", DVec3::Z, Value::vector);
-    let lookat = table.need("lookat", "[0, 0, 0]", DVec3::ZERO, Value::vector);
-    let up = table.or("up", DVec3::Y, Value::direction);
     let projection = projection(table);
+    let (lookfrom, lookat) = match projection {
+        // What is measured does not depend on them.
+        Projection::Irradiance { .. } => {
+            let or = |key, default| table.or(key, default, Value::vector);
+            (or("lookfrom", DVec3::new(0.0, 1.0, 5.0)), or("lookat", DVec3::ZERO))
+        }
+        _ => (
+            table.need("lookfrom", "[0, 1, 5]", DVec3::Z, Value::vector),
+            table.need("lookat", "[0, 0, 0]", DVec3::ZERO, Value::vector),
+        ),
+    };
+    let up = table.or("up", DVec3::Y, Value::direction);
     let window = table.maybe("window", window);
     let distance = table.or("distance", 1.0, Value::positive);
     let aperture = table.maybe("aperture", Value::not_negative);
@@ -197,7 +207,7 @@ fn camera_by_matrix(table: &Table<'_>) -> Result<Camera> {
 }
 
 /// The words for projections, each with those of its keys that not all projections have.
-pub(super) const PROJECTIONS: [(&str, &[&str]); 5] = [
+pub(super) const PROJECTIONS: [(&str, &[&str]); 6] = [
     (
         "perspective",
         &[
@@ -218,6 +228,7 @@ pub(super) const PROJECTIONS: [(&str, &[&str]); 5] = [
     ("equirectangular", &[]),
     ("equirectangular_pbrt", &[]),
     ("octahedral", &[]),
+    ("irradiance", &["surface"]),
 ];
 
 fn projection(table: &Table<'_>) -> Projection {
@@ -229,12 +240,18 @@ fn projection(table: &Table<'_>) -> Projection {
     }) else {
         return Projection::Octahedral;
     };
-    let keys_of_some = ["fov", "height", "aperture", "focus", "focus_distance", "window", "lens"];
+    let keys_of_some = ["fov", "height", "aperture", "focus", "focus_distance", "window", "lens", "surface"];
     for key in keys_of_some.into_iter().chain(OF_LENS) {
         let Some(value) = table.find(key).filter(|_| !keys.contains(&key)) else { continue };
         let error = value.error(format!("`{key}` has no meaning in projection = {word:?}"));
-        table.assume(if word == "orthographic" { &["height"] } else { &[] });
+        table.assume(match word {
+            "orthographic" => &["height"],
+            "irradiance" => &["surface"],
+            _ => &[],
+        });
         value.note(error.hint(match (word, key) {
+            (_, "surface") => "it is for projection = \"irradiance\"",
+            ("irradiance", _) => "a measurement has no image plane: leave it out",
             ("perspective", _) => "give `fov` here, or the picture's `height` in [image]",
             (
                 "orthographic",
@@ -264,6 +281,10 @@ fn projection(table: &Table<'_>) -> Projection {
         }
         "equirectangular" => Projection::Equirectangular,
         "equirectangular_pbrt" => Projection::EquirectangularPbrt,
+        "irradiance" => {
+            let surface = |value: Value<'_>| value.text("the name of shapes").map(str::to_owned);
+            Projection::Irradiance { surface: table.need("surface", "\"floor\"", String::new(), surface) }
+        }
         _ => Projection::Octahedral,
     }
 }

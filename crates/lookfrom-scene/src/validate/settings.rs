@@ -1,5 +1,4 @@
-//! Validation of the camera's medium and of the settings of picture and integrator. The camera itself is validated when its
-//! matrices are computed.
+//! Validation of the settings of picture and integrator.
 
 use super::Part;
 use crate::error::{Error, ErrorKind, Location, Result};
@@ -13,9 +12,6 @@ const WIDEST: f32 = 16.0;
 
 pub(super) fn check(scene: &Scene) -> Result<()> {
     let nowhere = Location::default();
-    if let Some(camera) = &scene.camera {
-        Part::new(scene, &camera.at, "the camera").medium(camera.medium)?;
-    }
     check_image(&Part::new(scene, &nowhere, "the picture"), &scene.image)?;
     check_render(&Part::new(scene, &nowhere, "the integrator"), &scene.render)
 }

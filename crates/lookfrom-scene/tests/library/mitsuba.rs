@@ -882,3 +882,50 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn irradiance_is_measured_on_the_shape_that_has_the_sensor() {
+    let meter = |size: u32| {
+        format!(
+            r#"<sensor type="irradiancemeter"><sampler type="independent"><integer name="sample_count" value="32"/></sampler>
+            <film type="hdrfilm"><integer name="width" value="{size}"/><integer name="height" value="1"/></film></sensor>"#
+        )
+    };
+    let surface = |read: &Scene| match &read.camera.as_ref().expect("a camera").projection {
+        Projection::Irradiance { surface } => surface.clone(),
+        other => panic!("{other:?}"),
+    };
+    let one = meter(1);
+    let (read, warnings) = told(&format!(
+        r#"<shape type="sphere"/><shape type="cube">{one}</shape><shape type="sphere" id="ball">{}</shape>"#,
+        meter(3)
+    ));
+    assert_eq!(surface(&read), "measured surface");
+    assert_eq!(read.shapes[1].name.as_deref(), Some("measured surface"));
+    assert_eq!((read.image.width, read.image.height, read.render.samples), (1, 1, 32));
+    assert!(
+        warnings.len() == 1 && warnings[0].ends_with("only the first sensor is rendered"),
+        "{warnings:?}"
+    );
+
+    let (read, warnings) = told(&format!(r#"<shape type="sphere" id="ball">{}</shape>"#, meter(3)));
+    assert_eq!((surface(&read), read.image.width), ("ball".to_owned(), 3));
+    assert!(warnings.len() == 1 && warnings[0].contains("measures the whole shape"), "{warnings:?}");
+
+    // Sensors at the top level come first.
+    let (read, warnings) =
+        told(&format!(r#"<shape type="sphere">{one}</shape><sensor type="perspective"/>"#));
+    assert!(matches!(read.camera.expect("a camera").projection, Projection::Perspective { .. }));
+    assert!(
+        warnings.len() == 1 && warnings[0].ends_with("only the first sensor is rendered"),
+        "{warnings:?}"
+    );
+
+    assert!(error(&one).message.contains("a part of the shape"));
+    let other = error(r#"<shape type="sphere"><sensor type="perspective"/></shape>"#);
+    assert_eq!(other.kind, ErrorKind::Unsupported);
+    let curves = error(&format!(
+        r#"<shape type="instance"><ref id="group"/>{one}</shape><shape type="shapegroup" id="group"><shape type="sphere"/></shape>"#
+    ));
+    assert!(curves.message.contains("no shape"), "{curves}");
+}

@@ -19,7 +19,9 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
         MatrixStep { name, does, matrix: rows(matrix), product: rows(&product), point: point.to_array() }
     };
     let mapping = mapping(camera, &ray);
-    let mut steps = if mapping.is_some() {
+    let mut steps = if camera.projection.is_measurement() {
+        Vec::new()
+    } else if mapping.is_some() {
         let direction = ray.direction.extend(0.0);
         vec![step(
             "R3",
@@ -63,6 +65,7 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
             Projection::EquirectangularPbrt => "equirectangular, as pbrt's",
             Projection::Octahedral => "octahedral",
             Projection::LensSystem(_) => "lens system",
+            Projection::Irradiance { .. } => "irradiance",
         },
         p_k: ray.p_k.to_array(),
         steps,
@@ -77,7 +80,7 @@ pub(super) fn camera_steps(renderer: &Renderer, id: SampleId) -> CameraSteps {
     }
 }
 
-/// The way from the pixel to a direction where the camera sees all around: no matrix of an image plane.
+/// The way from the pixel to a direction where there is no matrix of an image plane: the camera sees all around, or measures.
 fn mapping(camera: &Camera, ray: &CameraRay) -> Option<SphereMapping> {
     let [u, v] = [0, 1].map(|k| ray.p_k[k] / f64::from(camera.size[k]));
     let (does, formula, numbers) = match camera.projection {
@@ -93,6 +96,12 @@ fn mapping(camera: &Camera, ray: &CameraRay) -> Option<SphereMapping> {
             LONGITUDE_LATITUDE,
             "θ = π (1 − v), φ = 2π u; (−sin θ cos φ, cos θ, sin θ sin φ)",
             vec![("θ", PI * (1.0 - v)), ("φ", TAU * u)],
+        ),
+        Projection::Irradiance { .. } => (
+            "without effect: rays start anywhere on the surface that is measured, in proportion to its area A",
+            "E = ∫∫ L cos θ dω da / A, with directions of the density cos θ / π: light counts π times, and as much more as the place is \
+             sampled too rarely",
+            vec![("weight", f64::from(ray.weight))],
         ),
         Projection::Octahedral => {
             let [x, y] = [2.0 * u - 1.0, 1.0 - 2.0 * v];

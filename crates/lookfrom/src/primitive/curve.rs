@@ -104,7 +104,7 @@ impl Curves {
     }
 
     /// The point at u along and v across a strand that a ray hit near a point.
-    pub(super) fn point(
+    pub(crate) fn point(
         &self,
         index: usize,
         [u, v]: [f32; 2],

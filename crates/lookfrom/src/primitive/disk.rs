@@ -59,7 +59,7 @@ impl Disk {
 
 impl Disks {
     /// The point of a disk nearest to one that is on it up to errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
+    pub(crate) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let disk = &self.disks[index];
         let [x, y] = disk.coordinates(near);
         let on_disk = Vec2::new(x as f32, y as f32);

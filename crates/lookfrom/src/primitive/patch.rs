@@ -18,6 +18,9 @@ const SLACK: f64 = 1e-12;
 /// Texture coordinates that change less than this along a patch's sides are taken to be constant there.
 const LEAST_CHANGE: f64 = 1e-8;
 
+/// Number of cells along u and v in the numerical integration of a patch's area.
+const CELLS: u32 = 16;
+
 /// Bilinear patches of one shape: `(1−u)(1−v) p0 + u(1−v) p1 + (1−u)v p2 + uv p3`.
 #[derive(Clone, Debug)]
 pub struct Patches {
@@ -72,6 +75,15 @@ impl Patches {
     pub fn area_vector(&self, index: usize, u: f64, v: f64) -> DVec3 {
         let [du, dv] = Blend::new(self.corners(index)).derivatives(u, v);
         du.cross(dv)
+    }
+
+    /// The area of a patch.
+    pub fn area(&self, index: usize) -> f64 {
+        let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
+        let sum: f64 = (0..CELLS * CELLS)
+            .map(|k| self.area_vector(index, cell(k % CELLS), cell(k / CELLS)).length())
+            .sum();
+        sum / f64::from(CELLS * CELLS)
     }
 
     /// The outward unit normal at a point.

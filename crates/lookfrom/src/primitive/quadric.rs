@@ -26,6 +26,9 @@ use crate::core::warp;
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
 
+/// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
+const CELLS: u32 = 64;
+
 /// The shape of a quadric in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -175,6 +178,17 @@ impl Quadric {
                 0.5 * self.phi_max * (radius - inner_radius) * (radius + inner_radius)
             }
         }
+    }
+
+    /// Area in render space.
+    pub fn area(&self) -> f64 {
+        // The mean of the factor by which the map changes area, over points uniform in object space.
+        let mean = || {
+            let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
+            let place = |k: u32| self.sample_in_object([cell(k % CELLS), cell(k / CELLS)]);
+            (0..CELLS * CELLS).map(|k| self.area_scale(place(k))).sum::<f64>() / f64::from(CELLS * CELLS)
+        };
+        self.object_area() * self.even_area_scale().unwrap_or_else(mean)
     }
 
     /// A point of the surface, in object space, uniform over the area there; `u` in [0, 1)².

@@ -40,7 +40,7 @@ impl SphereBinding {
 
 impl Spheres {
     /// The point of a sphere nearest to one that is on it up to errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
+    pub(crate) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
         let sphere = self.spheres[index];
         let SphereBinding { binding, object_from_sphere, flip } =
             self.bindings[self.binding_of[index] as usize];

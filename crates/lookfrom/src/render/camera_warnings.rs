@@ -48,7 +48,7 @@ impl Subject {
 /// Warns where the picture would be the background alone, or the inside of something.
 pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<Warning>) {
     let &Subject { bounds, ref at, is_model } = subject;
-    if bounds.is_empty() {
+    if bounds.is_empty() || renderer.surface.is_some() {
         return;
     }
     let world = renderer.world();
@@ -90,7 +90,11 @@ pub(super) fn sees_only_backs(renderer: &Renderer) -> bool {
         let passes_nothing = |_: &SurfaceInteraction| false;
         first_hits(renderer, FINE, passes_nothing).iter().flatten().any(|surface| surface.single_sided)
     };
-    renderer.world().has_single_sides() && sees_nothing(COARSE) && sees_nothing(FINE) && sees_backs()
+    renderer.surface.is_none()
+        && renderer.world().has_single_sides()
+        && sees_nothing(COARSE)
+        && sees_nothing(FINE)
+        && sees_backs()
 }
 
 /// First hits of rays through a grid over the picture, behind surfaces that camera rays pass.

@@ -7,7 +7,7 @@ use crate::core::warp;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{Material, MaterialKind};
-use crate::world::World;
+use crate::world::{MeasuredSurface, World};
 
 /// Number of rays, of which more than half have to agree: models may have holes, and rays may graze edges.
 const RAYS: u32 = 7;
@@ -38,6 +38,20 @@ pub(super) fn interior_at(world: &World, point: DVec3, space: InteriorStack) -> 
         .collect();
     let votes = |stack: &InteriorStack| stacks.iter().filter(|other| *other == stack).count();
     stacks.iter().copied().find(|stack| 2 * votes(stack) > stacks.len()).unwrap_or(space)
+}
+
+/// The interior stack of rays that leave the outside of a surface that is measured, where `space` is outside of all bodies: that at one of
+/// its points.
+pub(super) fn interior_around(
+    world: &World,
+    surface: &MeasuredSurface,
+    space: InteriorStack,
+) -> InteriorStack {
+    let point = surface.sample(world, [0.5; 2]);
+    world.outside_of(&point.surface.binding).unwrap_or_else(|| {
+        let (origin, _) = point.leave([0.5; 2]);
+        interior_at(world, Vec3::from_array(origin).as_dvec3(), space)
+    })
 }
 
 /// Whether a surface is that of a body that light enters, and says nothing else about the media on its sides.

@@ -51,8 +51,11 @@ impl Renderer {
         parallel::collect(height as usize, |y| row(y).collect::<Vec<_>>()).concat()
     }
 
-    /// The label of a pixel when the shutter opens, by column and row from the top left.
+    /// The label of a pixel when the shutter opens, by column and row from the top left; nothing is seen in a measurement.
     pub fn label(&self, [x, y]: [u32; 2]) -> Label {
+        if self.surface.is_some() {
+            return Label::NOTHING;
+        }
         let middle = [f64::from(x) + 0.5, f64::from(self.view.image.height - 1 - y) + 0.5];
         let mut path: Path = self.root(self.kernel_ray(&self.view.camera.ray(middle, [0.5; 2])));
         for _ in 0..MOST_PASSED {

@@ -1,6 +1,8 @@
 //! The start of a batch: random numbers of the camera, points of the image, and camera rays, eight side by side where the
 //! camera has an image plane.
 
+use std::f32::consts::PI;
+
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom_bvh::Ray;
 use lookfrom_simd::{Float, Kernel, Real, Simd, dispatch, f32x8, f64x8, level, prelude::*, u32x8, u64x8};
@@ -14,12 +16,21 @@ use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
 use crate::view::camera::{Camera, CameraRay, StartingRay};
 use crate::view::lens_system::Crossing;
-use crate::world::World;
+use crate::world::{MeasuredSurface, World};
 
 /// Dimensions of a sample's random numbers that the camera uses; rays use hashes of their address and dimension.
 const LENS_DIMENSION: u32 = 1;
 const WAVELENGTH_DIMENSION: u32 = 2;
 const TIME_DIMENSION: u32 = 3;
+const SURFACE_DIMENSION: u32 = 4;
+
+/// A ray that starts on a surface that is measured.
+struct MeasuringRay {
+    origin: [f32; 3],
+    direction: Vec3,
+    /// The factor of its light: π in the mean, since directions have the density cos θ / π.
+    weight: f32,
+}
 
 /// The camera rays of a batch and what they are made of, by slot: memory that is reused.
 #[derive(Debug, Default)]
@@ -34,7 +45,7 @@ pub(super) struct Start {
     points: Vec<[f64; 2]>,
     /// The rays of the kernel.
     pub(super) rays: Vec<Ray>,
-    /// The factors of light: the filter's weights, times those of rays through a lens system.
+    /// The factors of light: the filter's weights, times those of rays through a lens system or from a surface that is measured.
     pub(super) weights: Vec<f32>,
     /// The filter's weights alone; empty where they are all.
     filter_weights: Vec<f32>,
@@ -89,7 +100,19 @@ impl Renderer {
     pub fn camera_ray(&self, id: SampleId) -> (CameraRay, f32) {
         let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
         let (point, weight) = self.image_point(id.pixel.map(f64::from), two(sampler::PIXEL));
-        (self.view.camera.ray(point, two(LENS_DIMENSION)), weight)
+        let ray = self.view.camera.ray(point, two(LENS_DIMENSION));
+        let Some(surface) = &self.surface else { return (ray, weight) };
+        let MeasuringRay { origin, direction, weight: of_surface } = self.measuring_ray(surface, id);
+        let a_from_eye = Vec3::from_array(origin).as_dvec3() - self.ray_start;
+        (CameraRay { a_from_eye, direction: direction.as_dvec3(), weight: of_surface, ..ray }, weight)
+    }
+
+    /// The ray of a sample on the surface that is measured.
+    fn measuring_ray(&self, surface: &MeasuredSurface, id: SampleId) -> MeasuringRay {
+        let two = |dimension| self.sampler.two(id.pixel, id.sample, dimension);
+        let point = surface.sample(&self.world, two(SURFACE_DIMENSION));
+        let (origin, direction) = point.leave(two(LENS_DIMENSION));
+        MeasuringRay { origin, direction, weight: PI * point.weight }
     }
 
     /// The crossings of the lens system by the camera ray of a sample, if the camera has one.
@@ -143,6 +166,15 @@ impl Renderer {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
         } else {
             dispatch(level(), ImagePoints { renderer: self, ids, points, weights });
+        }
+        if let Some(surface) = &self.surface {
+            filter_weights.clone_from(weights);
+            for (id, weight) in ids.iter().zip(weights) {
+                let MeasuringRay { origin, direction, weight: of_surface } = self.measuring_ray(surface, *id);
+                rays.push(Ray::new(origin, direction.to_array()));
+                *weight *= of_surface;
+            }
+        } else if !camera.is_flat() {
             rays.extend(points.iter().map(|point| self.kernel_ray(&camera.ray(*point, [0.5; 2]))));
         }
         if let Some(motion) = &camera.motion {

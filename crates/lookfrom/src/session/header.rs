@@ -70,6 +70,10 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             texts.push(("camera.lens", system.name.clone()));
             texts.push(("camera.focus_distance", system.focus_distance.to_string()));
         }
+        Projection::Irradiance { surface } => {
+            texts.push(("camera.projection", "irradiance".to_owned()));
+            texts.push(("camera.surface", surface.clone()));
+        }
     }
     if let Some(lens) = camera.lens {
         texts.push(("camera.lens_radius", lens.radius.to_string()));

@@ -117,7 +117,10 @@ impl Camera {
             }
             Projection::Orthographic { height } => positive(at, "height", height)?,
             // There is no image plane as in the notes here; it is taken to be 2 × 2.
-            Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => 2.0,
+            Projection::Equirectangular
+            | Projection::EquirectangularPbrt
+            | Projection::Octahedral
+            | Projection::Irradiance { .. } => 2.0,
             // That of a pinhole which sees the plane of focus as large.
             Projection::LensSystem(_) => lens_system.as_ref().map_or(2.0, |system| {
                 let film = 2.0 * system.film_radius() * ny / (nx * nx + ny * ny).sqrt();
@@ -171,7 +174,8 @@ impl Camera {
             lens_system,
             distance: d,
             size: [width, height],
-            motion: written.motion.clone(),
+            // The surface that is measured does not move with it.
+            motion: written.motion.clone().filter(|_| !written.projection.is_measurement()),
         })
     }
 
@@ -201,7 +205,10 @@ impl Camera {
             Projection::Perspective { .. } | Projection::Orthographic { .. } | Projection::LensSystem(_) => {
                 true
             }
-            Projection::Equirectangular | Projection::EquirectangularPbrt | Projection::Octahedral => false,
+            Projection::Equirectangular
+            | Projection::EquirectangularPbrt
+            | Projection::Octahedral
+            | Projection::Irradiance { .. } => false,
         }
     }
 
@@ -264,7 +271,8 @@ impl Camera {
         }
     }
 
-    /// The ray through the point `(x_k, y_k)` of the image, `y_k` up; `lens` in `[0, 1)²` chooses a point of the lens.
+    /// The ray through the point `(x_k, y_k)` of the image, `y_k` up; `lens` in `[0, 1)²` chooses a point of the lens. Of a
+    /// [`Projection::Irradiance`], whose rays start on a surface of the world, the view axis.
     #[inline]
     pub fn ray(&self, [x_k, y_k]: [f64; 2], lens: [f32; 2]) -> CameraRay {
         let p_k = DVec4::new(x_k, y_k, 0.0, 1.0);
@@ -289,6 +297,7 @@ impl Camera {
                 let direction = warp::octahedral_direction(square.map(|u| u as f32)).as_dvec3();
                 (DVec3::ZERO, DVec3::new(-direction.x, direction.z, direction.y), 1.0)
             }
+            Projection::Irradiance { .. } => (DVec3::ZERO, DVec3::Z, 1.0),
         };
         CameraRay {
             p_k,

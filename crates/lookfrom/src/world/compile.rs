@@ -220,6 +220,12 @@ impl World {
                 "\"random_walk\" finds no light without a size, since no path meets it: use \"path\"";
             warnings.push(Warning::new(&light.at, message));
         }
+        if camera.projection.is_measurement()
+            && let Some(light) = scene.lights.iter().find(|light| !light.kind.has_size())
+        {
+            let message = "a light without a size adds nothing to the irradiance that is measured, but by reflection, since no ray meets it";
+            warnings.push(Warning::new(&light.at, message));
+        }
         if scene.render.media
             && matches!(scene.render.integrator, Kind::Whitted | Kind::Raycast)
             && let Some(medium) = scene.media.iter().find(|medium| medium.scatters() || medium.emits())

@@ -25,6 +25,7 @@ mod inspect_lights;
 mod inspect_microfacets;
 mod inspect_numbers;
 mod inspect_segments;
+mod irradiance;
 mod labels;
 mod layers;
 mod lens_systems;

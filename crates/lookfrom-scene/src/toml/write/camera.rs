@@ -5,6 +5,7 @@ use std::fmt::Write;
 use glam::DVec3;
 
 use super::Writer;
+use super::names::spoken;
 use super::picture::For;
 use super::placing::{put_matrix, put_motion};
 use super::text::Fields;
@@ -20,6 +21,7 @@ impl Writer<'_> {
             camera;
         let mut fields = Fields::default();
         match *view {
+            _ if matches!(projection, Projection::Irradiance { .. }) && *view == Camera::default().view => {}
             View::Look { lookfrom, lookat, up } => {
                 fields.put("lookfrom", lookfrom);
                 fields.put("lookat", lookat);
@@ -63,6 +65,10 @@ impl Writer<'_> {
             Projection::EquirectangularPbrt => fields.put("projection", "equirectangular_pbrt"),
             Projection::Octahedral => fields.put("projection", "octahedral"),
             Projection::LensSystem(system) => self.lens_system(fields, system)?,
+            Projection::Irradiance { surface } => {
+                fields.put("projection", "irradiance");
+                fields.put("surface", spoken("shape", surface));
+            }
         }
         Ok(())
     }

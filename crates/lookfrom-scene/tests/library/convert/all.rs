@@ -783,6 +783,7 @@ fn cameras() -> Vec<(String, Scene)> {
         Projection::Equirectangular,
         Projection::EquirectangularPbrt,
         Projection::Octahedral,
+        Projection::Irradiance { surface: "measured".to_owned() },
     ];
     variants.extend(shapes.map(|shape| system(shape, LensConvention::Pbrt)));
     let index = |projection: &Projection| match projection {
@@ -792,19 +793,21 @@ fn cameras() -> Vec<(String, Scene)> {
         Projection::EquirectangularPbrt => 3,
         Projection::Octahedral => 4,
         Projection::LensSystem(system) => match system.shape {
-            ApertureShape::Circle => 5,
-            ApertureShape::Gaussian => 6,
-            ApertureShape::Square => 7,
-            ApertureShape::Pentagon => 8,
-            ApertureShape::Star => 9,
-            ApertureShape::Image(_) => 10,
+            ApertureShape::Circle => 6,
+            ApertureShape::Gaussian => 7,
+            ApertureShape::Square => 8,
+            ApertureShape::Pentagon => 9,
+            ApertureShape::Star => 10,
+            ApertureShape::Image(_) => 11,
         },
+        Projection::Irradiance { .. } => 5,
     };
     let target = Target { lookat: DVec3::new(0.1, 0.2, 0.3), up: DVec3::Z };
     let views = [
         (View::Look { lookfrom: DVec3::new(0.1, 2.0, 3.0), lookat: DVec3::ZERO, up: DVec3::Z }, None),
         (View::Matrix(shear()), Some(target)),
         (View::Matrix(shear()), None),
+        (Camera::default().view, None),
     ];
     let mut scenes = Vec::new();
     for (view, target) in views {
@@ -812,6 +815,7 @@ fn cameras() -> Vec<(String, Scene)> {
             let is_flat =
                 matches!(projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
             let lens = Lens { radius: 0.1, focus_distance: 1.0 / 3.0 };
+            scene.shapes[0].name = Some("measured".to_owned());
             scene.camera = Some(Camera {
                 at: here(),
                 view,

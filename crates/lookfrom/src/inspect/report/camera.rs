@@ -5,7 +5,7 @@ use serde::Serialize;
 /// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraSteps {
-    /// How the camera projects: `perspective`, `orthographic`, all around, or `lens system`.
+    /// How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or `irradiance`.
     pub projection: &'static str,
     /// The camera's position.
     pub lookfrom: [f64; 3],

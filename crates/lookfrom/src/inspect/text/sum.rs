@@ -11,7 +11,11 @@ impl Inspection {
         for addition in &self.additions {
             writeln!(f, "  {}   ray {} {}", amount(&addition.value), addition.address, addition.term)?;
         }
-        let of = if self.camera.lens_system.is_some() { "and the lens's " } else { "" };
+        let of = match self.camera.projection {
+            "lens system" => "and the lens's ",
+            "irradiance" => "and the surface's ",
+            _ => "",
+        };
         writeln!(f, "  = {}   times the filter's {of}weight {}", amount(&self.radiance), self.weight)?;
         let verdict = if self.adds_up { "the same, bit for bit" } else { "NOT the same: please report this" };
         self.write_sensor(f)?;

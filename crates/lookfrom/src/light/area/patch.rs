@@ -13,9 +13,6 @@ use super::{AreaDensity, LightPoint, NormalCone, seen};
 use crate::core::distribution::Discrete;
 use crate::primitive::Patches;
 
-/// Number of cells along u and v in the numerical integration of a patch's area.
-const CELLS: u32 = 16;
-
 /// Bilinear patches that emit light.
 #[derive(Clone, Debug)]
 pub struct PatchLight {
@@ -28,7 +25,7 @@ pub struct PatchLight {
 impl PatchLight {
     /// None for patches without area.
     pub fn new(patches: Arc<Patches>) -> Option<Self> {
-        let areas: Vec<f64> = (0..patches.patches.len()).map(|index| area(&patches, index)).collect();
+        let areas: Vec<f64> = (0..patches.patches.len()).map(|index| patches.area(index)).collect();
         let area: f64 = areas.iter().filter(|area| area.is_finite()).sum();
         let weights: Vec<f32> = areas.iter().map(|own| (own / area) as f32).collect();
         (area > 0.0 && area.is_finite()).then(|| Self { patches, choice: Discrete::new(&weights), area })
@@ -99,15 +96,6 @@ impl PatchLight {
         [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
             .map(|(u, v)| self.patches.area_vector(index, u, v).length())
     }
-}
-
-/// The area of a patch.
-fn area(patches: &Patches, index: usize) -> f64 {
-    let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
-    let sum: f64 = (0..CELLS * CELLS)
-        .map(|k| patches.area_vector(index, cell(k % CELLS), cell(k / CELLS)).length())
-        .sum();
-    sum / f64::from(CELLS * CELLS)
 }
 
 /// A number in [0, 1] whose density is linear, in proportion to `a` at 0 and `b` at 1.

@@ -11,9 +11,6 @@ pub(crate) use sphere::{SphereLights, gather_spheres};
 use super::{DiskLights, LightPoint, NormalCone, seen};
 use crate::primitive::{Disk, MaterialBinding, Quadric, QuadricKind};
 
-/// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
-const CELLS: u32 = 64;
-
 /// A quadric that emits light.
 #[derive(Clone, Debug)]
 pub struct QuadricLight {
@@ -32,13 +29,7 @@ enum Whole {
 impl QuadricLight {
     /// None for a quadric without area. `two_sided` where both sides emit light.
     pub fn new(quadric: Quadric, two_sided: bool) -> Option<Self> {
-        // The mean of the factor by which the map changes area, over points uniform in object space.
-        let mean = || {
-            let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
-            let place = |k: u32| quadric.sample_in_object([cell(k % CELLS), cell(k / CELLS)]);
-            (0..CELLS * CELLS).map(|k| quadric.area_scale(place(k))).sum::<f64>() / f64::from(CELLS * CELLS)
-        };
-        let area = quadric.object_area() * quadric.even_area_scale().unwrap_or_else(mean);
+        let area = quadric.area();
         let whole = match quadric.kind {
             QuadricKind::Sphere { radius, .. } if quadric.is_whole_sphere() => {
                 Some(Whole::Sphere(SphereLights {
