@@ -105,9 +105,6 @@ struct Reader<'s, 'f> {
     warned: BTreeSet<String>,
 }
 
-/// The name of shapes without an `id` whose irradiance is measured.
-const MEASURED: &str = "measured surface";
-
 /// Maximum depth of plugins that are parts of others.
 const DEEPEST: usize = 64;
 
@@ -120,17 +117,22 @@ impl Reader<'_, '_> {
     fn root(&mut self, root: &Plugin) -> Result<()> {
         let integrator = root.part("integrator", &self.ids)?;
         self.integrator(integrator.as_deref())?;
-        let sensors = root.parts("sensor", &self.ids)?;
-        for (_, sensor) in &sensors {
-            self.first_sensor(sensor, None)?;
-        }
         for (_, emitter) in root.parts("emitter", &self.ids)? {
             self.emitter(&emitter)?;
         }
+        let mut of_shapes = Vec::new();
         for (_, shape) in root.parts("shape", &self.ids)? {
             let first = self.scene.shapes.len();
             self.shape(&shape)?;
-            self.sensors_of_shape(&shape, first)?;
+            let own = first..self.scene.shapes.len();
+            let sensors = shape.parts("sensor", &self.ids)?;
+            of_shapes.extend(sensors.into_iter().map(|(_, sensor)| (sensor, own.clone())));
+        }
+        for (_, sensor) in root.parts("sensor", &self.ids)? {
+            self.first_sensor(&sensor, None)?;
+        }
+        for (sensor, shapes) in of_shapes {
+            self.first_sensor(&sensor, Some(shapes))?;
         }
         validate::check_surface(&self.scene)?;
         // They are for references.
@@ -142,16 +144,6 @@ impl Reader<'_, '_> {
         let textures = chain::check(&self.scene.textures, 0..self.scene.textures.len());
         let materials = chain::check(&self.scene.materials, 0..self.scene.materials.len());
         textures.into_iter().chain(materials).next().map_or(Ok(()), Err)
-    }
-
-    /// The sensors of a shape that has been read, the first of the scene's shapes with this number.
-    fn sensors_of_shape(&mut self, shape: &Plugin, first: usize) -> Result<()> {
-        for (_, sensor) in shape.parts("sensor", &self.ids)? {
-            let surface = shape.id.clone().unwrap_or_else(|| MEASURED.to_owned());
-            self.first_sensor(&sensor, Some(&surface))?;
-            self.scene.shapes[first..].iter_mut().for_each(|part| part.name = Some(surface.clone()));
-        }
-        Ok(())
     }
 
     /// Reads a part of a plugin.

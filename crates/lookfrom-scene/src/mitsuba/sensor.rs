@@ -1,9 +1,13 @@
 //! The sensor with its film and sampler, and the integrator.
 
+use std::ops::Range;
+
+use glam::DMat4;
+
 use super::Reader;
 use super::plugin::Plugin;
 use crate::camera::{Camera, Lens, Projection, View, Window};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MediumId;
 use crate::settings::{Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 
@@ -15,9 +19,11 @@ const MOST_SAMPLES: i64 = 1 << 24;
 /// Maximum number of reflections: so many that Russian roulette alone ends paths, except between perfect mirrors.
 const DEEPEST: u32 = 1000;
 
-const SENSORS: &[&str] = &["orthographic", "perspective", "radiancemeter", "thinlens"];
+const SENSORS: &[&str] = &["distant", "orthographic", "perspective", "radiancemeter", "thinlens"];
 /// Those that are parts of a shape.
 const SENSORS_OF_SHAPES: &[&str] = &["irradiancemeter"];
+/// The name of shapes without an `id` whose irradiance is measured.
+const MEASURED: &str = "measured surface";
 /// Films whose pictures are those of `hdrfilm`.
 const FILMS: &[&str] = &["hdrfilm", "ldrfilm", "specfilm", "tiledhdrfilm"];
 const SAMPLERS: &[&str] =
@@ -25,6 +31,9 @@ const SAMPLERS: &[&str] =
 /// Integrators of Mitsuba 0.6 whose pictures have the same mean.
 const OTHERS: &[&str] = &["bdpt", "erpt", "mlt", "photonmapper", "ppm", "pssmlt", "sppm", "vpl"];
 const INTEGRATORS: &[&str] = &["aov", "direct", "moment", "path", "ptracer", "volpath", "volpathmis"];
+
+/// A projection that is one ray.
+const ONE_RAY: Projection = Projection::Perspective { fov: 1e-6 };
 
 /// The axis along which a field of view is measured.
 #[derive(Clone, Copy)]
@@ -37,32 +46,74 @@ enum Axis {
 }
 
 impl Reader<'_, '_> {
-    /// A sensor, if it is the first one, of a scene or of the shapes with a name.
-    pub(super) fn first_sensor(&mut self, plugin: &Plugin, surface: Option<&str>) -> Result<()> {
+    /// A sensor, if it is the first one: of the scene, or of those of the scene's shapes that a shape has become.
+    pub(super) fn first_sensor(&mut self, plugin: &Plugin, shapes: Option<Range<usize>>) -> Result<()> {
         if self.scene.camera.is_some() {
             self.context.warn(&plugin.at, "only the first sensor is rendered");
             return Ok(());
         }
-        match (&*plugin.kind, surface) {
-            ("irradiancemeter", Some(surface)) => self.irradiance_meter(plugin, surface),
+        match (&*plugin.kind, shapes) {
+            ("irradiancemeter", Some(shapes)) => self.irradiance_meter(plugin, shapes),
             ("irradiancemeter", None) => {
                 let message = "an irradiancemeter is a part of the shape whose irradiance it measures";
                 Err(Error::invalid(&plugin.at, message).hint("write it within a <shape>"))
             }
             (_, Some(_)) => Err(plugin.unsupported(SENSORS_OF_SHAPES)),
+            ("distant", None) => self.distant(plugin),
             (_, None) => self.sensor(plugin),
         }
     }
 
-    /// A sensor that measures the irradiance on the shapes with a name.
-    fn irradiance_meter(&mut self, plugin: &Plugin, surface: &str) -> Result<()> {
+    /// A sensor that measures the irradiance on shapes.
+    fn irradiance_meter(&mut self, plugin: &Plugin, shapes: Range<usize>) -> Result<()> {
+        let shapes = &mut self.scene.shapes[shapes];
+        let Some(first) = shapes.first() else {
+            let message = "the irradiance of an instance or a group cannot be measured";
+            return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message)
+                .hint("measure a shape that is written outside of groups"));
+        };
+        let surface = first.name.clone().unwrap_or_else(|| MEASURED.to_owned());
+        shapes.iter_mut().for_each(|shape| shape.name = Some(surface.clone()));
         let medium = self.film_and_sampler(plugin)?;
         if (self.scene.image.width, self.scene.image.height) != (1, 1) {
             let message = "each pixel of this irradiancemeter measures the whole shape: in Mitsuba each measures a part of it, with the                            same mean";
             self.warn_once(&plugin.at, message);
         }
-        let projection = Projection::Irradiance { surface: surface.to_owned() };
+        let projection = Projection::Irradiance { surface };
         self.scene.camera = Some(Camera { at: plugin.at.clone(), projection, medium, ..Camera::default() });
+        Ok(())
+    }
+
+    /// A sensor that sees a point from far away, in a direction: with one ray, from as far outside of the scene as in Mitsuba.
+    fn distant(&mut self, plugin: &Plugin) -> Result<()> {
+        let medium = self.film_and_sampler(plugin)?;
+        let along = match plugin.vector("direction")? {
+            Some(direction) => direction,
+            None => plugin.to_world()?.z_axis.truncate(),
+        };
+        let along =
+            along.try_normalize().ok_or_else(|| plugin.refuse("direction", "a vector other than 0"))?;
+        let of_shape = plugin.peek("shape", &self.ids)?;
+        let target = if of_shape.is_some() { None } else { plugin.vector("target")? };
+        let Some(target) = target else {
+            let message = "a distant sensor that sees a shape or the whole scene is not supported";
+            let error = Error::new(ErrorKind::Unsupported, &plugin.at, message);
+            return Err(error.hint(
+                "give it a `target`, the <point> that it sees; an orthographic sensor sees the whole scene",
+            ));
+        };
+        let radius = self.scene.bounds().radius();
+        let way = if radius > 0.0 { 2.0 * radius } else { 1.0 };
+        let from = target - way * along;
+        let (x, y) = along.any_orthonormal_pair();
+        let axes = [x, y, along].map(|axis| axis.extend(0.0));
+        self.scene.camera = Some(Camera {
+            at: plugin.at.clone(),
+            view: View::Matrix(DMat4::from_cols(axes[0], axes[1], axes[2], from.extend(1.0))),
+            projection: ONE_RAY,
+            medium,
+            ..Camera::default()
+        });
         Ok(())
     }
 
@@ -84,8 +135,7 @@ impl Reader<'_, '_> {
         let aspect = f64::from(self.scene.image.width) / f64::from(self.scene.image.height);
         let projection = match &*plugin.kind {
             "orthographic" => Projection::Orthographic { height: 2.0 / aspect },
-            // One ray.
-            "radiancemeter" => Projection::Perspective { fov: 1e-6 },
+            "radiancemeter" => ONE_RAY,
             _ => Projection::Perspective { fov: field_of_view(plugin, aspect)? },
         };
         let lens = match &*plugin.kind {

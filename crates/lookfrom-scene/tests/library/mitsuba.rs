@@ -924,8 +924,42 @@ fn irradiance_is_measured_on_the_shape_that_has_the_sensor() {
     assert!(error(&one).message.contains("a part of the shape"));
     let other = error(r#"<shape type="sphere"><sensor type="perspective"/></shape>"#);
     assert_eq!(other.kind, ErrorKind::Unsupported);
-    let curves = error(&format!(
+    let instance = error(&format!(
         r#"<shape type="instance"><ref id="group"/>{one}</shape><shape type="shapegroup" id="group"><shape type="sphere"/></shape>"#
     ));
-    assert!(curves.message.contains("no shape"), "{curves}");
+    assert!(instance.message.contains("an instance"), "{instance}");
+
+    // Only that of the first of two shapes without a name.
+    let (read, _) = told(&format!(r#"<shape type="sphere">{one}</shape><shape type="sphere">{one}</shape>"#));
+    assert_eq!(read.shapes_named("measured surface").count(), 1);
+}
+
+#[test]
+fn distant_sensors_see_a_point_from_outside_of_the_scene() {
+    let sensor = |direction: &str, target: &str| {
+        format!(r#"<shape type="sphere"/><sensor type="distant">{direction}{target}</sensor>"#)
+    };
+    let point = r#"<point name="target" x="0.2" y="0" z="0.1"/>"#;
+    let seen = |direction: &str| {
+        let camera = scene(&sensor(direction, point)).camera.expect("a camera");
+        assert!(matches!(camera.projection, Projection::Perspective { fov } if fov < 1e-3));
+        let View::Matrix(matrix) = camera.view else { panic!("{:?}", camera.view) };
+        (matrix.w_axis.truncate(), matrix.z_axis.truncate())
+    };
+    let target = DVec3::new(0.2, 0.0, 0.1);
+    let (from, along) = seen(r#"<vector name="direction" x="0.5" y="-1" z="0"/>"#);
+    assert!((along - DVec3::new(0.5, -1.0, 0.0).normalize()).length() < 1e-12, "{along}");
+    // Twice the radius of the scene's bounds.
+    assert!((from - target + 2.0 * 3.0_f64.sqrt() * along).length() < 1e-12, "{from}");
+    let turned = seen(
+        r#"<transform name="to_world"><lookat origin="0,0,0" target="0.5,-1,0" up="0,0,1"/></transform>"#,
+    );
+    assert!((turned.0 - from).length() < 1e-12 && (turned.1 - along).length() < 1e-12, "{turned:?}");
+
+    let direction = r#"<vector name="direction" x="0" y="0" z="0"/>"#;
+    assert!(error(&sensor(direction, point)).message.contains("other than 0"));
+    for target in ["", r#"<shape type="rectangle" name="target"/>"#] {
+        let error = error(&sensor("", target));
+        assert_eq!(error.kind, ErrorKind::Unsupported, "{error}");
+    }
 }
