@@ -218,4 +218,18 @@ fn a_drawing_has_views_and_labels_that_keep_apart() {
     stage.done(of_all_around);
     stage.run(&format!("{of_all_around} --svg-view camera")).fails(2, &["has no image plane"]);
     stage.run("inspect scene.toml 5 5 --svg-view top").fails(2, &["--svg <FILE>"]);
+    // Nor has a measurement, whose ray starts on the floor.
+    stage.write(
+        "measured.toml",
+        "camera = { projection = \"irradiance\", surface = \"floor\" }\nimage = { width = 2, height = 2 }\n\
+         quad = [{ name = \"floor\", corner = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, -1] }]\n\
+         light = [{ type = \"environment\", color = 0.5 }]",
+    );
+    let told = String::from_utf8(stage.done("inspect measured.toml 1 1 --svg rays.svg").stdout).unwrap();
+    for words in
+        ["a direction, irradiance", "weight = 3.141593", "the surface's weight", "the same, bit for bit"]
+    {
+        assert!(told.contains(words), "{words:?} is not in {told}");
+    }
+    stage.run("inspect measured.toml 1 1 --svg rays.svg --svg-view camera").fails(2, &["has no image plane"]);
 }

@@ -114,8 +114,8 @@ pub fn svg(renderer: &Renderer, inspection: &Inspection, view: SvgView) -> Resul
         (SHEET, height)
     } else {
         let Some(panel) = Panel::new(view, of, (WIDTH - 2.0 * GAP, None)) else {
-            let message = "a camera that sees all around has no image plane to draw rays in: choose the side, the top or \
-                           the front";
+            let message = "a camera that sees all around, or measures, has no image plane to draw rays in: choose the side, the \
+                           top or the front";
             return Err(Error::new(ErrorKind::Request, &Location::default(), message));
         };
         let height = HEADER + panel.height() + GAP;

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::{DMat4, DVec3};
 use lookfrom::render::Renderer;
+use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
     BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium,
@@ -64,7 +65,14 @@ fn scenes() -> Vec<(String, Scene)> {
     let of_pbrt =
         lookfrom_scene::load::scene(Path::new("all.pbrt"), &mut LoadContext::new(&memory)).expect("valid");
     let own = names.into_iter().map(|name| (name.clone(), own_scene(&name)));
-    own.chain([("all.pbrt".to_owned(), of_pbrt)]).map(|(name, scene)| (name, small(scene))).collect()
+    let mut measured = of_pbrt.clone();
+    let has_area = |shape: &&mut Shape| !matches!(shape.geometry, Geometry::Curves(_));
+    measured.shapes.iter_mut().filter(has_area).for_each(|shape| shape.name = Some("measured".to_owned()));
+    let projection = Projection::Irradiance { surface: "measured".to_owned() };
+    measured.camera = Some(Camera { projection, ..Camera::default() });
+    own.chain([("all.pbrt".to_owned(), of_pbrt), ("measured".to_owned(), measured)])
+        .map(|(name, scene)| (name, small(scene)))
+        .collect()
 }
 
 /// The scene with a picture of 4 × 4 pixels.
