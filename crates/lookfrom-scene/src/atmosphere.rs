@@ -8,6 +8,7 @@
 mod air;
 mod bands;
 mod scattering;
+mod sun;
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -17,6 +18,7 @@ use crate::image::Image;
 use crate::parallel;
 use air::Air;
 use scattering::Scattering;
+pub(crate) use sun::PlaceAndTime;
 
 /// Texels along a side of the picture of a sky: the sun covers six of them.
 const SIDE: u32 = 1024;

@@ -33,6 +33,9 @@ pub struct Camera {
     pub window: Option<Window>,
     /// `d`, the distance of the image plane: > 0. Only the `t` shown to users depends on it.
     pub distance: f64,
+    /// Distances along the view axis, 0 ≤ near < far: rays of the camera meet only what is between them. `None` for all before the
+    /// camera, and for projections without an image plane.
+    pub clip: Option<[f64; 2]>,
     /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,
     /// The time that the shutter is open, in frames of an animation: 0 is an instant. [`ImportOptions::shutter`](crate::ImportOptions::shutter)
@@ -218,6 +221,7 @@ impl Default for Camera {
             lens: None,
             window: None,
             distance: 1.0,
+            clip: None,
             medium: None,
             shutter: 0.0,
             motion: None,

@@ -52,6 +52,16 @@ pub enum Scalar {
     Texture(TextureId),
 }
 
+impl From<Scalar> for Color {
+    /// A grey.
+    fn from(number: Scalar) -> Self {
+        match number {
+            Scalar::Value(value) => Self::gray(value),
+            Scalar::Texture(id) => Self::Texture(id),
+        }
+    }
+}
+
 /// A named material.
 #[derive(Clone, Debug)]
 pub struct Material {

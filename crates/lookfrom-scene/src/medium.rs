@@ -22,15 +22,15 @@ pub struct Medium {
     pub name: String,
     /// The location in the file.
     pub at: Location,
-    /// Absorption coefficient, per unit of length.
-    pub absorption: Color,
-    /// Scattering coefficient: the transmittance is e^(−(absorption + scattering) · length).
-    pub scattering: Color,
+    /// What it takes from light on the way, per unit of length.
+    pub extinction: Extinction,
     /// Mean cosine of the angle between the directions before and after scattering, by the phase function of Henyey & Greenstein:
     /// between −1 and 1, 0 for all directions alike.
     pub g: f32,
     /// Diameter of the water droplets of a fog or cloud in micrometres, in [`DROPLETS`]: their phase function instead.
     pub droplets: Option<f32>,
+    /// A second lobe of the phase function beside that of Henyey & Greenstein.
+    pub draine: Option<DraineLobe>,
     /// Multiplies both coefficients: ≥ 0.
     pub scale: f32,
     /// The radiance that the medium emits, times its absorption coefficient, per unit of length …
@@ -39,6 +39,49 @@ pub struct Medium {
     pub emission_scale: f32,
     /// Variation in space; `None` for a homogeneous medium.
     pub variation: Option<Variation>,
+}
+
+/// A lobe of a phase function: (1 + α cos²θ) times that of Henyey & Greenstein with the same g, normalised (Draine 2003). Rayleigh's has g = 0
+/// and α = 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DraineLobe {
+    /// Between −1 and 1.
+    pub g: f32,
+    /// ≥ 0.
+    pub alpha: f32,
+    /// Its share in the phase function, 0 … 1.
+    pub share: f32,
+}
+
+/// What a medium takes from light on the way: the transmittance of a length is e^(−(absorption + scattering) · length).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Extinction {
+    /// By its parts.
+    Parts {
+        /// Absorption coefficient, per unit of length.
+        absorption: Color,
+        /// Scattering coefficient, per unit of length.
+        scattering: Color,
+    },
+    /// By their sum. Of spectra made of colours the products are other ones than that of the products of colours.
+    Sum {
+        /// The sum of both coefficients, per unit of length.
+        sum: Color,
+        /// The part of it that is scattered, 0 … 1: the single-scattering albedo.
+        albedo: Color,
+    },
+}
+
+impl Extinction {
+    /// That of a vacuum.
+    pub const NONE: Self = Self::Parts { absorption: Color::BLACK, scattering: Color::BLACK };
+
+    fn scatters(self) -> bool {
+        match self {
+            Self::Parts { scattering, .. } => !is_black(scattering),
+            Self::Sum { sum, albedo } => !is_black(sum) && !is_black(albedo),
+        }
+    }
 }
 
 /// Variation of a medium in space.
@@ -110,10 +153,10 @@ impl Medium {
         Self {
             name: name.into(),
             at,
-            absorption: Color::BLACK,
-            scattering: Color::BLACK,
+            extinction: Extinction::NONE,
             g: 0.0,
             droplets: None,
+            draine: None,
             scale: 1.0,
             emission: Color::BLACK,
             emission_scale: 1.0,
@@ -129,7 +172,7 @@ impl Medium {
             }
             _ => true,
         };
-        self.scale > 0.0 && !is_black(self.scattering) && has_color
+        self.scale > 0.0 && self.extinction.scatters() && has_color
     }
 
     /// Memory of its grids in bytes.

@@ -4,10 +4,12 @@
 //! plugin without a counterpart here is an error; one that is replaced by something similar, and a property without effect, a warning.
 //! Colours are those of Mitsuba's variants with the colour mode `rgb`.
 
+mod attribute;
 mod bsdf;
 mod curve;
 mod emitter;
 mod medium;
+mod phase;
 mod plugin;
 mod sdf;
 mod sensor;
@@ -23,6 +25,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use self::attribute::{Attribute, Slots};
 use self::bsdf::Surface;
 use self::plugin::{Ids, Plugin, Value};
 use crate::chain;
@@ -69,6 +72,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         exchanged: HashMap::new(),
         images: HashMap::new(),
         media: HashMap::new(),
+        slots: Vec::new(),
         meshes: HashMap::new(),
         own_normals: BTreeSet::new(),
         groups: HashMap::new(),
@@ -97,7 +101,9 @@ struct Reader<'s, 'f> {
     /// Images by path and whether their values are raw.
     images: HashMap<(PathBuf, bool), ImageId>,
     media: HashMap<*const Plugin, MediumId>,
-    meshes: HashMap<shape::MeshKey, Vec<MeshId>>,
+    /// Where the mesh whose surface is read has its attributes.
+    slots: Slots,
+    meshes: HashMap<shape::MeshKey, (Vec<MeshId>, Slots)>,
     /// Meshes with the normals of their files.
     own_normals: BTreeSet<MeshId>,
     groups: HashMap<*const Plugin, ObjectId>,

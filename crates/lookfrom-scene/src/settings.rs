@@ -364,6 +364,9 @@ pub struct RenderSettings {
     /// Whether half of the light passes single-sided surfaces from their fronts, where most of what is seen of the scene from
     /// outside are their backs: rooms and domes that the camera looks into from outside.
     pub open_fronts: bool,
+    /// Whether the camera sees no shapes that emit light, directly or through what is passed without counting for the depth. Reflections and
+    /// shadows of them remain.
+    pub hide_lights: bool,
 }
 
 /// The allocation of a picture's samples to its pixels (of strata: Neyman 1934).
@@ -469,6 +472,7 @@ impl Default for RenderSettings {
             media: true,
             thin_passages_count: true,
             open_fronts: false,
+            hide_lights: false,
         }
     }
 }

@@ -189,6 +189,13 @@ pub enum TextureKind {
         /// The threshold.
         edge: f32,
     },
+    /// One number divided by another; 0 where that is 0.
+    Quotient {
+        /// The dividend.
+        a: Scalar,
+        /// The divisor.
+        b: Scalar,
+    },
 }
 
 /// The channels of an image that a texture reads.
@@ -214,6 +221,11 @@ impl TextureKind {
     pub const ROUGHNESS: f32 = 0.5;
     /// Interpolation parameter of a mix where a file does not set it.
     pub const MIX_AMOUNT: f32 = 0.5;
+
+    /// The product of two numbers.
+    pub fn product(a: Scalar, b: Scalar) -> Self {
+        Self::Product { a: a.into(), b: b.into() }
+    }
 
     /// The colours between which the texture's values lie; empty for textures that only combine others.
     pub fn colors(&self) -> Vec<Color> {
@@ -262,10 +274,7 @@ impl TextureKind {
 
     /// The textures and colours that this texture uses; float textures are given as colours.
     pub fn parts(&self) -> Vec<Color> {
-        let scalar = |scalar: &Scalar| match *scalar {
-            Scalar::Value(value) => Color::gray(value),
-            Scalar::Texture(id) => Color::Texture(id),
-        };
+        let scalar = |scalar: &Scalar| Color::from(*scalar);
         match self {
             Self::Checker { even: a, odd: b, .. }
             | Self::Noise { low: a, high: b, .. }
@@ -285,6 +294,7 @@ impl TextureKind {
             | Self::VertexAlpha
             | Self::VertexColor { .. } => Vec::new(),
             Self::Threshold { value, .. } => vec![scalar(value)],
+            Self::Quotient { a, b } => vec![scalar(a), scalar(b)],
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::grid::Placed;
 use crate::image::Image;
 use crate::light::Power;
 use crate::material::{Color, Scalar};
-use crate::medium::{DROPLETS, Density, Medium};
+use crate::medium::{DROPLETS, Density, Extinction, Medium};
 use crate::scene::{CurveId, ImageId, Instance, MaterialId, MediumId, Scene, TextureId};
 use crate::spectrum::Curve;
 
@@ -79,12 +79,24 @@ fn check_picture(part: &Part<'_>, image: &Image) -> Result<()> {
 }
 
 fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
-    part.color("absorption", medium.absorption)?;
-    part.color("scattering", medium.scattering)?;
+    let coefficients = match medium.extinction {
+        Extinction::Parts { absorption, scattering } => {
+            [("absorption", absorption), ("scattering", scattering)]
+        }
+        Extinction::Sum { sum, albedo } => [("extinction", sum), ("albedo", albedo)],
+    };
+    for (name, coefficient) in coefficients {
+        part.color(name, coefficient)?;
+    }
     part.color("emission", medium.emission)?;
     part.at_least_zero("scale", medium.scale.into())?;
     part.at_least_zero("emission_scale", medium.emission_scale.into())?;
     part.number("g", medium.g.into(), "between −1 and 1", medium.g.abs() < 1.0)?;
+    if let Some(lobe) = medium.draine {
+        part.number("g", lobe.g.into(), "between −1 and 1", lobe.g.abs() < 1.0)?;
+        part.at_least_zero("alpha", lobe.alpha.into())?;
+        part.number("share", lobe.share.into(), "from 0 to 1", (0.0..=1.0).contains(&lobe.share))?;
+    }
     if let Some(diameter) = medium.droplets {
         part.number("droplets", diameter.into(), "between 0.1 and 50", DROPLETS.contains(&diameter))?;
     }

@@ -141,6 +141,7 @@ fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
         ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
         ("thin_passages_count", !settings.thin_passages_count, "false".to_owned()),
         ("open_fronts", settings.open_fronts, "true".to_owned()),
+        ("hide_lights", settings.hide_lights, "true".to_owned()),
         (
             "occlusion_distance",
             settings.occlusion_distance.is_finite(),

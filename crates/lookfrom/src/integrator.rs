@@ -160,13 +160,14 @@ impl<S: PathState> Path<S> {
     }
 
     /// Whether the path passes the surface as if it were not there: by the alpha test, decided by `u ∈ [0, 1)` where it
-    /// is stochastic ([`SampleStream::presence`]), because it hit the back of a single-sided surface on its way from the camera, or, elsewhere, an open
-    /// front of one.
+    /// is stochastic ([`SampleStream::presence`]), because it hit the back of a single-sided surface, or a hidden light, on its way from the camera, or,
+    /// elsewhere, an open front of one.
     pub fn goes_through(&self, world: &World, surface: &SurfaceInteraction, u: f32) -> bool {
         let is_back = surface.single_sided && !surface.front && !self.blurred;
+        let is_hidden = self.depth == 0 && world.is_hidden_light(surface);
         let is_open = world.is_open_front(surface) && self.blurred;
         let u = if is_open { u / World::COVERAGE_OF_OPEN_FRONTS } else { u };
-        is_back || !world.passes_alpha_test(surface, u)
+        is_back || is_hidden || !world.passes_alpha_test(surface, u)
     }
 
     /// This path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,

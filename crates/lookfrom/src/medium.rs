@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use lookfrom_scene::material::Color;
-use lookfrom_scene::medium::Medium as Written;
+use lookfrom_scene::medium::{Extinction as WrittenExtinction, Medium as Written};
 use lookfrom_simd::Real;
 
 pub(crate) use cover::Cover;
@@ -34,10 +34,10 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, SpectrumType, Textu
 /// A medium.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// Absorption coefficient, per unit of length.
-    pub absorption: SpectrumTexture,
-    /// Scattering coefficient and phase function; `None` in a medium that only absorbs.
-    pub scattering: Option<Scattering>,
+    /// What it takes from light on the way, per unit of length.
+    pub extinction: Extinction,
+    /// The distribution of scattered light over directions; `None` in a medium that only absorbs.
+    pub phase: Option<Phase>,
     /// The radiance that it emits, times the absorption coefficient, per unit of length.
     pub emission: Option<EmissionSpectrum>,
     /// Factor of both coefficients: ≥ 0.
@@ -46,13 +46,53 @@ pub struct Medium {
     pub varying: Option<Arc<Varying>>,
 }
 
-/// Scattering coefficient and phase function of a medium.
+/// The extinction of a medium: [`lookfrom_scene::medium::Extinction`] with spectra.
 #[derive(Clone, Copy, Debug)]
-pub struct Scattering {
-    /// Scattering coefficient, per unit of length.
-    pub coefficient: SpectrumTexture,
-    /// Its distribution over directions.
-    pub phase: Phase,
+pub enum Extinction {
+    /// By its parts, σ_a and σ_s.
+    Parts {
+        /// Absorption coefficient, per unit of length.
+        absorption: SpectrumTexture,
+        /// Scattering coefficient, per unit of length; `None` where it is 0.
+        scattering: Option<SpectrumTexture>,
+    },
+    /// By their sum.
+    Sum {
+        /// σ_t, per unit of length.
+        sum: SpectrumTexture,
+        /// σ_s / σ_t.
+        albedo: SpectrumTexture,
+    },
+}
+
+impl Extinction {
+    fn compile(textures: &Textures, written: &Written) -> Self {
+        let coefficient = |color| textures.spectrum_texture(color, SpectrumType::Unbounded);
+        match written.extinction {
+            WrittenExtinction::Parts { absorption, scattering } => Self::Parts {
+                absorption: coefficient(absorption),
+                scattering: written.scatters().then(|| coefficient(scattering)),
+            },
+            WrittenExtinction::Sum { sum, albedo } => Self::Sum {
+                sum: coefficient(sum),
+                albedo: textures.spectrum_texture(albedo, SpectrumType::Albedo),
+            },
+        }
+    }
+
+    /// σ_a and σ_s where the density is 1.
+    pub(crate) fn parts(&self, textures: &Textures, mode: &SpectralMode) -> [Spectrum; 2] {
+        let value = |of: &SpectrumTexture| textures.spectrum(of, &TexturePoint::NOWHERE, mode);
+        match self {
+            Self::Parts { absorption, scattering } => {
+                [value(absorption), scattering.as_ref().map_or(Spectrum::BLACK, value)]
+            }
+            Self::Sum { sum, albedo } => {
+                let (sum, albedo) = (value(sum), value(albedo));
+                [sum * albedo.map(|albedo| 1.0 - albedo), sum * albedo]
+            }
+        }
+    }
 }
 
 /// The coefficients of a medium that scatters or emits light, per unit of length.
@@ -70,7 +110,8 @@ impl Medium {
     /// A medium that only absorbs.
     pub(crate) fn absorbing(textures: &Textures, absorption: [f32; 3]) -> Self {
         let absorption = textures.spectrum_texture(Color::Value(absorption), SpectrumType::Unbounded);
-        Self { absorption, scattering: None, emission: None, scale: 1.0, varying: None }
+        let extinction = Extinction::Parts { absorption, scattering: None };
+        Self { extinction, phase: None, emission: None, scale: 1.0, varying: None }
     }
 
     /// As it is written in a scene, whose render space has an origin in the world. A medium without an end is cut off by a box around a
@@ -81,13 +122,10 @@ impl Medium {
         origin: DVec3,
         around: (DVec3, f64),
     ) -> Self {
-        let coefficient = |color| textures.spectrum_texture(color, SpectrumType::Unbounded);
-        let scattering = written.scatters().then(|| Scattering {
-            coefficient: coefficient(written.scattering),
-            phase: match written.droplets {
-                Some(diameter) => Phase::Droplets(Droplets::new(diameter)),
-                None => Phase::HenyeyGreenstein(HenyeyGreenstein::new(written.g)),
-            },
+        let phase = written.scatters().then(|| match (written.droplets, written.draine) {
+            (Some(diameter), _) => Phase::Droplets(Droplets::new(diameter)),
+            (None, Some(lobe)) if lobe.share > 0.0 => Phase::Droplets(Droplets::of_lobes(written.g, lobe)),
+            _ => Phase::HenyeyGreenstein(HenyeyGreenstein::new(written.g)),
         });
         let luminance = match written.emission {
             Color::Curve(curve) => textures.curve(curve).to_xyz()[1],
@@ -99,31 +137,22 @@ impl Medium {
         });
         let varying = written.variation.as_ref();
         Self {
-            absorption: coefficient(written.absorption),
-            scattering,
+            extinction: Extinction::compile(textures, written),
+            phase,
             emission,
             scale: written.scale,
             varying: varying.map(|varying| Arc::new(Varying::compile(textures, varying, origin, around))),
         }
     }
 
-    /// The phase function; `None` where nothing is scattered.
-    pub(crate) fn phase(&self) -> Option<Phase> {
-        self.scattering.as_ref().map(|scattering| scattering.phase)
-    }
-
     /// The coefficients, where the density is 1.
     pub(crate) fn coefficients(&self, textures: &Textures, mode: &SpectralMode) -> Coefficients {
-        let coefficient = |of: &SpectrumTexture| {
-            let written = textures.spectrum(of, &TexturePoint::NOWHERE, mode);
-            mode.one() * written.map(|sigma| (sigma * self.scale).clamp(0.0, Coefficients::MOST))
-        };
+        let [absorption, scattering] = self
+            .extinction
+            .parts(textures, mode)
+            .map(|part| mode.one() * part.map(|sigma| (sigma * self.scale).clamp(0.0, Coefficients::MOST)));
         let emission = self.emission.as_ref().map(|emission| emission.even(textures, mode));
-        Coefficients {
-            absorption: coefficient(&self.absorption),
-            scattering: self.scattering.map(|of| coefficient(&of.coefficient)).unwrap_or_default(),
-            emission: emission.unwrap_or_default(),
-        }
+        Coefficients { absorption, scattering, emission: emission.unwrap_or_default() }
     }
 }
 

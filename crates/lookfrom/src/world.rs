@@ -94,8 +94,11 @@ pub struct World {
     pub(crate) transmissive: bool,
     /// Whether any surface is a pane ([`Material::is_pane`]).
     pub(crate) has_panes: bool,
-    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts.
+    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts, hidden lights.
     pub(crate) has_gaps: bool,
+    /// Whether the camera sees no shapes that emit light
+    /// ([`RenderSettings::hide_lights`](lookfrom_scene::settings::RenderSettings::hide_lights)).
+    pub(crate) hides_lights: bool,
     /// Whether single-sided surfaces mostly face inward: then their fronts are open to light ([`World::is_open_front`]).
     pub(crate) has_open_fronts: bool,
     /// Unoccluded irradiance of the shadow catcher ([`MaterialKind::ShadowCatcher`]) from lights infinitely far away,
@@ -288,7 +291,8 @@ impl World {
 
     /// The part of the light that a surface does not let pass on the way from the camera, as if it were not there: 0 … 1.
     pub(crate) fn opacity(&self, surface: &SurfaceInteraction) -> f32 {
-        if surface.single_sided && !surface.front || self.is_interface(surface) {
+        let is_hidden = surface.single_sided && !surface.front || self.is_hidden_light(surface);
+        if is_hidden || self.is_interface(surface) {
             return 0.0;
         }
         let alpha = surface.alpha.map(|alpha| self.textures.float(alpha, &self.texture_point(surface)));
@@ -323,6 +327,11 @@ impl World {
     /// Data that shading frames are bent by.
     pub(crate) fn relief(&self) -> Relief<'_> {
         Relief { textures: &self.textures, footprint: self.footprint.as_ref(), step: Relief::STEP }
+    }
+
+    /// Whether a surface emits light and the camera does not see it.
+    pub(crate) fn is_hidden_light(&self, surface: &SurfaceInteraction) -> bool {
+        self.hides_lights && surface.light.is_some()
     }
 
     /// Whether a surface is only an interface between media.

@@ -92,13 +92,23 @@ impl Reader<'_, '_> {
             }
             "mask" => {
                 let surface = reader.nested(plugin)?;
-                if surface.alpha.is_some() {
-                    let message = "a mask in a mask is not supported";
-                    return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message));
-                }
-                Ok(Surface { alpha: Some(reader.scalar(plugin, "opacity", 0.5)?), ..surface })
+                let opacity = reader.scalar(plugin, "opacity", 0.5)?;
+                let alpha = match surface.alpha {
+                    None => opacity,
+                    Some(inner) => reader.number(plugin, TextureKind::product(opacity, inner)),
+                };
+                Ok(Surface { alpha: Some(alpha), ..surface })
             }
             "bumpmap" | "normalmap" => reader.mapped(plugin),
+            "blendbsdf" => {
+                let amount = reader.scalar(plugin, "weight", 0.5)?;
+                let parts = plugin.parts("bsdf", &reader.ids)?;
+                let [(_, first), (_, second)] = &parts[..] else {
+                    let message = format!("a blendbsdf has two bsdfs in it, this one has {}", parts.len());
+                    return Err(Error::invalid(&plugin.at, message));
+                };
+                reader.blend(plugin, [first, second], amount)
+            }
             _ => {
                 let kind = reader.kind(plugin)?;
                 let back_face = reader.back_face_of(&kind);
@@ -154,9 +164,8 @@ impl Reader<'_, '_> {
         let parts = plugin.parts("bsdf", &self.ids)?;
         let [(_, front), (_, back)] = &parts[..] else { return self.only(plugin, &parts) };
         let sides = TextureKind::Sides { outside: Color::gray(0.0), inside: Color::gray(1.0) };
-        let amount = Scalar::Texture(self.push_texture(plugin, sides));
-        let kind = self.blend(plugin, [front, back], amount)?;
-        Ok(Surface::opaque(self.push_material(plugin, kind)))
+        let amount = self.number(plugin, sides);
+        self.blend(plugin, [front, back], amount)
     }
 
     /// A BSDF under a bump map or a normal map.
@@ -239,15 +248,6 @@ impl Reader<'_, '_> {
             },
             "thindielectric" => MaterialKind::ThinDielectric { eta: index(plugin, "bk7")? },
             "plastic" | "roughplastic" => MaterialKind::Plastic(Box::new(self.plastic(plugin)?)),
-            "blendbsdf" => {
-                let amount = self.scalar(plugin, "weight", 0.5)?;
-                let parts = plugin.parts("bsdf", &self.ids)?;
-                let [(_, first), (_, second)] = &parts[..] else {
-                    let message = format!("a blendbsdf has two bsdfs in it, this one has {}", parts.len());
-                    return Err(Error::invalid(&plugin.at, message));
-                };
-                self.blend(plugin, [first, second], amount)?
-            }
             "hair" => self.hair(plugin)?,
             "measured" => {
                 let (path, at) = self.file(plugin)?;
@@ -266,27 +266,61 @@ impl Reader<'_, '_> {
         plugin: &Plugin,
         [first, second]: [&Rc<Plugin>; 2],
         amount: Scalar,
-    ) -> Result<MaterialKind> {
+    ) -> Result<Surface> {
         let surfaces = [self.surface(first)?, self.surface(second)?];
-        if surfaces.iter().any(|surface| surface.alpha.is_some()) {
-            let message = format!("a mask in a {} of two bsdfs is not supported", plugin.title());
-            return Err(
-                Error::new(ErrorKind::Unsupported, &plugin.at, message).hint("write the mask around it")
-            );
-        }
+        let surfaces = self.without_null(surfaces);
+        let (alpha, amount) = self.blended_alphas(plugin, surfaces.map(|surface| surface.alpha), amount);
         let materials = surfaces.map(|surface| surface.material);
         let [first, second] = materials.map(|id| &self.scene.materials[id.index()]);
-        Ok(match (&first.kind, &second.kind) {
+        let back_face = first.back_face;
+        let (kind, back_face) = match (&first.kind, &second.kind) {
             (&MaterialKind::Diffuse { reflectance: low }, &MaterialKind::Diffuse { reflectance: high })
                 if first.bump_mapping == BumpMapping::None
                     && second.bump_mapping == BumpMapping::None
-                    && first.back_face == second.back_face =>
+                    && back_face == second.back_face =>
             {
                 let mix = self.push_texture(plugin, TextureKind::Mix { low, high, amount });
-                MaterialKind::Diffuse { reflectance: Color::Texture(mix) }
+                (MaterialKind::Diffuse { reflectance: Color::Texture(mix) }, back_face)
             }
-            _ => MaterialKind::Mix { materials, amount },
-        })
+            _ => (MaterialKind::Mix { materials, amount }, BackFace::Own),
+        };
+        let material = self.push_material(plugin, kind);
+        self.scene.materials[material.index()].back_face = back_face;
+        Ok(Surface { material, alpha })
+    }
+
+    /// The opacity of a blend of two surfaces, and the part of the second in what is opaque.
+    fn blended_alphas(
+        &mut self,
+        plugin: &Plugin,
+        alphas: [Option<Scalar>; 2],
+        amount: Scalar,
+    ) -> (Option<Scalar>, Scalar) {
+        let [first, second] = alphas.map(|alpha| alpha.unwrap_or(Scalar::Value(1.0)));
+        if first == second {
+            return (alphas[0], amount);
+        }
+        let alpha = TextureKind::Mix { low: first.into(), high: second.into(), amount };
+        let alpha = self.number(plugin, alpha);
+        let part = self.number(plugin, TextureKind::product(amount, second));
+        (Some(alpha), self.number(plugin, TextureKind::Quotient { a: part, b: alpha }))
+    }
+
+    /// Two surfaces, one of which, if it is nothing, is the other one with an opacity of 0.
+    fn without_null(&self, surfaces: [Surface; 2]) -> [Surface; 2] {
+        let is_null = surfaces
+            .map(|of| matches!(self.scene.materials[of.material.index()].kind, MaterialKind::Interface));
+        let nothing = |like: Surface| Surface { alpha: Some(Scalar::Value(0.0)), ..like };
+        match (surfaces, is_null) {
+            ([_, second], [true, false]) => [nothing(second), second],
+            ([first, _], [false, true]) => [first, nothing(first)],
+            _ => surfaces,
+        }
+    }
+
+    /// A number that a texture computes.
+    fn number(&mut self, plugin: &Plugin, kind: TextureKind) -> Scalar {
+        Scalar::Texture(self.push_texture(plugin, kind))
     }
 
     fn metal(&mut self, plugin: &Plugin) -> Result<Metal> {

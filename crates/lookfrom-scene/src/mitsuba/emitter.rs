@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 
 use super::Reader;
 use super::plugin::{Plugin, Property, Value};
-use crate::atmosphere::ClearSky;
+use crate::atmosphere::{ClearSky, PlaceAndTime};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
@@ -20,7 +20,12 @@ use crate::shape::Emission;
 use crate::spectrum::observer;
 use crate::texture::{Mapping, TexelFilter, TextureKind};
 
-const KINDS: &[&str] = &["area", "constant", "directional", "envmap", "point", "projector", "spot", "sunsky"];
+const KINDS: &[&str] =
+    &["area", "constant", "directional", "envmap", "point", "projector", "sky", "spot", "sunsky"];
+
+/// Properties that tell where the sun is.
+const PLACE_AND_TIME: &[&str] =
+    &["latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"];
 
 /// Luminance of a [`ClearSky`] over that of Mitsuba's units: of what has the spectral radiance 1 W/(m² sr nm), in 10 000 cd/m².
 const OF_RADIANCE: f32 = 683.0 * observer::Y_INTEGRAL as f32 / 10_000.0;
@@ -95,7 +100,7 @@ impl Reader<'_, '_> {
                 };
                 (LightKind::Environment { sky, portal: None, illuminates: true }, 1.0)
             }
-            "sunsky" => (self.sun_and_sky(plugin, &to_world)?, 1.0),
+            "sky" | "sunsky" => (self.sun_and_sky(plugin, &to_world)?, 1.0),
             "area" => {
                 let error = Error::invalid(&plugin.at, "an area light is a part of a shape");
                 return Err(error.hint("write <emitter type=\"area\"> in a <shape>"));
@@ -111,14 +116,21 @@ impl Reader<'_, '_> {
         let message = "the sky is that of this program's model of the air, not that of Hosek and Wilkie";
         self.warn_once(&plugin.at, message);
         plugin.ignore(&["complex_sun", "sun_aperture"]);
-        let Some(toward_sun) = plugin.vector("sun_direction")?.and_then(DVec3::try_normalize) else {
-            let message = "a sunsky without a `sun_direction` is not supported";
-            let error = Error::new(ErrorKind::Unsupported, &plugin.at, message);
-            return Err(error.hint(
-                "write <vector name=\"sun_direction\" value=\"0 1 1\"/> in place of a place and a time",
-            ));
+        let toward_sun = match plugin.vector("sun_direction")? {
+            Some(vector) => {
+                plugin.ignore(PLACE_AND_TIME);
+                to_world.inverse().transform_vector3(vector)
+            }
+            None => {
+                let [elevation, azimuth] = place_and_time(plugin)?.sun();
+                // x is south, y is west.
+                let across = -libm::cos(elevation);
+                DVec3::new(across * libm::cos(azimuth), across * libm::sin(azimuth), libm::sin(elevation))
+            }
         };
-        let toward_sun = to_world.inverse().transform_vector3(toward_sun).normalize_or_zero();
+        let Some(toward_sun) = toward_sun.try_normalize() else {
+            return Err(plugin.refuse("sun_direction", "a vector other than 0"));
+        };
         let turbidity =
             plugin.float_where("turbidity", 3.0, "a number from 1 to 10", |t| (1.0..=10.0).contains(&t))?;
         let albedo = match self.scalar(plugin, "albedo", 0.3)? {
@@ -136,7 +148,7 @@ impl Reader<'_, '_> {
             azimuth: libm::atan2(toward_sun.x, toward_sun.y),
             turbidity,
             albedo,
-            has_sun: sun_scale > 0.0,
+            has_sun: plugin.kind != "sky" && sun_scale > 0.0,
         };
         let image = push_image(&mut self.scene, sky.octahedral("sunsky"));
         let scale = [sky_scale as f32 / OF_RADIANCE; 3];
@@ -272,4 +284,24 @@ impl Reader<'_, '_> {
         let power = Power { scale, ..Power::AS_WRITTEN };
         Ok(Some(Emission { radiance, power, two_sided: false }))
     }
+}
+
+/// Place and time of a sky: by default Tokyo's on an afternoon of July.
+fn place_and_time(plugin: &Plugin) -> Result<PlaceAndTime> {
+    let number = |name, default, [least, most]: [f64; 2]| {
+        let expected = format!("a number from {least} to {most}");
+        plugin.float_where(name, default, &expected, |number| (least..=most).contains(&number))
+    };
+    let whole = |name, default, [least, most]: [i64; 2]| {
+        plugin.integer(name, default, least, most).map(|number| number as i32)
+    };
+    Ok(PlaceAndTime {
+        latitude: number("latitude", 35.6894, [-90.0, 90.0])?,
+        longitude: number("longitude", 139.6917, [-180.0, 180.0])?,
+        timezone: number("timezone", 9.0, [-14.0, 14.0])?,
+        date: [whole("year", 2010, [0, 9999])?, whole("month", 7, [1, 12])?, whole("day", 10, [1, 31])?],
+        hours: number("hour", 15.0, [0.0, 24.0])?
+            + number("minute", 0.0, [0.0, 60.0])? / 60.0
+            + number("second", 0.0, [0.0, 60.0])? / 3600.0,
+    })
 }

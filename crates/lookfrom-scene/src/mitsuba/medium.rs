@@ -11,7 +11,7 @@ use super::volume::even_color;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Placed};
 use crate::material::Color;
-use crate::medium::{Density, Medium, Sides, Variation};
+use crate::medium::{Density, Extinction, Medium, Sides, Variation};
 use crate::scene::MediumId;
 
 impl Reader<'_, '_> {
@@ -40,24 +40,18 @@ impl Reader<'_, '_> {
         let own = Medium { scale: scale as f32, ..Medium::clear(name, plugin.at.clone()) };
         let medium = match &*plugin.kind {
             "homogeneous" => {
-                let sigma_t = self.coefficient(plugin, "sigma_t", 1.0)?;
-                let albedo = self.albedo(plugin)?;
-                let part =
-                    |of: fn(f32) -> f32| Color::Value(std::array::from_fn(|i| sigma_t[i] * of(albedo[i])));
-                Medium { absorption: part(|albedo| 1.0 - albedo), scattering: part(|albedo| albedo), ..own }
+                let sum = Color::Value(self.coefficient(plugin, "sigma_t", 1.0)?);
+                let albedo = Color::Value(self.albedo(plugin)?);
+                Medium { extinction: Extinction::Sum { sum, albedo }, ..own }
             }
             "heterogeneous" => self.heterogeneous(plugin, own)?,
             _ => return Err(plugin.unsupported(&["heterogeneous", "homogeneous"])),
         };
-        let g = match plugin.part("phase", &self.ids)? {
-            None => 0.0,
-            Some(phase) => match &*phase.kind {
-                "isotropic" => 0.0,
-                "hg" => phase.float_where("g", 0.8, "a number between −1 and 1", |g| g.abs() < 1.0)?,
-                _ => return Err(phase.unsupported(&["hg", "isotropic"])),
-            },
+        let (g, draine) = match plugin.part("phase", &self.ids)? {
+            None => (0.0, None),
+            Some(phase) => self.phase(&phase)?,
         };
-        self.scene.media.push(Medium { g: g as f32, ..medium });
+        self.scene.media.push(Medium { g, draine, ..medium });
         let id = MediumId(self.scene.media.len() as u32 - 1);
         self.media.insert(Rc::as_ptr(plugin), id);
         Ok(id)
@@ -99,8 +93,7 @@ impl Reader<'_, '_> {
             let density = padded(sigma_t.lattice.size, |cell| number(sigma_t.lattice.cell(cell)));
             let density = density.ok_or_else(|| too_large(plugin))?;
             return Ok(Medium {
-                absorption: Color::Value(std::array::from_fn(|c| of[c] * (1.0 - albedo[c]))),
-                scattering: Color::Value(std::array::from_fn(|c| of[c] * albedo[c])),
+                extinction: Extinction::Sum { sum: Color::Value(of), albedo: Color::Value(albedo) },
                 variation: variation(Density::Grid(density)),
                 ..own
             });
@@ -138,8 +131,7 @@ impl Reader<'_, '_> {
             return Err(too_large(plugin));
         }
         Ok(Medium {
-            absorption: Color::gray(1.0),
-            scattering: Color::gray(1.0),
+            extinction: Extinction::Parts { absorption: Color::gray(1.0), scattering: Color::gray(1.0) },
             variation: variation(Density::Colors { absorption, scattering, emission: None }),
             ..own
         })

@@ -9,7 +9,7 @@ use super::plugin::Plugin;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MediumId;
-use crate::settings::{Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
+use crate::settings::{Background, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 
 /// Maximum width and height.
 const LARGEST: i64 = 1 << 16;
@@ -30,7 +30,18 @@ const SAMPLERS: &[&str] =
     &["halton", "hammersley", "independent", "ldsampler", "multijitter", "orthogonal", "sobol", "stratified"];
 /// Integrators of Mitsuba 0.6 whose pictures have the same mean.
 const OTHERS: &[&str] = &["bdpt", "erpt", "mlt", "photonmapper", "ppm", "pssmlt", "sppm", "vpl"];
-const INTEGRATORS: &[&str] = &["aov", "direct", "moment", "path", "ptracer", "volpath", "volpathmis"];
+const INTEGRATORS: &[&str] =
+    &["aov", "depth", "direct", "moment", "path", "prb", "prbvolpath", "ptracer", "volpath", "volpathmis"];
+/// Integrators for derivatives, whose pictures are those of others.
+const DIFFERENTIABLE: &[(&str, &str)] = &[
+    ("direct_projective", "direct"),
+    ("direct_reparam", "direct"),
+    ("prb", "path"),
+    ("prb_basic", "path"),
+    ("prb_projective", "path"),
+    ("prb_reparam", "path"),
+    ("prbvolpath", "volpath"),
+];
 
 /// A projection that is one ray.
 const ONE_RAY: Projection = Projection::Perspective { fov: 1e-6 };
@@ -76,7 +87,7 @@ impl Reader<'_, '_> {
         shapes.iter_mut().for_each(|shape| shape.name = Some(surface.clone()));
         let medium = self.film_and_sampler(plugin)?;
         if (self.scene.image.width, self.scene.image.height) != (1, 1) {
-            let message = "each pixel of this irradiancemeter measures the whole shape: in Mitsuba each measures a part of it, with the                            same mean";
+            let message = "each pixel of this irradiancemeter measures the whole shape: in Mitsuba each measures a part of it, with the same mean";
             self.warn_once(&plugin.at, message);
         }
         let projection = Projection::Irradiance { surface };
@@ -119,7 +130,7 @@ impl Reader<'_, '_> {
 
     /// The film and the sampler of a sensor; the medium around it.
     fn film_and_sampler(&mut self, plugin: &Plugin) -> Result<Option<MediumId>> {
-        plugin.ignore(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
+        plugin.ignore(&["shutter_open", "shutter_close"]);
         let film = plugin.part("film", &self.ids)?;
         self.film(film.as_deref())?;
         let sampler = plugin.part("sampler", &self.ids)?;
@@ -159,12 +170,17 @@ impl Reader<'_, '_> {
             x: [(2.0 * x - 1.0) * aspect, (2.0 * x + 1.0) * aspect],
             y: [-1.0 - 2.0 * y, 1.0 - 2.0 * y],
         };
+        let clip = match &*plugin.kind {
+            "radiancemeter" => None,
+            _ => Some(clip(plugin)?),
+        };
         self.scene.camera = Some(Camera {
             at: plugin.at.clone(),
             view: View::Matrix(plugin.to_world()?),
             projection,
             lens,
             window: ((x, y) != (0.0, 0.0)).then_some(shifted),
+            clip,
             medium,
             ..Camera::default()
         });
@@ -230,7 +246,8 @@ impl Reader<'_, '_> {
         let render = &mut self.scene.render;
         (render.integrator, render.depth, render.media) = (Integrator::Path, DEEPEST, false);
         let Some(plugin) = integrator else { return Ok(()) };
-        match &*plugin.kind {
+        let same = DIFFERENTIABLE.iter().find(|(name, _)| *name == plugin.kind).map(|(_, same)| *same);
+        match same.unwrap_or(&plugin.kind) {
             "moment" | "aov" => {
                 if plugin.kind == "aov" && plugin.string("aovs")?.is_some_and(|aovs| !aovs.trim().is_empty())
                 {
@@ -239,6 +256,12 @@ impl Reader<'_, '_> {
                 let inner = plugin.part("integrator", &self.ids)?;
                 return self.within_integrator(plugin, inner.as_ref());
             }
+            "depth" => {
+                render.integrator = Integrator::Depth;
+                let message = "the depth is that along the axis of view, in Mitsuba along each ray from its `near_clip`";
+                self.warn_once(&plugin.at, message);
+                return Ok(());
+            }
             "direct" => {
                 plugin.ignore(&["shading_samples", "emitter_samples", "bsdf_samples"]);
                 render.depth = 1;
@@ -246,7 +269,8 @@ impl Reader<'_, '_> {
             "path" | "ptracer" | "volpath" | "volpathmis" => {
                 plugin.ignore(&["rr_depth", "samples_per_pass"]);
                 // Segments of a path, one more than its reflections.
-                let segments = plugin.integer("max_depth", -1, -1, i64::from(u32::MAX))?;
+                let most = if same.is_some() { 6 } else { -1 };
+                let segments = plugin.integer("max_depth", most, -1, i64::from(u32::MAX))?;
                 if segments == 0 {
                     return Err(plugin.refuse(
                         "max_depth",
@@ -254,7 +278,7 @@ impl Reader<'_, '_> {
                     ));
                 }
                 render.depth = u32::try_from(segments - 1).map_or(DEEPEST, |depth| depth.min(DEEPEST));
-                render.media = plugin.kind.starts_with("volpath");
+                render.media = plugin.kind.contains("volpath");
                 render.thin_passages_count = !render.media;
             }
             other if OTHERS.contains(&other) => {
@@ -265,7 +289,8 @@ impl Reader<'_, '_> {
             _ => return Err(plugin.unsupported(INTEGRATORS)),
         }
         if plugin.boolean("hide_emitters", false)? {
-            self.warn_once(&plugin.at, "emitters are not hidden: `hide_emitters` has no effect here");
+            self.scene.render.hide_lights = true;
+            self.scene.image.background = Background::Transparent;
         }
         Ok(())
     }
@@ -307,6 +332,12 @@ fn reconstruction(filter: &Plugin) -> Result<Filter> {
             ]));
         }
     })
+}
+
+/// The distances between which a camera sees.
+fn clip(plugin: &Plugin) -> Result<[f64; 2]> {
+    let (near, far) = (plugin.positive("near_clip", 1e-2)?, plugin.positive("far_clip", 1e4)?);
+    if near < far { Ok([near, far]) } else { Err(plugin.refuse("near_clip", "less than `far_clip`")) }
 }
 
 /// The vertical field of view in degrees.

@@ -9,13 +9,13 @@ use super::Reader;
 use super::bsdf::Surface;
 use super::plugin::Plugin;
 use super::serialized;
-use super::texture::Attribute;
 use super::xml::blame;
+use super::{Attribute, Slots};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::material::Color;
+use crate::model;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
 use crate::shape::{Geometry, Mesh, Part, Shape};
-use crate::{model, ply};
 
 const KINDS: &[&str] = &[
     "bsplinecurve",
@@ -44,8 +44,8 @@ pub(super) struct MeshKey {
     has_flat_faces: bool,
     /// Whether v is turned around: up in files, and so here.
     turns_v: bool,
-    /// The attribute that it has as its colours.
-    attribute: Option<Attribute>,
+    /// The attributes that it has.
+    attributes: Vec<Attribute>,
 }
 
 impl Reader<'_, '_> {
@@ -112,13 +112,15 @@ impl Reader<'_, '_> {
         }
         let to_world = plugin.to_world()?;
         let flip = plugin.boolean("flip_normals", false)?;
-        let mut attribute = None;
+        let mut attributes = Vec::new();
         for class in ["bsdf", "emitter"] {
             if let Some(part) = plugin.peek(class, &self.ids)? {
-                attribute = self.attribute(&part)?.or(attribute);
+                let further = self.attributes(&part)?.into_iter();
+                attributes
+                    .extend(further.filter(|attribute| !attributes.contains(attribute)).collect::<Vec<_>>());
             }
         }
-        let geometries = self.geometries(plugin, attribute)?;
+        let geometries = self.geometries(plugin, attributes)?;
         let is_made_of_faces = match &*plugin.kind {
             "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),
             _ => false,
@@ -164,11 +166,7 @@ impl Reader<'_, '_> {
     }
 
     /// Geometries with their transforms to the space of the shape.
-    fn geometries(
-        &mut self,
-        plugin: &Plugin,
-        attribute: Option<Attribute>,
-    ) -> Result<Vec<(Geometry, DMat4)>> {
+    fn geometries(&mut self, plugin: &Plugin, attributes: Vec<Attribute>) -> Result<Vec<(Geometry, DMat4)>> {
         let one = |geometry, matrix| Ok(vec![(geometry, matrix)]);
         match &*plugin.kind {
             "sphere" => {
@@ -220,8 +218,9 @@ impl Reader<'_, '_> {
                     "serialized" => plugin.integer("shape_index", 0, 0, i64::from(u32::MAX))? as u32,
                     _ => 0,
                 };
-                let key = MeshKey { path, index, has_flat_faces, turns_v, attribute };
-                let meshes = self.model(&plugin.kind, key, &at)?;
+                let key = MeshKey { path, index, has_flat_faces, turns_v, attributes };
+                let (meshes, slots) = self.model(&plugin.kind, key, &at)?;
+                self.use_slots(slots);
                 Ok(meshes.into_iter().map(|id| (Geometry::Mesh(id), DMat4::IDENTITY)).collect())
             }
         }
@@ -237,34 +236,26 @@ impl Reader<'_, '_> {
     }
 
     /// The meshes of a model file, without its materials.
-    fn model(&mut self, kind: &str, key: MeshKey, at: &Location) -> Result<Vec<MeshId>> {
-        if let Some(ids) = self.meshes.get(&key) {
-            return Ok(ids.clone());
+    fn model(&mut self, kind: &str, key: MeshKey, at: &Location) -> Result<(Vec<MeshId>, Slots)> {
+        if let Some(known) = self.meshes.get(&key) {
+            return Ok(known.clone());
         }
         let mut alone = Scene::default();
-        let parts = match (kind, &key.attribute) {
-            ("serialized", _) => {
+        let parts = match kind {
+            "serialized" => {
                 let mesh =
                     serialized::read(&key.path, key.index, self.context).map_err(|error| blame(error, at))?;
                 alone.meshes.push(mesh);
                 vec![Part::new(None, Geometry::Mesh(MeshId(0)))]
             }
-            ("ply", Some(Attribute { element, name })) => {
-                let parts = ply::read_with_attribute(&key.path, (element, name), self.context, &mut alone);
-                parts.map_err(|error| blame(error, at))?.ok_or_else(|| {
-                    let message =
-                        format!("the mesh has no attribute `{element}_{name}` of one or three numbers");
-                    Error::invalid(at, message)
-                })?
-            }
             _ => model::read(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?,
         };
         let MeshKey { has_flat_faces, turns_v, .. } = key;
-        let mut ids = Vec::new();
+        let (mut ids, mut slots) = (Vec::new(), Vec::new());
         for part in parts {
             let Geometry::Mesh(id) = part.geometry else {
-                let message = "points and lines of models are not supported in scenes of Mitsuba";
-                return Err(Error::new(ErrorKind::Unsupported, at, message));
+                self.warn_once(at, "points and lines of models are left out, as in Mitsuba");
+                continue;
             };
             let mut mesh = std::mem::take(&mut alone.meshes[id.index()]);
             let has_own_normals = !has_flat_faces && !mesh.normals.is_empty();
@@ -278,14 +269,26 @@ impl Reader<'_, '_> {
             if !turns_v {
                 mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
             }
+            if kind == "ply" && !key.attributes.is_empty() {
+                slots = self.add_attributes(&mut mesh, (&key.path, at), &key.attributes)?;
+            }
             let id = self.add_mesh(mesh);
             if has_own_normals {
                 self.own_normals.insert(id);
             }
             ids.push(id);
         }
-        self.meshes.insert(key, ids.clone());
-        Ok(ids)
+        self.meshes.insert(key, (ids.clone(), slots.clone()));
+        Ok((ids, slots))
+    }
+
+    /// Has textures show the attributes of a mesh where it has them.
+    fn use_slots(&mut self, slots: Slots) {
+        if self.slots != slots {
+            self.slots = slots;
+            self.surfaces.clear();
+            self.textures.clear();
+        }
     }
 }
 

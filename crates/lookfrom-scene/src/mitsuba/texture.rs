@@ -22,56 +22,7 @@ const KINDS: &[&str] = &["bitmap", "checkerboard", "mesh_attribute"];
 
 const SPECTRA: &[&str] = &["blackbody", "d65", "irregular", "rawconstant", "regular", "srgb", "uniform"];
 
-/// An attribute of meshes.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Attribute {
-    /// `vertex` or `face`.
-    pub(super) element: &'static str,
-    /// Its name without the element.
-    pub(super) name: String,
-}
-
-impl Attribute {
-    /// That of a texture.
-    fn of(plugin: &Plugin) -> Result<Self> {
-        let name = plugin.string("name")?.unwrap_or_default();
-        let of = |element: &'static str| {
-            let name = name.strip_prefix(element)?.strip_prefix('_').filter(|name| !name.is_empty())?;
-            Some(Self { element, name: name.to_owned() })
-        };
-        of("vertex")
-            .or_else(|| of("face"))
-            .ok_or_else(|| plugin.refuse("name", "that of an attribute: \"vertex_…\" or \"face_…\""))
-    }
-}
-
 impl Reader<'_, '_> {
-    /// The attribute of meshes that textures in a plugin are of.
-    ///
-    /// # Errors
-    /// `Unsupported` if there are several.
-    pub(super) fn attribute(&self, plugin: &Rc<Plugin>) -> Result<Option<Attribute>> {
-        let (mut found, mut seen, mut rest) = (None, Vec::new(), vec![plugin.clone()]);
-        while let Some(plugin) = rest.pop() {
-            if seen.contains(&Rc::as_ptr(&plugin)) {
-                continue;
-            }
-            seen.push(Rc::as_ptr(&plugin));
-            if plugin.kind == "mesh_attribute" {
-                let attribute = Attribute::of(&plugin)?;
-                if found.as_ref().is_some_and(|found| *found != attribute) {
-                    let message = "two attributes of a mesh in one surface are not supported";
-                    return Err(Error::new(ErrorKind::Unsupported, &plugin.at, message));
-                }
-                found = Some(attribute);
-            }
-            for property in &plugin.properties {
-                rest.extend(property.plugin(&self.ids)?);
-            }
-        }
-        Ok(found)
-    }
-
     /// A colour of a surface, constant or textured.
     pub(super) fn color(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<Color> {
         match plugin.find(name) {
@@ -99,10 +50,21 @@ impl Reader<'_, '_> {
             Value::Curve(curve) => Ok(Color::Curve(self.push_curve(curve.clone()))),
             _ => match property.plugin(&self.ids)? {
                 Some(plugin) if SPECTRA.contains(&&*plugin.kind) => self.spectrum(&plugin),
+                Some(plugin) if plugin.kind == "volume" => self.even_volume(&plugin),
                 Some(plugin) => self.texture(&plugin).map(Color::Texture),
                 None => Err(property.wrong("a colour or a texture")),
             },
         }
+    }
+
+    /// The colour of a volume on surfaces, which has to be the same everywhere.
+    fn even_volume(&mut self, plugin: &Rc<Plugin>) -> Result<Color> {
+        let volume = self.volume(plugin, "volume", 1.0)?;
+        if volume.lattice.is_even() {
+            return Ok(Color::Value(volume.lattice.cell([0; 3])));
+        }
+        let message = "a texture of a volume that varies in space is not supported";
+        Err(Error::new(ErrorKind::Unsupported, &plugin.at, message))
     }
 
     /// A number that may vary over the surface.
@@ -256,13 +218,7 @@ impl Reader<'_, '_> {
                     mapping: mapping(&matrix, 2.0, false),
                 })
             }
-            "mesh_attribute" => {
-                let scale =
-                    plugin.float_where("scale", 1.0, "a number of at least 0", |scale| scale >= 0.0)?;
-                // Meshes are read with the attribute as their colours.
-                Attribute::of(plugin)?;
-                Ok(TextureKind::VertexColor { tint: [scale as f32; 3] })
-            }
+            "mesh_attribute" => reader.attribute_texture(plugin),
             _ => Err(plugin.unsupported(KINDS)),
         })?;
         let id = self.push_texture(plugin, kind);

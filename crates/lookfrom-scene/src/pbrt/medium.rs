@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::Color;
 use crate::medium::presets::Preset;
-use crate::medium::{Density, Medium, Sides, Temperature, Variation};
+use crate::medium::{Density, Extinction, Medium, Sides, Temperature, Variation};
 use crate::scene::MediumId;
 
 const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformgrid"];
@@ -59,8 +59,7 @@ impl Reader<'_, '_> {
         let emission_scale = if kind == "homogeneous" { at_least_zero("Lescale", 1.0)? } else { 1.0 };
         let scale = if kind == "cloud" { 1.0 } else { at_least_zero("scale", 1.0)? };
         Ok(Medium {
-            absorption,
-            scattering,
+            extinction: Extinction::Parts { absorption, scattering },
             g: p.float_where("g", 0.0, "a number between -1 and 1", |g| g.abs() < 1.0)?,
             scale,
             emission: emission.unwrap_or(Color::BLACK),

@@ -29,6 +29,7 @@ pub(super) const KEYS: &[&str] = &[
     "millimetre",
     "window",
     "distance",
+    "clip",
     "medium",
     "shutter",
     "matrix",
@@ -103,6 +104,13 @@ impl Reader<'_, '_> {
     }
 }
 
+/// The distances between which a camera sees.
+fn clip(value: Value<'_>) -> Result<[f64; 2]> {
+    let what = "two distances along the view axis, at least 0 and rising";
+    let [near, far] = value.numbers::<2>(what)?;
+    if near >= 0.0 && far > near { Ok([near, far]) } else { Err(value.wrong(what)) }
+}
+
 /// The camera without a lens system.
 fn camera(table: &Table<'_>) -> Result<Camera> {
     table.allow(&[KEYS]);
@@ -152,6 +160,7 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         None => w.dot(lookat - lookfrom),
     };
     Ok(Camera {
+        clip: table.maybe("clip", clip),
         at: table.at(),
         view: View::Look { lookfrom, lookat, up },
         target: None,
@@ -193,6 +202,7 @@ fn camera_by_matrix(table: &Table<'_>) -> Result<Camera> {
     let shutter = table.or("shutter", 0.0, Value::not_negative);
     table.sound(&["matrix", "aperture", "focus_distance"])?;
     Ok(Camera {
+        clip: table.maybe("clip", clip),
         at: table.at(),
         view: View::Matrix(matrix),
         target: lookat.map(|lookat| Target { lookat, up }),

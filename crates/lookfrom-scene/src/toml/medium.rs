@@ -9,7 +9,7 @@ use super::{Reader, transform};
 use crate::error::Result;
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
-use crate::medium::{DROPLETS, Density, Medium, Variation};
+use crate::medium::{DROPLETS, Density, DraineLobe, Extinction, Medium, Variation};
 use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
 
@@ -18,8 +18,11 @@ pub(super) const KEYS: &[&str] = &[
     "preset",
     "absorption",
     "scattering",
+    "extinction",
+    "albedo",
     "g",
     "droplets",
+    "draine",
     "density",
     "max_density",
     "emission",
@@ -29,6 +32,21 @@ pub(super) const KEYS: &[&str] = &[
     "emission_density",
     "bounds",
 ];
+
+/// A second lobe of a phase function.
+fn draine(value: Value<'_>) -> Result<DraineLobe> {
+    let table = value.table("a lobe")?;
+    table.allow(&[&["g", "alpha", "share"]]);
+    let g = table
+        .or("g", 0.0, |value| value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0));
+    let alpha = table.or("alpha", 1.0, |value| {
+        value.single_where("a number of at least 0", |alpha| alpha >= 0.0 && alpha.is_finite())
+    });
+    let share = table.or("share", 1.0, |value| {
+        value.single_where("a number from 0 to 1", |share| (0.0..=1.0).contains(&share))
+    });
+    Ok(DraineLobe { g, alpha, share })
+}
 
 impl Reader<'_, '_> {
     /// Reads `[media]`.
@@ -52,12 +70,10 @@ impl Reader<'_, '_> {
     fn medium(&mut self, name: &str, table: &Table<'_>) -> Medium {
         table.allow(&[KEYS, transform::KEYS]);
         let mut medium = Medium::clear(name, table.at());
-        let preset = table.maybe("preset", preset);
-        let [absorption, scattering] =
-            preset.map_or([[0.0; 3]; 2], |preset| [preset.absorption, preset.scattering]).map(Color::Value);
-        medium.absorption = table.or("absorption", absorption, |value| self.coefficient(value));
-        medium.scattering = table.or("scattering", scattering, |value| self.coefficient(value));
+        medium.extinction = self.extinction(table);
         table.one_of(&["g", "droplets"]);
+        table.one_of(&["draine", "droplets"]);
+        medium.draine = table.maybe("draine", draine);
         medium.g = table.or("g", 0.0, |value| {
             value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
         });
@@ -90,6 +106,33 @@ impl Reader<'_, '_> {
                 Variation { emission_scale: emission_density, bounds, ..variation }
             });
         medium
+    }
+
+    fn extinction(&mut self, table: &Table<'_>) -> Extinction {
+        for part in ["preset", "absorption", "scattering"] {
+            table.one_of(&[part, "extinction"]);
+        }
+        table.one_of(&["scattering", "albedo"]);
+        let Some(sum) = table.maybe("extinction", |value| self.coefficient(value)) else {
+            if let Some(albedo) = table.find("albedo") {
+                albedo.note(albedo.error("`albedo` needs an `extinction`"));
+            }
+            let preset = table.maybe("preset", preset);
+            let [absorption, scattering] = preset
+                .map_or([[0.0; 3]; 2], |preset| [preset.absorption, preset.scattering])
+                .map(Color::Value);
+            return Extinction::Parts {
+                absorption: table.or("absorption", absorption, |value| self.coefficient(value)),
+                scattering: table.or("scattering", scattering, |value| self.coefficient(value)),
+            };
+        };
+        let albedo = table.or("albedo", Color::BLACK, |value| match self.coefficient(value)? {
+            Color::Value(rgb) if rgb.iter().any(|part| *part > 1.0) => {
+                Err(value.wrong("numbers from 0 to 1"))
+            }
+            albedo => Ok(albedo),
+        });
+        Extinction::Sum { sum, albedo }
     }
 
     /// A coefficient per unit of length: the same everywhere.

@@ -9,7 +9,7 @@ use crate::material::{
     BumpMapping, Color, Material, MaterialKind, OpenPbr, Roughness, Scalar, Subsurface, SubsurfaceMedium,
     Tangent,
 };
-use crate::medium::Medium;
+use crate::medium::{Extinction, Medium};
 use crate::scene::{MaterialId, MediumId, TextureId};
 use crate::shape::Emission;
 use crate::texture::TextureKind;
@@ -209,8 +209,10 @@ impl Reader<'_, '_> {
         }
         let id = MediumId(self.scene.media.len() as u32);
         self.scene.media.push(Medium {
-            absorption: Color::Value(absorption),
-            scattering: Color::Value(scattering),
+            extinction: Extinction::Parts {
+                absorption: Color::Value(absorption),
+                scattering: Color::Value(scattering),
+            },
             g: g.clamp(-GREATEST_G, GREATEST_G),
             ..Medium::clear(format!("inside of the material at {}", table.at()), table.at())
         });

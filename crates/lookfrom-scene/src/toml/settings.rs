@@ -51,6 +51,7 @@ pub(super) const RENDER: &[&str] = &[
     "thin_passages_count",
     "occlusion_directions",
     "open_fronts",
+    "hide_lights",
     "media",
     "vertex_normals",
     "add_light",
@@ -242,5 +243,6 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),
         media: table.or("media", default.media, Value::boolean),
         open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
+        hide_lights: table.or("hide_lights", default.hide_lights, Value::boolean),
     }
 }

@@ -46,6 +46,7 @@ pub(super) const KEYS: Kinds = &[
     ("vertex_alpha", &[]),
     ("product", &["a", "b"]),
     ("threshold", &["value", "edge"]),
+    ("quotient", &["a", "b"]),
     ("pbrt_marble", &["octaves", "roughness", "frequency", "variation", "footprint"]),
 ];
 
@@ -83,8 +84,17 @@ const fn mip(filter: MipFilter) -> TexelFilter {
 
 /// Whether a type of texture has a mapping of its own.
 pub(super) fn is_mapped(kind: &str) -> bool {
-    const WITHOUT: [&str; 8] =
-        ["scale", "mix", "direction_mix", "sides", "vertex_color", "vertex_alpha", "product", "threshold"];
+    const WITHOUT: [&str; 9] = [
+        "scale",
+        "mix",
+        "direction_mix",
+        "sides",
+        "vertex_color",
+        "vertex_alpha",
+        "product",
+        "threshold",
+        "quotient",
+    ];
     !WITHOUT.contains(&kind)
 }
 
@@ -218,6 +228,12 @@ impl Reader<'_, '_> {
                 }),
                 edge: table.or("edge", 0.5, Value::single),
             },
+            "quotient" => {
+                let mut number = |key| {
+                    table.or(key, Scalar::Value(1.0), |value| self.scalar_where(value, "a number", |_| true))
+                };
+                TextureKind::Quotient { a: number("a"), b: number("b") }
+            }
             "pbrt_marble" => TextureKind::PbrtMarble {
                 octaves: octaves(TextureKind::OCTAVES),
                 roughness: roughness(),

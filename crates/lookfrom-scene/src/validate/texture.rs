@@ -67,6 +67,7 @@ fn check_texture(part: &Part<'_>, kind: &TextureKind) -> Result<()> {
         | TextureKind::Mix { .. }
         | TextureKind::Sides { .. }
         | TextureKind::Product { .. }
+        | TextureKind::Quotient { .. }
         | TextureKind::VertexAlpha => Ok(()),
     }
 }

@@ -11,6 +11,7 @@ use lookfrom_scene::files::{CameraChoice, ImportOptions};
 use lookfrom_scene::image::encode_png;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{BumpMapping, Color, MaterialKind, Principled, Scalar};
+use lookfrom_scene::medium::Extinction;
 use lookfrom_scene::scene::{MediumId, TextureId};
 use lookfrom_scene::settings::{Integrator, Tonemap};
 use lookfrom_scene::shape::{Geometry, Mesh, Shape};
@@ -614,7 +615,8 @@ fn volumes_that_scatter_are_filled_with_a_medium() {
         let medium = &scene.media[0];
         assert_eq!((medium.name.as_str(), medium.g, medium.scale), ("wax", 0.25, 1.0));
         assert_eq!(medium.at.to_string(), "m/a.gltf#/materials/0/extensions/KHR_materials_volume_scatter");
-        let (Color::Value(absorption), Color::Value(scattering)) = (medium.absorption, medium.scattering)
+        let Extinction::Parts { absorption: Color::Value(absorption), scattering: Color::Value(scattering) } =
+            medium.extinction
         else {
             panic!("values")
         };

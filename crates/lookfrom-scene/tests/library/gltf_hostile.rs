@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::material::Color;
+use lookfrom_scene::medium::Extinction;
 use lookfrom_scene::shape::Geometry;
 use lookfrom_scene::{LoadContext, Memory, Scene, load};
 use proptest::prelude::*;
@@ -117,7 +118,8 @@ fn check(scene: &Scene) {
     }
     for medium in &scene.media {
         assert!(medium.g.abs() < 1.0);
-        for color in [medium.absorption, medium.scattering] {
+        let Extinction::Parts { absorption, scattering } = medium.extinction else { panic!("{medium:?}") };
+        for color in [absorption, scattering] {
             let Color::Value(rgb) = color else { panic!("{color:?}") };
             assert!(rgb.into_iter().all(|sigma| sigma.is_finite() && sigma >= 0.0), "{rgb:?}");
         }

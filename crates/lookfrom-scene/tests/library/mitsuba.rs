@@ -1,5 +1,9 @@
 //! Scenes of Mitsuba in XML: what is read of each kind of plugin, what is said of faults, and hostile files.
 
+mod attributes;
+mod blends;
+mod phases;
+
 use std::f32::consts::FRAC_1_PI;
 use std::path::{Path, PathBuf};
 
@@ -11,9 +15,9 @@ use lookfrom_scene::material::{
     BackFace, BumpGuard, BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets,
     Plastic, Scalar,
 };
-use lookfrom_scene::medium::{Density, Medium};
+use lookfrom_scene::medium::{Density, Extinction, Medium};
 use lookfrom_scene::scene::TextureId;
-use lookfrom_scene::settings::{FilterShape, Integrator, Layers, PixelBounds, Sampler};
+use lookfrom_scene::settings::{Background, FilterShape, Integrator, Layers, PixelBounds, Sampler};
 use lookfrom_scene::shape::{Geometry, Shape};
 use lookfrom_scene::texture::{Mapping, TexelFilter, TextureKind, Wrap};
 use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, load};
@@ -455,40 +459,6 @@ fn spots_and_projectors_have_pictures_and_linear_edges() {
 }
 
 /// A mesh with an attribute of faces and one of vertices.
-const ATTRIBUTES: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
-    property float heat_0\nelement face 2\nproperty list uchar int vertex_indices\nproperty float color_0\n\
-    property float color_1\nproperty float color_2\nend_header\n0 0 0 0.25\n1 0 0 0.5\n0 1 0 0.75\n1 1 0 1\n\
-    3 0 1 2 1 0 0\n3 1 3 2 0 0.5 0\n";
-
-#[test]
-fn attributes_of_meshes_are_their_colours() {
-    let of = |bsdf: &str| {
-        let text = format!(
-            "<scene version=\"3.0.0\">\n<shape type=\"ply\"><string name=\"filename\" value=\"m.ply\"/>{bsdf}</shape>\n</scene>"
-        );
-        read_of(&files(&[("s/a.xml", &text), ("s/m.ply", ATTRIBUTES)]), &[]).0
-    };
-    let diffuse = |name: &str| {
-        of(&format!(
-            "<bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"mesh_attribute\"><string name=\"name\" value=\"{name}\"/></texture></bsdf>"
-        ))
-    };
-    let read = diffuse("vertex_heat").expect("a scene");
-    assert_eq!(read.meshes[0].colors, [[0.25; 3], [0.5; 3], [0.75; 3], [1.0; 3]]);
-    let read = diffuse("face_color").expect("a scene");
-    let colors = read.meshes[0].triangles[1].map(|corner| read.meshes[0].colors[corner as usize]);
-    assert_eq!((read.meshes[0].positions.len(), colors), (6, [[0.0, 0.5, 0.0]; 3]));
-    let missing = diffuse("vertex_color").expect_err("no such attribute");
-    assert_eq!((missing.kind, missing.at.line), (ErrorKind::Invalid, 2));
-    assert!(diffuse("color").expect_err("of nothing").message.starts_with("`name` has to be"));
-    let both = of(
-        "<bsdf type=\"blendbsdf\"><texture name=\"weight\" type=\"mesh_attribute\"><string name=\"name\" value=\"vertex_heat\"/></texture>\
-         <bsdf type=\"diffuse\"><texture name=\"reflectance\" type=\"mesh_attribute\"><string name=\"name\" value=\"face_color\"/></texture></bsdf>\
-         <bsdf type=\"conductor\"/></bsdf>",
-    );
-    assert_eq!(both.expect_err("two").kind, ErrorKind::Unsupported);
-}
-
 /// A serialized file of one mesh for each list of flags: a triangle at heights that rise by the number of the mesh.
 fn serialized(version: u16, flags: &[u32]) -> Vec<u8> {
     let mut bytes = [0x041c_u16.to_le_bytes(), version.to_le_bytes()].concat();
@@ -609,8 +579,8 @@ fn media_are_absorption_and_scattering() {
     );
     let [fog] = &read.media[..] else { panic!("{:?}", read.media) };
     assert_eq!(
-        (fog.absorption, fog.scattering),
-        (Color::Value([0.25, 0.5, 1.0]), Color::Value([0.75, 1.5, 3.0]))
+        fog.extinction,
+        Extinction::Sum { sum: Color::Value([1.0, 2.0, 4.0]), albedo: Color::gray(0.75) }
     );
     assert_eq!((fog.g, fog.scale), (0.5, 3.0));
     let sides = read.shapes[1].sides.expect("sides");
@@ -676,7 +646,42 @@ fn skies_blackbodies_and_old_integrators_are_understood() {
     let luminance = f64::from(read.lights[1].power.scale);
     assert!((luminance / 12_579.29 - 1.0).abs() < 2e-3, "{luminance}");
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert_eq!(error("<emitter type=\"sunsky\"/>").kind, ErrorKind::Unsupported);
+}
+
+#[test]
+fn the_sun_is_told_by_place_and_time() {
+    let picture = |elements: &str| {
+        let (read, warnings) = told(&format!("<emitter type=\"sunsky\">{elements}</emitter>"));
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        read.images[0].clone()
+    };
+    let default = picture("");
+    let told = picture("<vector name=\"sun_direction\" value=\"0.0513854 0.691748 0.720308\"/>");
+    let differs = default.texels().zip(told.texels()).filter(|(a, b)| (a[1] / b[1] - 1.0).abs() > 0.01);
+    // The rim of the sun.
+    assert!(differs.count() < 64);
+    let morning = picture("<float name=\"hour\" value=\"9\"/>");
+    assert_ne!(morning.texels().collect::<Vec<_>>(), default.texels().collect::<Vec<_>>());
+    let wrong = error("<emitter type=\"sunsky\"><integer name=\"month\" value=\"13\"/></emitter>");
+    assert_eq!(wrong.kind, ErrorKind::Invalid);
+}
+
+#[test]
+fn integrators_for_derivatives_make_pictures_of_others() {
+    let render = |integrator: &str| told(integrator).0.render;
+    let adjoint = render("<integrator type=\"prbvolpath\"/>");
+    assert_eq!((adjoint.integrator, adjoint.depth, adjoint.media), (Integrator::Path, 5, true));
+    let direct = render("<integrator type=\"direct_projective\"/>");
+    assert_eq!((direct.integrator, direct.depth), (Integrator::Path, 1));
+    assert_eq!(render("<integrator type=\"depth\"/>").integrator, Integrator::Depth);
+}
+
+#[test]
+fn hidden_emitters_are_seen_by_no_camera() {
+    let hidden =
+        scene("<integrator type=\"path\"><boolean name=\"hide_emitters\" value=\"true\"/></integrator>");
+    assert!(hidden.render.hide_lights);
+    assert_eq!(hidden.image.background, Background::Transparent);
 }
 
 /// A `.vol` file.
@@ -705,8 +710,8 @@ fn volumes_are_grids_whose_outermost_cells_go_on() {
                 <boolean name=\"use_grid_bbox\" value=\"true\"/></volume><rgb name=\"albedo\" value=\"0.5 0.25 0\"/>";
     let medium = heterogeneous(grid, volume([2, 1, 1], 1, &[1.0, 3.0])).expect("a medium");
     assert_eq!(
-        (medium.absorption, medium.scattering),
-        (Color::Value([0.5, 0.75, 1.0]), Color::Value([0.5, 0.25, 0.0]))
+        medium.extinction,
+        Extinction::Sum { sum: Color::gray(1.0), albedo: Color::Value([0.5, 0.25, 0.0]) }
     );
     let variation = medium.variation.expect("a grid");
     assert_eq!(variation.world_from_medium, DMat4::from_scale(DVec3::new(2.0, 3.0, 4.0)));

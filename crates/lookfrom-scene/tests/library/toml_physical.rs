@@ -10,7 +10,7 @@ use lookfrom_scene::material::{
     BumpMapping, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, OpenPbr,
     Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent,
 };
-use lookfrom_scene::medium::Density;
+use lookfrom_scene::medium::{Density, Extinction};
 use lookfrom_scene::scene::MediumId;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, LightSampler, SpectralFilm};
 use lookfrom_scene::shape::{Geometry, Profile};
@@ -626,12 +626,13 @@ material = "liquid"
     let id = |name: &str| scene.media.iter().position(|medium| medium.name == name);
     let (haze, smoke, spots, flame) = (medium("haze"), medium("smoke"), medium("spots"), medium("flame"));
     assert_eq!(scene.camera.as_ref().and_then(|camera| camera.medium).map(MediumId::index), id("haze"));
-    assert_eq!((haze.scattering, haze.g, haze.scale), (Color::gray(0.1), -0.4, 3.0));
+    let parts = |absorption, scattering| Extinction::Parts { absorption, scattering };
+    assert_eq!((haze.extinction, haze.g, haze.scale), (parts(Color::BLACK, Color::gray(0.1)), -0.4, 3.0));
     assert!(haze.scatters() && !haze.emits() && haze.variation.is_none());
     assert!(!smoke.scatters() && smoke.emits());
     assert_eq!(
-        (smoke.absorption, smoke.emission),
-        (Color::Value([1.0, 2.0, 3.0]), Color::Value([4.0, 5.0, 6.0]))
+        (smoke.extinction, smoke.emission),
+        (parts(Color::Value([1.0, 2.0, 3.0]), Color::BLACK), Color::Value([4.0, 5.0, 6.0]))
     );
 
     // A formula is evaluated at the centres of cells.
@@ -761,7 +762,9 @@ alpha = 0.75
     assert_eq!(look("honey").dispersion, 0.5);
     let honey = scene.materials.iter().find(|material| material.name == "honey").expect("honey");
     let medium = &scene.media[honey.medium.expect("a medium").index()];
-    let (Color::Value(absorption), Color::Value(scattering)) = (medium.absorption, medium.scattering) else {
+    let Extinction::Parts { absorption: Color::Value(absorption), scattering: Color::Value(scattering) } =
+        medium.extinction
+    else {
         panic!("{medium:?}")
     };
     let expected = [0.5 * LN_2 - 0.1 + 0.2, 0.0, LN_2 - 0.3 + 0.2];

@@ -7,12 +7,12 @@
 //!
 //! Shirley & Chiu 1997 (disk); Malley (hemisphere by the disk); Heitz 2019 (triangle); Duff et al. 2017 (basis).
 
-use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_1_PI, PI};
 
 use glam::Vec3;
 use lookfrom_simd::{Float, Real};
 
-use crate::core::elementary::sin_cos_of_eighths;
+use crate::core::elementary::{angle_in_turns, sin_cos_of_eighths, sin_cos_of_turns};
 use crate::core::vector::Vector;
 
 /// A uniform point in the unit disk: the density over area is [`CONCENTRIC_DISK_PDF`]. The centre of the square
@@ -111,31 +111,43 @@ pub fn octahedral_direction([mut u, mut v]: [f32; 2]) -> Vec3 {
     if !(0.0..=1.0).contains(&v) {
         (u, v) = (1.0 - u, if v < 0.0 { -v } else { 2.0 - v });
     }
-    let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    let signed_distance = 1.0 - (x.abs() + y.abs());
-    let r = 1.0 - signed_distance.abs();
-    let phi = if r == 0.0 { 1.0 } else { (y.abs() - x.abs()) / r + 1.0 } * FRAC_PI_4;
-    let (sin, cos) = libm::sincosf(phi);
-    let sin_theta = r * (2.0 - r * r).max(0.0).sqrt();
-    Vec3::new(
-        cos.copysign(x) * sin_theta,
-        sin.copysign(y) * sin_theta,
-        (1.0 - r * r).copysign(signed_distance),
-    )
+    octahedral_direction_within([u, v]).into()
 }
 
-/// The inverse of [`octahedral_direction`] for a unit direction.
-pub fn octahedral_square(direction: Vec3) -> [f32; 2] {
-    let Vec3 { x, y, z } = direction.abs();
-    let r = (1.0 - z).max(0.0).sqrt();
-    let (low, high) = (x.min(y), x.max(y));
-    let angle = if high == 0.0 { 0.0 } else { libm::atan2f(low, high) * FRAC_2_PI };
-    let share = if x < y { 1.0 - angle } else { angle };
-    let (mut u, mut v) = (r - share * r, share * r);
-    if direction.z < 0.0 {
-        (u, v) = (1.0 - v, 1.0 - u);
+/// [`octahedral_direction`] of points within the square, at any width.
+#[inline(always)]
+pub fn octahedral_direction_within<R: Real>([u, v]: [R; 2]) -> Vector<R> {
+    let one = u.like(1.0);
+    let (x, y) = (u * 2.0 - one, v * 2.0 - one);
+    let (width, height) = (Float::abs(x), Float::abs(y));
+    let signed_distance = one - (width + height);
+    let r = one - Float::abs(signed_distance);
+    // The angle in eighths of a turn, 0 … 2.
+    let is_pole = Float::eq(r, r.like(0.0));
+    let eighths = (height - width) / R::select(is_pole, one, r) + one;
+    let (sin, cos) = sin_cos_of_turns(eighths * 0.125);
+    let square = r * r;
+    let sin_theta = r * Float::sqrt(Float::max(square.like(2.0) - square, square.like(0.0)));
+    Vector {
+        x: Float::copysign(cos, x) * sin_theta,
+        y: Float::copysign(sin, y) * sin_theta,
+        z: Float::copysign(one - square, signed_distance),
     }
-    [u.copysign(direction.x), v.copysign(direction.y)].map(|c| 0.5 * (c + 1.0))
+}
+
+/// The inverse of [`octahedral_direction`] for unit directions.
+#[inline(always)]
+pub fn octahedral_square<R: Real>(direction: Vector<R>) -> [R; 2] {
+    let [x, y, z] = [Float::abs(direction.x), Float::abs(direction.y), Float::abs(direction.z)];
+    let (zero, one) = (x.like(0.0), x.like(1.0));
+    // √(1 − |z|) of a unit vector, without the cancellation near the poles.
+    let r = Float::min(Float::sqrt((x * x + y * y) / (one + z)), one);
+    let angle = angle_in_turns(Float::min(x, y), Float::max(x, y)) * 4.0;
+    let share = R::select(x.lt(y), one - angle, angle);
+    let (u, v) = (r - share * r, share * r);
+    let is_below = direction.z.lt(zero);
+    let (u, v) = (R::select(is_below, one - v, u), R::select(is_below, one - u, v));
+    [(Float::copysign(u, direction.x) + one) * 0.5, (Float::copysign(v, direction.y) + one) * 0.5]
 }
 
 /// Two unit vectors that make a right-handed orthonormal basis (s, t, n) with the unit vector `n`, up to rounding.

@@ -122,11 +122,10 @@ impl Environment {
                 let end = if y >= 0.0 { zenith } else { nadir };
                 horizon.even(textures, mode) * (1.0 - y.abs()) + end.even(textures, mode) * y.abs()
             }
-            Sky::Image(sky) => {
-                let through = self.portal.as_ref().and_then(|portal| portal.texel(direction));
-                let rgb = through.unwrap_or_else(|| sky.texel(textures, sky.uv(direction).0));
-                sky.radiance(rgb, mode)
-            }
+            Sky::Image(sky) => match self.portal.as_ref().and_then(|portal| portal.texel(direction)) {
+                Some(rgb) => sky.radiance(rgb, mode),
+                None => sky.radiance_at(textures, sky.uv(direction.into()).0, mode),
+            },
         }
     }
 
@@ -160,7 +159,7 @@ impl Environment {
             let place = [(index % image.width) as f32 + 0.5, (index / image.width) as f32 + 0.5];
             let uv = [place[0] / width, place[1] / height];
             let (direction, per_solid_angle) = sky.direction(uv);
-            let cos = direction.dot(n);
+            let cos = Vec3::from(direction).dot(n);
             if cos > 0.0 {
                 let texel = if is_in_bands { texel } else { sky.texel(textures, uv) };
                 let share = f64::from(cos / per_solid_angle);
@@ -197,9 +196,9 @@ impl Environment {
             }
             (None, Sky::Image(sky), _) => {
                 let (uv, pdf) = sky.choice(incomplete_pdf).sample(u);
-                let li = sky.radiance(sky.texel(textures, uv), mode);
+                let li = sky.radiance_at(textures, uv, mode);
                 let (wi, per_solid_angle) = sky.direction(uv);
-                (wi, pdf * per_solid_angle, li)
+                (wi.into(), pdf * per_solid_angle, li)
             }
             (None, _, IncompletePdf::Allowed) => return None,
             (None, _, IncompletePdf::Forbidden) => {
@@ -244,7 +243,7 @@ fn finite(pdf: f32) -> f32 {
 impl SkyImage {
     /// The solid angle density of a unit direction, without a guide.
     fn pdf(&self, wi: Vec3, incomplete_pdf: IncompletePdf) -> f32 {
-        let (uv, per_solid_angle) = self.uv(wi);
+        let (uv, per_solid_angle) = self.uv(wi.into());
         finite(self.choice(incomplete_pdf).pdf(uv) * per_solid_angle)
     }
 
@@ -283,7 +282,7 @@ impl SkyImage {
 
     /// The map's colour in a unit direction, bilinearly interpolated between texel centres.
     pub fn blended(&self, textures: &Textures, direction: Vec3) -> [f32; 3] {
-        let (uv, _) = self.uv(direction);
+        let (uv, _) = self.uv(direction.into());
         match self.layout {
             MapLayout::LatitudeLongitude => self.texel(textures, uv),
             MapLayout::Octahedral => {
@@ -297,7 +296,7 @@ impl SkyImage {
                         std::array::from_fn(|i| (place[i].floor() + corner[i] + 0.5) / size[i]);
                     let weight: f32 =
                         (0..2).map(|i| 1.0 - (place[i] - place[i].floor() - corner[i]).abs()).product();
-                    let folded = warp::octahedral_square(warp::octahedral_direction(middle));
+                    let folded = warp::octahedral_square(warp::octahedral_direction(middle).into());
                     let texel = self.texel(textures, folded);
                     sum = std::array::from_fn(|c| sum[c] + weight * texel[c]);
                 }
@@ -306,32 +305,62 @@ impl SkyImage {
         }
     }
 
+    /// The radiance at (u, v).
+    fn radiance_at(&self, textures: &Textures, uv: [f32; 2], mode: &SpectralMode) -> Spectrum {
+        match self.blends_apart(mode) {
+            true => self.radiance_apart(textures, uv, mode),
+            false => self.radiance(self.texel(textures, uv), mode),
+        }
+    }
+
+    /// Whether the brightness and the spectrum are interpolated apart, as Mitsuba does in its maps, whose outermost rows are the poles.
+    #[inline(always)]
+    fn blends_apart(&self, mode: &SpectralMode) -> bool {
+        self.picture_v != [1.0, 0.0] && matches!(mode, SpectralMode::Spectral(_))
+    }
+
+    /// As [`Self::radiance_at`], where both are interpolated apart.
+    #[inline(never)]
+    fn radiance_apart(&self, textures: &Textures, uv: [f32; 2], mode: &SpectralMode) -> Spectrum {
+        let (image, uv) = (textures.image(self.image), self.in_picture(uv));
+        let (mut shape, mut brightness) = (Spectrum::BLACK, 0.0);
+        for (texel, weight) in texture::blended_texels(image, uv, [Wrap::Repeat, Wrap::Clamp]) {
+            let rgb: [f32; 3] = std::array::from_fn(|c| (texel[c] * self.scale[c]).max(0.0));
+            let twice = 2.0 * rgb.into_iter().fold(0.0, f32::max);
+            if twice > 0.0 {
+                let normalized = rgb.map(|channel| channel / twice);
+                shape += texture::spectrum_of(normalized, SpectrumType::Illuminant, mode) * weight;
+            }
+            brightness += weight * twice;
+        }
+        shape * brightness
+    }
+
     fn radiance(&self, rgb: [f32; 3], mode: &SpectralMode) -> Spectrum {
         let rgb = std::array::from_fn(|c| (rgb[c] * self.scale[c]).max(0.0));
         texture::spectrum_of(rgb, SpectrumType::Illuminant, mode)
     }
 
-    /// The (u, v) of a unit direction, and the factor there from a density over the unit square to one over solid angle.
-    fn uv(&self, direction: Vec3) -> ([f32; 2], f32) {
+    /// The (u, v) of unit directions, and the factors there from a density over the unit square to one over solid angle.
+    #[inline(always)]
+    fn uv<R: Real>(&self, direction: Vector<R>) -> ([R; 2], R) {
+        let of_light = self.of_light(direction);
         match self.layout {
-            MapLayout::LatitudeLongitude => latitude_longitude(self.of_light(direction.into())),
+            MapLayout::LatitudeLongitude => latitude_longitude(of_light),
             MapLayout::Octahedral => {
-                (warp::octahedral_square(self.world_from_light.transpose() * direction), OCTAHEDRAL_DENSITY)
+                (warp::octahedral_square(of_light), direction.x.like(OCTAHEDRAL_DENSITY))
             }
         }
     }
 
     /// The inverse of [`SkyImage::uv`].
-    fn direction(&self, uv: [f32; 2]) -> (Vec3, f32) {
-        match self.layout {
-            MapLayout::LatitudeLongitude => {
-                let (of_light, per_solid_angle) = latitude_longitude_direction(uv);
-                (self.in_world(of_light).into(), per_solid_angle)
-            }
-            MapLayout::Octahedral => {
-                (self.world_from_light * warp::octahedral_direction(uv), OCTAHEDRAL_DENSITY)
-            }
-        }
+    #[inline(always)]
+    fn direction<R: Real>(&self, uv: [R; 2]) -> (Vector<R>, R) {
+        let (of_light, per_solid_angle) = match self.layout {
+            MapLayout::LatitudeLongitude => latitude_longitude_direction(uv),
+            MapLayout::Octahedral => (warp::octahedral_direction_within(uv), uv[0].like(OCTAHEDRAL_DENSITY)),
+        };
+        (self.in_world(of_light), per_solid_angle)
     }
 
     /// From the world to the light's axes.

@@ -95,7 +95,7 @@ impl Goniometric {
     ) -> Option<LightSample> {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
-        let st = warp::octahedral_square(w);
+        let st = warp::octahedral_square(w.into());
         let [r, g, b] =
             texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
         let brightness = (r + g + b) / 3.0;

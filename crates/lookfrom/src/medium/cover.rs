@@ -31,7 +31,7 @@ const DEEPEST: f32 = 8.0;
 impl Medium {
     /// The cover of a way; `None` in a medium that only absorbs.
     pub(crate) fn cover(&self, textures: &Textures, way: &Way) -> Option<Cover> {
-        if self.scattering.is_none() && self.emission.is_none() {
+        if self.phase.is_none() && self.emission.is_none() {
             return None;
         }
         let mode = SpectralMode::Rgb;

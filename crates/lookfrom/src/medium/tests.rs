@@ -19,8 +19,10 @@ fn medium(textures: &Textures, factor: f32) -> Medium {
     let grid = Arc::new(Grid::from_values([5, 6, 7], &values).expect("a grid"));
     let bounds = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 3.0)];
     let written = Written {
-        absorption: Color::Value([0.2, 0.4, 0.1]),
-        scattering: Color::Value([0.6, 0.3, 0.9]),
+        extinction: WrittenExtinction::Parts {
+            absorption: Color::Value([0.2, 0.4, 0.1]),
+            scattering: Color::Value([0.6, 0.3, 0.9]),
+        },
         variation: Some(Variation {
             world_from_medium: DMat4::from_rotation_z(0.3),
             bounds: Some(bounds),

@@ -106,7 +106,7 @@ impl Medium {
             textures,
             rays,
             tracked: &mut tracked,
-            scatters: is_flight && self.scattering.is_some(),
+            scatters: is_flight && self.phase.is_some(),
             emits: is_flight && self.emission.is_some(),
             listens,
         };

@@ -146,7 +146,18 @@ impl Renderer {
     /// opens.
     pub(super) fn kernel_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.ray_start + ray.a_from_eye;
-        Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array())
+        self.clipped(Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array()))
+    }
+
+    /// A camera ray that meets surfaces only between the distances of the camera's clip.
+    fn clipped(&self, ray: Ray) -> Ray {
+        let camera = &self.view.camera;
+        let Some(clip) = camera.clip.filter(|_| camera.is_flat()) else { return ray };
+        // Rays of parallel cameras may start before the eye.
+        let (w, eye) = (camera.w(), camera.lookfrom() - self.world.origin());
+        let start = (self.ray_start - eye).dot(w) / w.length_squared();
+        let [t_min, t_max] = clip.map(|distance| ((distance - start) / camera.distance) as f32);
+        Ray { t_min: t_min.max(0.0), t_max, ..ray }
     }
 
     /// Replaces `start` by the camera rays of the samples.
@@ -164,6 +175,9 @@ impl Renderer {
         times.replace(moving.iter().map(|id| self.time(*id)));
         if camera.is_flat() {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
+            if camera.clip.is_some() {
+                rays.iter_mut().for_each(|ray| *ray = self.clipped(*ray));
+            }
         } else {
             dispatch(level(), ImagePoints { renderer: self, ids, points, weights });
         }

@@ -39,6 +39,9 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
     if render.portals != Portals::default() {
         texts.push(("portals", render.portals.word().to_owned()));
     }
+    if render.hide_lights {
+        texts.push(("hide_lights", render.hide_lights.to_string()));
+    }
     if let Some(noise) = session.stop.noise {
         texts.push((NOISE, noise.to_string()));
     }

@@ -103,12 +103,15 @@ impl Identity {
     pub(super) fn provenance(&self, session: &Session) -> Provenance {
         let settings =
             RenderSettings { samples: 0, allocation: Allocation::Uniform, ..session.settings().clone() };
-        // Named portals need no word: films that are older know of no others.
-        let settings = format!("{settings:?}").replace("portals: Named, ", "");
+        // Named portals and lights that are seen need no words: films that are older know of no others.
+        let settings =
+            format!("{settings:?}").replace("portals: Named, ", "").replace(", hide_lights: false", "");
         let camera = Camera { at: lookfrom_scene::Location::default(), ..session.camera.clone() };
         let turn = session.turntable.as_ref().map(|turning| turning.degrees);
         let mut digest = Digest::default();
-        let _ = write!(digest, "{} {settings} {camera:?} {turn:?}", self.options);
+        // A camera that sees all has no words for it, either.
+        let camera = format!("{camera:?}").replace("clip: None, ", "");
+        let _ = write!(digest, "{} {settings} {camera} {turn:?}", self.options);
         let common = header::header(session);
         let development = session.development();
         let mut provenance = Provenance::new(common, self.inputs.clone(), digest.finish(), development);

@@ -35,8 +35,8 @@ pub(crate) use self::input::uplift;
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
 pub use self::look_ups::{LookUps, LookedUp, PictureSet};
 pub use self::mapping::sphere_uv;
-pub use self::picture::look_up;
 pub(crate) use self::picture::look_up_lanes;
+pub use self::picture::{blended_texels, look_up};
 
 use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvaluation};
 use self::input::Input;
@@ -368,6 +368,10 @@ impl Textures {
             }
             Node::Threshold { value, edge } => {
                 evaluation.number(if self.float(*value, at) >= *edge { 1.0 } else { 0.0 })
+            }
+            Node::Quotient { a, b } => {
+                let [a, b] = [a, b].map(|number| self.float(*number, at));
+                evaluation.number(if b == 0.0 { 0.0 } else { a / b })
             }
         }
     }

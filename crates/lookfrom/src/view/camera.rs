@@ -47,6 +47,8 @@ pub struct Camera {
     pub lens_system: Option<Arc<LensSystem>>,
     /// `d`.
     pub distance: f64,
+    /// Distances along the view axis between which its rays meet surfaces; `None` for all before it.
+    pub clip: Option<[f64; 2]>,
     /// `nx`, `ny`.
     pub size: [u32; 2],
     /// Its motion, if it moves: in the world, from where the matrices put it, which is where it is when the shutter opens.
@@ -136,6 +138,13 @@ impl Camera {
                 ));
             }
         }
+        if let Some([near, far]) = written.clip
+            && !(near >= 0.0 && far > near)
+        {
+            let message =
+                format!("the camera sees from {near} to {far}; expected distances that rise from 0");
+            return Err(Error::invalid(at, message));
+        }
         let (r3, lookfrom) = match written.view {
             View::Look { lookfrom, lookat, up } => (view_axes(at, lookfrom, lookat, up)?, lookfrom),
             View::Matrix(matrix) => {
@@ -173,6 +182,7 @@ impl Camera {
             lens: written.lens.filter(|lens| lens.radius > 0.0),
             lens_system,
             distance: d,
+            clip: written.clip,
             size: [width, height],
             // The surface that is measured does not move with it.
             motion: written.motion.clone().filter(|_| !written.projection.is_measurement()),

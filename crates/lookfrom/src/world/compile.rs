@@ -9,7 +9,7 @@ use lookfrom_scene::light::LightKind;
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
 use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{Instance as WrittenInstance, MaterialId, Scene};
-use lookfrom_scene::settings::Integrator as Kind;
+use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 use lookfrom_scene::shape::{Geometry, Shape};
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
@@ -77,7 +77,7 @@ impl World {
         }
         reflectance::check(&scene, warnings);
         let render_from_world = DMat4::from_translation(-origin);
-        let (has_media, open_fronts) = (scene.render.media, scene.render.open_fronts);
+        let RenderSettings { media: has_media, open_fronts, hide_lights: hides_lights, .. } = scene.render;
         if scene.materials.len().saturating_add(scene.media.len()) > InteriorStack::MOST {
             let message = format!("more than {} materials and media", InteriorStack::MOST);
             return Err(Error::new(ErrorKind::Limit, &Location::default(), message));
@@ -287,7 +287,9 @@ impl World {
             has_panes: is_any_in_use(Material::is_pane),
             has_gaps: !alphas.is_empty()
                 || has_media
-                    && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface)),
+                    && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface))
+                || hides_lights,
+            hides_lights,
             has_open_fronts: false,
             has_media,
             radius,

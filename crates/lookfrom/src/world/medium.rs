@@ -7,7 +7,7 @@ use super::World;
 use crate::core::spectrum::Spectrum;
 use crate::medium::{Cover, Medium, Way};
 use crate::shading::interior_stack::InteriorStack;
-use crate::shading::texture::{SpectralMode, SpectrumTexture, TexturePoint};
+use crate::shading::texture::SpectralMode;
 
 impl World {
     /// Transmittance of the medium that a ray is in over a length; in a medium that varies, an estimate of it. Over an infinite
@@ -48,12 +48,8 @@ impl World {
 
     /// The extinction coefficient of a medium where its density is 1, what it absorbs and scatters, and a factor of it.
     pub(crate) fn extinction(&self, medium: &Medium, mode: &SpectralMode) -> (Spectrum, f32) {
-        let coefficient = |of: &SpectrumTexture| self.textures.spectrum(of, &TexturePoint::NOWHERE, mode);
-        let absorption = coefficient(&medium.absorption);
-        match &medium.scattering {
-            None => (absorption, medium.scale),
-            Some(scattering) => (absorption + coefficient(&scattering.coefficient), medium.scale),
-        }
+        let [absorption, scattering] = medium.extinction.parts(&self.textures, mode);
+        (absorption + scattering, medium.scale)
     }
 
     /// The way of a ray to what it hits, or without an end, and what of it a medium that scatters or emits light covers; `None` where there is
@@ -69,7 +65,7 @@ impl World {
 
     /// Whether any medium scatters or emits light.
     pub(crate) fn has_luminous_media(&self) -> bool {
-        self.media.iter().any(|medium| medium.scattering.is_some() || medium.emission.is_some())
+        self.media.iter().any(|medium| medium.phase.is_some() || medium.emission.is_some())
     }
 
     /// The medium that a ray is in; `None` in a vacuum.

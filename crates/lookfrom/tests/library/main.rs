@@ -52,6 +52,7 @@ mod spectral_film;
 mod subsurface;
 mod support;
 mod surfaces;
+mod unseen;
 mod valid;
 mod varying_media;
 mod warnings;

@@ -9,6 +9,7 @@ use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
     BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium,
 };
+use lookfrom_scene::medium::Extinction;
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
 use lookfrom_scene::shape::{Geometry, Profile, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
@@ -113,7 +114,10 @@ impl<'a> Places<'a> {
             p.texture(&mut texture.kind);
         }
         for medium in &mut scene.media {
-            p.color(&mut medium.absorption);
+            let (Extinction::Parts { absorption: first, scattering: second }
+            | Extinction::Sum { sum: first, albedo: second }) = &mut medium.extinction;
+            p.color(first);
+            p.color(second);
             p.single.push(&mut medium.scale);
         }
         for curve in &mut scene.curves {
@@ -362,6 +366,10 @@ impl<'a> Places<'a> {
             }
             TextureKind::VertexColor { tint } => self.single.push(&mut tint[0]),
             TextureKind::Threshold { value, .. } => self.scalar(value),
+            TextureKind::Quotient { a, b } => {
+                self.scalar(a);
+                self.scalar(b);
+            }
             TextureKind::Windy { footprint, .. } => self.single.push(footprint),
             TextureKind::VertexAlpha => {}
         }

@@ -7,7 +7,7 @@
 use super::{Reader, positive};
 use crate::gltf::json;
 use crate::material::{Color, Principled};
-use crate::medium::Medium;
+use crate::medium::{Extinction, Medium};
 use crate::scene::MediumId;
 
 const SCATTER: &str = "/extensions/KHR_materials_volume_scatter";
@@ -52,8 +52,10 @@ impl Reader<'_, '_, '_> {
         let scattering = std::array::from_fn(|k| positive(attenuation[k] * albedo[k]));
         let absorption = std::array::from_fn(|k| positive(attenuation[k] * (1.0 - albedo[k])));
         let medium = Medium {
-            absorption: Color::Value(absorption),
-            scattering: Color::Value(scattering),
+            extinction: Extinction::Parts {
+                absorption: Color::Value(absorption),
+                scattering: Color::Value(scattering),
+            },
             g: g as f32,
             ..Medium::clear(name, self.document.at(&format!("{}{SCATTER}", self.pointer)))
         };

@@ -17,7 +17,7 @@ use crate::toml::word_of;
 
 impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) -> Result<Fields> {
-        let Camera { at: _, view, target, projection, lens, window, distance, medium, shutter, motion } =
+        let Camera { at: _, view, target, projection, lens, window, distance, clip, medium, shutter, motion } =
             camera;
         let mut fields = Fields::default();
         match *view {
@@ -46,6 +46,9 @@ impl Writer<'_> {
             fields.put("window", sides);
         }
         fields.put_unless("distance", *distance, 1.0);
+        if let Some(clip) = *clip {
+            fields.put("clip", clip);
+        }
         if let Some(medium) = medium {
             fields.put("medium", self.media.of(medium.index()));
         }

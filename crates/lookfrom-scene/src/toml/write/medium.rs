@@ -12,7 +12,7 @@ use super::text::Fields;
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Scalar};
-use crate::medium::{Density, Medium, Temperature, Variation};
+use crate::medium::{Density, DraineLobe, Extinction, Medium, Temperature, Variation};
 use crate::npy;
 
 /// The most cells of a grid, all of which are written.
@@ -23,17 +23,23 @@ impl Writer<'_> {
         let Medium {
             name,
             at: _,
-            absorption,
-            scattering,
+            extinction,
             g,
             droplets,
+            draine,
             scale,
             emission,
             emission_scale,
             variation,
         } = medium;
         let mut fields = Fields::default();
-        for (key, coefficient) in [("absorption", *absorption), ("scattering", *scattering)] {
+        let coefficients = match *extinction {
+            Extinction::Parts { absorption, scattering } => {
+                [("absorption", absorption), ("scattering", scattering)]
+            }
+            Extinction::Sum { sum, albedo } => [("extinction", sum), ("albedo", albedo)],
+        };
+        for (key, coefficient) in coefficients {
             if coefficient != Color::BLACK {
                 let item = self.color(coefficient, Of::Optics)?;
                 fields.put(key, item);
@@ -42,6 +48,13 @@ impl Writer<'_> {
         fields.put_unless("g", *g, 0.0);
         if let Some(diameter) = droplets {
             fields.put("droplets", *diameter);
+        }
+        if let Some(DraineLobe { g, alpha, share }) = draine {
+            let mut lobe = Fields::default();
+            lobe.put("g", *g);
+            lobe.put("alpha", *alpha);
+            lobe.put("share", *share);
+            fields.put("draine", lobe);
         }
         fields.put_unless(if variation.is_some() { "density_scale" } else { "density" }, *scale, 1.0);
         let is_hot = variation.as_ref().is_some_and(|variation| variation.temperature.is_some());

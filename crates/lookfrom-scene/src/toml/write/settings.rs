@@ -92,6 +92,7 @@ impl Writer<'_> {
             media,
             thin_passages_count,
             open_fronts,
+            hide_lights,
         } = &self.scene.render;
         let usual = RenderSettings::default();
         let mut fields = Fields::default();
@@ -124,6 +125,7 @@ impl Writer<'_> {
         fields.put_unless("media", *media, usual.media);
         fields.put_unless("thin_passages_count", *thin_passages_count, usual.thin_passages_count);
         fields.put_unless("open_fronts", *open_fronts, usual.open_fronts);
+        fields.put_unless("hide_lights", *hide_lights, usual.hide_lights);
         if self.scene.vertex_normals != VertexNormals::default() {
             fields.put("vertex_normals", word_of(VERTEX_NORMALS, &self.scene.vertex_normals));
         }

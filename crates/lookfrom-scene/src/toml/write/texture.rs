@@ -108,6 +108,11 @@ impl Writer<'_> {
                 fields.put("value", self.scalar(*value));
                 fields.put_unless("edge", *edge, 0.5);
             }
+            TextureKind::Quotient { a, b } => {
+                fields.put("type", "quotient");
+                fields.put("a", self.scalar(*a));
+                fields.put("b", self.scalar(*b));
+            }
         }
         Ok(fields)
     }

@@ -13,7 +13,7 @@ use lookfrom_scene::material::{
     Hair, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr, Pigment, Plastic,
     Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
 };
-use lookfrom_scene::medium::{Density, Medium, Sides, Temperature, Variation};
+use lookfrom_scene::medium::{Density, DraineLobe, Extinction, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{
     CurveId, ImageId, Instance, MaterialId, MediumId, MeshId, Object, ObjectId, TextureId, VertexNormals,
@@ -69,7 +69,8 @@ fn base() -> Scene {
     let named = |name: &str| spectrum::named(name).expect("a spectrum");
     let mut media = Vec::new();
     for name in ["fog", "air"] {
-        media.push(Medium { scattering: value(0.5), g: 0.25, ..Medium::clear(name, here()) });
+        let extinction = Extinction::Parts { absorption: Color::BLACK, scattering: value(0.5) };
+        media.push(Medium { extinction, g: 0.25, ..Medium::clear(name, here()) });
     }
     let kind = MaterialKind::Diffuse { reflectance: value(0.5) };
     let shape =
@@ -428,6 +429,7 @@ fn textures() -> Vec<(String, Scene)> {
         TextureKind::Product { a: low, b: high },
         TextureKind::Threshold { value: TEXTURE, edge: 0.25 },
         TextureKind::Sides { outside: low, inside: high },
+        TextureKind::Quotient { a: TEXTURE, b: Scalar::Value(0.5) },
     ];
     let index = |kind: &TextureKind| match kind {
         TextureKind::Image { .. } => 0,
@@ -448,6 +450,7 @@ fn textures() -> Vec<(String, Scene)> {
         TextureKind::Product { .. } => 15,
         TextureKind::Threshold { .. } => 16,
         TextureKind::Sides { .. } => 17,
+        TextureKind::Quotient { .. } => 18,
     };
     each("texture", variants, index, put_texture)
 }
@@ -732,7 +735,10 @@ fn media() -> Vec<(String, Scene)> {
     let mut scenes = each("medium", variants, index, |scene, variation| {
         let is_hot = variation.temperature.is_some();
         scene.media[0] = Medium {
-            absorption: Color::Curve(TABLE),
+            extinction: match index(&variation) {
+                0 => Extinction::Sum { sum: Color::Curve(TABLE), albedo: Color::gray(0.25) },
+                _ => Extinction::Parts { absorption: Color::Curve(TABLE), scattering: Color::gray(0.5) },
+            },
             scale: 3.0,
             emission: if is_hot { Color::BLACK } else { Color::Curve(CurveId(2)) },
             emission_scale: 5.0,
@@ -746,7 +752,11 @@ fn media() -> Vec<(String, Scene)> {
     homogeneous.media[0] =
         Medium { droplets: Some(12.5), g: 0.0, scale: 2.0, ..homogeneous.media[0].clone() };
     homogeneous.shapes[0].sides = Some(Sides { inside: Some(MediumId(1)), outside: Some(MediumId(0)) });
+    let mut two_lobes = homogeneous.clone();
+    let draine = Some(DraineLobe { g: -0.5, alpha: 2.0, share: 0.25 });
+    two_lobes.media[0] = Medium { droplets: None, g: 0.75, draine, ..two_lobes.media[0].clone() };
     scenes.push(("medium of droplets".to_owned(), homogeneous));
+    scenes.push(("medium of two lobes".to_owned(), two_lobes));
     let mut vacuum = base();
     vacuum.shapes[0].sides = Some(Sides { inside: None, outside: None });
     scenes.push(("vacuum".to_owned(), vacuum));
@@ -817,6 +827,7 @@ fn cameras() -> Vec<(String, Scene)> {
             let lens = Lens { radius: 0.1, focus_distance: 1.0 / 3.0 };
             scene.shapes[0].name = Some("measured".to_owned());
             scene.camera = Some(Camera {
+                clip: Some([0.25, 1e4]),
                 at: here(),
                 view,
                 target,
@@ -888,6 +899,7 @@ fn settings() -> Vec<(String, Scene)> {
             media: false,
             thin_passages_count: false,
             open_fronts: true,
+            hide_lights: true,
         };
         scene.vertex_normals = VertexNormals::AsGiven;
     }));

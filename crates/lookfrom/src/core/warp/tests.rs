@@ -185,6 +185,31 @@ fn bases_are_orthonormal_and_right_handed() {
 }
 
 #[test]
+fn octahedral_squares_have_equal_areas_and_an_inverse() {
+    look_uniform(
+        "octahedron",
+        numbers().map(octahedral_direction).map(|d| [0.5 + 0.5 * f64::from(d.z), turn(d.x, d.y)]),
+    );
+    for u in corners().chain(numbers().take(20_000)) {
+        let direction = octahedral_direction(u);
+        assert!((direction.as_dvec3().length() - 1.0).abs() < 5e-7, "{u:?}");
+        // Edges of the square are folded: opposite points of an edge are one direction.
+        let again = octahedral_direction(octahedral_square(direction.into()));
+        assert!((again - direction).length() < 2e-6, "{u:?} {direction} {again}");
+    }
+    for (direction, square) in [
+        (Vec3::Z, [0.5, 0.5]),
+        (Vec3::X, [1.0, 0.5]),
+        (-Vec3::X, [0.0, 0.5]),
+        (Vec3::Y, [0.5, 1.0]),
+        (Vec3::new(0.0, 0.0, -1.0), [1.0, 1.0]),
+    ] {
+        assert_eq!(octahedral_square(direction.into()), square);
+        assert!((octahedral_direction(square) - direction).length() < 1e-6, "{direction}");
+    }
+}
+
+#[test]
 fn bits_are_pinned() {
     let n = Vec3::new(0.6, 0.0, -0.8);
     let bits = |d: Vec3| d.to_array().map(f32::to_bits);
@@ -193,19 +218,21 @@ fn bits_are_pinned() {
     assert_eq!(bits(uniform_cone([0.7, 0.4], 1e-6).into()), [0x3a09_00c7, 0xb962_fe7c, 0x3f7f_fffd]);
 }
 
-/// Bases about eight normals, and places in the disk.
+/// Bases about eight normals, and places in the disk and on the octahedron.
 struct Eight<'a>(&'a [Vec3; LANES], &'a [[f32; 2]; LANES]);
 
 impl Kernel for Eight<'_> {
-    type Output = [([f32; 3], [f32; 3], [f32; 2]); LANES];
+    type Output = [([f32; 3], [f32; 3], [f32; 2], [f32; 3], [f32; 2]); LANES];
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        let (s, t) = basis_about(gather(simd, &by_lane!(lane => self.0[lane].to_array())));
+        let normals = gather(simd, &by_lane!(lane => self.0[lane].to_array()));
+        let (s, t) = basis_about(normals);
         let (s, t) = (scatter(s), scatter(t));
-        let [x, y]: [[f32; LANES]; 2] =
-            concentric_disk([0, 1].map(|k| f32x8::load_array(simd, by_lane!(lane => self.1[lane][k]))))
-                .map(Into::into);
-        by_lane!(lane => (s[lane], t[lane], [x[lane], y[lane]]))
+        let u = [0, 1].map(|k| f32x8::load_array(simd, by_lane!(lane => self.1[lane][k])));
+        let [x, y]: [[f32; LANES]; 2] = concentric_disk(u).map(Into::into);
+        let directions = scatter(octahedral_direction_within(u));
+        let [column, row]: [[f32; LANES]; 2] = octahedral_square(normals).map(Into::into);
+        by_lane!(lane => (s[lane], t[lane], [x[lane], y[lane]], directions[lane], [column[lane], row[lane]]))
     }
 }
 
@@ -218,7 +245,9 @@ fn eight_at_once_are_eight_one_by_one() {
     for (normals, numbers) in normals.as_chunks::<LANES>().0.iter().zip(numbers.as_chunks::<LANES>().0) {
         let expected: [_; LANES] = std::array::from_fn(|lane| {
             let (s, t) = orthonormal_basis(normals[lane]);
-            (s.to_array(), t.to_array(), concentric_disk(numbers[lane]))
+            let (disk, direction) = (concentric_disk(numbers[lane]), octahedral_direction(numbers[lane]));
+            let square = octahedral_square(normals[lane].into());
+            (s.to_array(), t.to_array(), disk, direction.to_array(), square)
         });
         for &level in &levels {
             assert_eq!(dispatch(level, Eight(normals, numbers)), expected, "{normals:?} {numbers:?}");

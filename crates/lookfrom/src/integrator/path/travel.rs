@@ -30,7 +30,7 @@ pub(super) fn medium_on_way<'a>(world: &'a World, path: &Path, hit: &Hit) -> Opt
     }
     let number = path.interior.medium(&world.materials)?;
     let medium = world.media.get(number as usize)?;
-    let acts = medium.scattering.is_some() || medium.emission.is_some() || medium.varying.is_some();
+    let acts = medium.phase.is_some() || medium.emission.is_some() || medium.varying.is_some();
     acts.then_some((number, medium))
 }
 
@@ -55,7 +55,7 @@ impl PathTracer {
             }
             None => {
                 let flying = flying(world, stream, path, (medium, &ray.way), &mode);
-                let flight = medium.scattering.map(|_| flying.fly());
+                let flight = medium.phase.map(|_| flying.fly());
                 self.flown(world, (path, hit), (medium, &ray.way), (&flying, flight), output)
             }
         }
@@ -93,7 +93,7 @@ impl PathTracer {
             flying(world, &streams.of(path), path, (medium, &path.way_to(hit)), mode)
         };
         let flying: Vec<Flying> = indices.iter().map(flying).collect();
-        let flights = medium.scattering.map(|_| Flying::fly_all(&flying));
+        let flights = medium.phase.map(|_| Flying::fly_all(&flying));
         for (place, (&index, flying)) in indices.iter().zip(&flying).enumerate() {
             let (path, hit) = path_and_hit(index);
             let flight = flights.as_ref().map(|flights| flights[place]);
@@ -181,7 +181,7 @@ fn end<P: Probe>(
     point: Option<Vec3>,
     output: &mut StepOutput<'_, P>,
 ) -> Traveled {
-    match (point, medium.phase()) {
+    match (point, medium.phase) {
         (Some(point), Some(phase)) => {
             output.set_transmittance(world, &path, Spectrum::BLACK);
             Traveled::Scattered(MediumVertex { path, point, phase, stream: *stream })

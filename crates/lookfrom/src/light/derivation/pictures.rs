@@ -92,7 +92,7 @@ impl Goniometric {
             return Vec::new();
         };
         let image = textures.image(self.image);
-        let texel = texel_at(image, warp::octahedral_square(w));
+        let texel = texel_at(image, warp::octahedral_square(w.into()));
         let [size, index] = place(image, texel);
         let numbers = vec![
             size,

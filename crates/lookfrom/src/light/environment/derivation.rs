@@ -102,7 +102,7 @@ impl SkyImage {
         let image = textures.image(self.image);
         let size = [image.width as usize, image.height as usize];
         let to_map = self.world_from_light.transpose();
-        let (uv, per_solid_angle) = self.uv(wi);
+        let (uv, per_solid_angle) = self.uv(wi.into());
         let choice = self.choice(incomplete_pdf);
         let uniform = choice.size() != size;
         let density = |[column, row]: [usize; 2]| {
@@ -201,11 +201,18 @@ impl SkyImage {
             [1.0, 0.0] => "",
             _ => "; v = (½ + v′ (rows − 1)) / rows by v′ = θ/π, since the outermost rows are the poles",
         };
+        let sum = match self.blends_apart(mode) {
+            true => {
+                "scale · D65 · Σ w S(T / (2 max T)) · Σ w · 2 max T, S the smooth spectrum of a colour, of the texels T with the weights w \
+                     of (1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11"
+            }
+            false => "scale · ((1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11)",
+        };
+        let spectrum = if self.blends_apart(mode) { "" } else { as_spectrum(mode) };
         Derivation::new(
             format!(
-                "L = scale · ((1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11){}; f and g are the fractions of u columns − ½ and \
-                 v rows − ½, from whose whole parts on the four texels are{place}",
-                as_spectrum(mode)
+                "L = {sum}{spectrum}; f and g are the fractions of u columns − ½ and \
+                 v rows − ½, from whose whole parts on the four texels are{place}"
             ),
             vec![
                 ("scale", vector(self.scale)),

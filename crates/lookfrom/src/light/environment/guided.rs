@@ -78,7 +78,7 @@ impl Environment {
             (Chosen::Guide(histogram, u), _) => histogram.sample(u),
             (Chosen::Environment(u), Sky::Image(sky)) => {
                 let (uv, _) = sky.choice(IncompletePdf::Allowed).sample(u);
-                sky.direction(uv).0
+                sky.direction(uv).0.into()
             }
             (Chosen::Environment(_), _) => return None,
         };

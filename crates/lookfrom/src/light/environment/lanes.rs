@@ -1,15 +1,13 @@
 //! Environment maps for eight paths at once: directions sampled, with guides or without, and their radiance, and what escaped rays see.
 //!
-//! Those of latitude and longitude without a portal. The bits are those of [`Environment`]'s scalar methods.
+//! Those without a portal. The bits are those of [`Environment`]'s scalar methods.
 
 use glam::Vec3;
 use lookfrom_scene::texture::Wrap;
 use lookfrom_simd::{Kernel, Simd, dispatch, f32x8, f64x8, level, prelude::*};
 
 use super::guided::Chosen;
-use super::{
-    Environment, MapLayout, Sky, SkyImage, finite, latitude_longitude, latitude_longitude_direction,
-};
+use super::{Environment, MapLayout, Sky, SkyImage, finite};
 use crate::core::lanes::{LANES, by_lane, gather, row, scatter, store};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -68,9 +66,7 @@ impl Environment {
     #[inline]
     pub(crate) fn map_in_lanes(&self) -> Option<&SkyImage> {
         match &self.sky {
-            Sky::Image(sky) if self.portal.is_none() && sky.layout == MapLayout::LatitudeLongitude => {
-                Some(sky)
-            }
+            Sky::Image(sky) if self.portal.is_none() => Some(sky),
             _ => None,
         }
     }
@@ -90,12 +86,11 @@ impl SkyImage {
         let (uv, pdf) = choice.sample_lanes(u);
         let u = f32x8::load_array(simd, by_lane!(lane => uv[lane][0]));
         let v = f32x8::load_array(simd, by_lane!(lane => uv[lane][1]));
-        let (of_light, per_solid_angle) = latitude_longitude_direction([u, v]);
+        let (wi, per_solid_angle) = self.direction([u, v]);
         let pdf = f32x8::load_array(simd, pdf) * per_solid_angle;
-        let wi = scatter(self.in_world(of_light));
+        let wi = scatter(wi);
         let rgb = self.texels(simd, textures, [u, v]);
-        let li = by_lane!(lane => self.radiance(rgb[lane], modes[lane]));
-        SkySamples { wi, li, pdf: pdf.into() }
+        SkySamples { wi, li: self.lights(textures, &uv, &rgb, modes), pdf: pdf.into() }
     }
 
     /// Sampled directions.
@@ -104,12 +99,16 @@ impl SkyImage {
         let (uv, _) = self.choice(IncompletePdf::Allowed).sample_lanes(u);
         let u = f32x8::load_array(simd, by_lane!(lane => uv[lane][0]));
         let v = f32x8::load_array(simd, by_lane!(lane => uv[lane][1]));
-        scatter(self.in_world(latitude_longitude_direction([u, v]).0))
+        scatter(self.direction([u, v]).0)
     }
 
     /// The map's colours at (u, v).
     #[inline(always)]
     fn texels<S: Simd>(&self, simd: S, textures: &Textures, uv: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
+        if self.layout == MapLayout::Octahedral {
+            let [u, v]: [[f32; LANES]; 2] = uv.map(Into::into);
+            return by_lane!(lane => self.texel(textures, [u[lane], v[lane]]));
+        }
         let image = textures.image(self.image);
         let texels = texture::look_up_lanes(simd, image, self.in_picture(uv), [Wrap::Repeat, Wrap::Clamp]);
         by_lane!(lane => {
@@ -134,7 +133,22 @@ impl SkyImage {
             0 => 0.0,
             _ => finite(choice.pdf(uv[lane]) * per_solid_angle[lane]),
         });
-        SkySamples { wi, li: by_lane!(lane => self.radiance(rgb[lane], modes[lane])), pdf }
+        SkySamples { wi, li: self.lights(textures, &uv, &rgb, modes), pdf }
+    }
+
+    /// The radiance at places of the map with their colours.
+    #[inline(always)]
+    fn lights(
+        &self,
+        textures: &Textures,
+        uv: &[[f32; 2]; LANES],
+        rgb: &[[f32; 3]; LANES],
+        modes: &[&SpectralMode; LANES],
+    ) -> [Spectrum; LANES] {
+        by_lane!(lane => match self.blends_apart(modes[lane]) {
+            true => self.radiance_apart(textures, uv[lane], modes[lane]),
+            false => self.radiance(rgb[lane], modes[lane]),
+        })
     }
 }
 
@@ -158,7 +172,7 @@ impl Kernel for Seen<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> MapPoints {
         let Self { sky, textures, directions } = self;
-        let ([u, v], per_solid_angle) = latitude_longitude(sky.of_light(gather(simd, directions)));
+        let ([u, v], per_solid_angle) = sky.uv(gather(simd, directions));
         let rgb = sky.texels(simd, textures, [u, v]);
         let [u, v]: [[f32; LANES]; 2] = [u.into(), v.into()];
         MapPoints { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }

@@ -12,13 +12,14 @@
 
 use std::f32::consts::FRAC_1_PI;
 
+use lookfrom_scene::medium::DraineLobe;
 use lookfrom_simd::{Float, Real};
 
 use crate::core::elementary::sin_cos_of_turns;
 use crate::core::vector::Vector;
 use crate::core::warp;
 
-/// The mix of lobes for droplets of a diameter.
+/// The mix of lobes for droplets of a diameter, or of any two lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Droplets<R = f32> {
     /// Mean cosine of the lobe of Henyey and Greenstein.
@@ -37,7 +38,8 @@ pub const DIAMETERS: [f32; 2] = [0.1, 50.0];
 /// Least magnitude of g in Draine's lobe: numbers of its samples have the denominator g³.
 const LEAST: f64 = 1e-3;
 
-/// Steps to the sample of Draine's lobe: Newton's double the number of right digits, bisections add one in two.
+/// Steps to the sample of Draine's lobe, after which cosines are right to 2·10⁻⁷: Newton's double the number of right digits, bisections add one
+/// in two.
 const STEPS: u32 = 12;
 
 impl Droplets {
@@ -72,6 +74,14 @@ impl Droplets {
         };
         let g = if g.abs() < LEAST { LEAST } else { g };
         Self { ahead: ahead as f32, g: g as f32, alpha: alpha as f32, weight: weight as f32 }
+    }
+}
+
+impl Droplets {
+    /// A lobe of Henyey and Greenstein with a mean cosine, and one of Draine, of which g = 0 is replaced by the least magnitude.
+    pub fn of_lobes(g: f32, draine: DraineLobe) -> Self {
+        let own = if f64::from(draine.g.abs()) < LEAST { LEAST as f32 } else { draine.g };
+        Self { ahead: g, g: own, alpha: draine.alpha, weight: draine.share }
     }
 }
 
@@ -126,7 +136,7 @@ impl<R: Real> Droplets<R> {
     /// α s³ / 12 g² − α (1 + g²) s / 2 g² − (1 + α (1 + g²)² / 4 g²) / s
     /// ```
     ///
-    /// The root is found by Newton's method, with bisection where that would leave the interval that has it. In double precision, since terms
+    /// The root is found by Newton's method over 1 / s, with bisection where that would leave the interval that has it. In double precision, since terms
     /// cancel where g is small.
     #[inline(always)]
     fn draine(self, u: R) -> R {
@@ -144,15 +154,17 @@ impl<R: Real> Droplets<R> {
         let (mut low, mut high) = (one - size, one + size);
         let (first, last) = (integral(low), integral(high));
         let wanted = first + (last - first) * u;
-        let mut s = (low + high) * 0.5;
+        // The root where α = 0: then the integral is linear in 1 / s.
+        let mut s = low * high / (high + (low - high) * u);
         for _ in 0..STEPS {
             let beyond = integral(s) - wanted;
             let is_above = beyond.gt(one.like(0.0));
             high = Float::select(is_above, s, high);
             low = Float::select(is_above, low, s);
-            let next = s - beyond / density(s);
-            let is_within = next.gt(low) & next.lt(high);
-            s = Float::select(is_within, next, (low + high) * 0.5);
+            let next = s / (one + beyond / (density(s) * s));
+            // A root that has been found is at an end of the interval.
+            let is_outside = next.lt(low) | next.gt(high);
+            s = Float::select(is_outside, low * high * 2.0 / (low + high), next);
         }
         let ahead = one - g;
         R::narrow((s - ahead) * (s + ahead) / (g * 2.0))

@@ -283,6 +283,10 @@ impl Textures {
                 self.add_pictures_of_float(*by, pictures);
             }
             Node::Threshold { value, .. } => self.add_pictures_of_float(*value, pictures),
+            Node::Quotient { a, b } => {
+                self.add_pictures_of_float(*a, pictures);
+                self.add_pictures_of_float(*b, pictures);
+            }
             // Of others it is not known before which of their inputs they will read.
             _ => {}
         }

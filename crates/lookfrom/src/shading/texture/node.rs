@@ -100,6 +100,10 @@ pub(super) enum Node {
         value: FloatTexture,
         edge: f32,
     },
+    Quotient {
+        a: FloatTexture,
+        b: FloatTexture,
+    },
 }
 
 impl Node {
@@ -171,6 +175,7 @@ impl Node {
             TextureKind::VertexAlpha => Self::VertexAlpha,
             TextureKind::Product { a, b } => Self::Product { a: input(a), b: input(b) },
             TextureKind::Threshold { value, edge } => Self::Threshold { value: value.into(), edge },
+            TextureKind::Quotient { a, b } => Self::Quotient { a: a.into(), b: b.into() },
         }
     }
 }

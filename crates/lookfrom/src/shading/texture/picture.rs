@@ -18,6 +18,16 @@ pub fn look_up(image: &Image, st: [f32; 2], wraps: [Wrap; 2], filter: TexelFilte
     [r, g, b]
 }
 
+/// The four texels of an image that bilinear interpolation blends at `(s, t)`, and their weights.
+pub fn blended_texels(image: &Image, st: [f32; 2], wraps: [Wrap; 2]) -> [([f32; 3], f32); 4] {
+    let footprint = Footprint::new(image, st, wraps, TexelFilter::Bilinear);
+    let texels = image.decoded(&footprint.fetch(image));
+    std::array::from_fn(|k| {
+        let [r, g, b, _] = texels[k];
+        ([r, g, b], footprint.weights[k])
+    })
+}
+
 /// The texels of an image that are blended at a point, and their weights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Footprint {

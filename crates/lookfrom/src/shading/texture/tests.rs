@@ -419,6 +419,21 @@ fn products_multiply_channels_and_only_one_factor_is_light() {
 }
 
 #[test]
+fn quotients_of_numbers_are_0_where_nothing_divides() {
+    let part = Scalar::Texture(TextureId(0));
+    let quotient = |a, b| TextureKind::Quotient { a, b };
+    let kinds = [
+        TextureKind::Product { a: Color::gray(0.5), b: Color::gray(0.5) },
+        quotient(part, Scalar::Value(0.5)),
+        quotient(Scalar::Value(0.5), part),
+        quotient(part, Scalar::Value(0.0)),
+    ];
+    let textures = textures_of(&kinds, vec![], vec![]);
+    let number = |id| textures.scalar(Scalar::Texture(TextureId(id)), &TexturePoint::NOWHERE);
+    assert_eq!([1, 2, 3].map(number), [0.5, 2.0, 0.0]);
+}
+
+#[test]
 fn mappings_choose_a_set_of_coordinates_and_turn_it() {
     let image = Image::from_linear("", 2, 2, vec![[1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3]]);
     let quarter_turn = [[0.0, 1.0, 0.25], [-1.0, 0.0, 1.0]];
