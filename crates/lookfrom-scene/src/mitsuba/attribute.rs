@@ -4,6 +4,8 @@
 use std::path::Path;
 use std::rc::Rc;
 
+use glam::Vec2;
+
 use super::Reader;
 use super::plugin::Plugin;
 use super::xml::blame;
@@ -13,7 +15,6 @@ use crate::ply;
 use crate::scene::Scene;
 use crate::shape::Mesh;
 use crate::texture::{Mapping, TextureKind};
-use glam::Vec2;
 
 /// An attribute of meshes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
