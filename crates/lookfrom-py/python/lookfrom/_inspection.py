@@ -235,7 +235,8 @@ class Branch:
 class CameraSteps:
     """`P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
 
-    projection: How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or `irradiance`.
+    projection: How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or
+        `irradiance`.
     lookfrom: The camera's position.
     u: To the viewer's left.
     v: Up.
