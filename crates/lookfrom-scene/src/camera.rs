@@ -33,8 +33,8 @@ pub struct Camera {
     pub window: Option<Window>,
     /// `d`, the distance of the image plane: > 0. Only the `t` shown to users depends on it.
     pub distance: f64,
-    /// Distances along the view axis, 0 ≤ near < far: rays of the camera meet only what is between them. `None` for all before the
-    /// camera, and for projections without an image plane.
+    /// Distances of the near and the far clipping plane along the view axis, 0 ≤ near < far: rays of the camera meet only what is between
+    /// them. `None` for all before the camera, and for projections without an image plane.
     pub clip: Option<[f64; 2]>,
     /// The medium around the camera; `None` is a vacuum.
     pub medium: Option<MediumId>,

@@ -22,7 +22,7 @@ pub struct Medium {
     pub name: String,
     /// The location in the file.
     pub at: Location,
-    /// What it takes from light on the way, per unit of length.
+    /// Extinction coefficient σ_t = σ_a + σ_s, per unit of length.
     pub extinction: Extinction,
     /// Mean cosine of the angle between the directions before and after scattering, by the phase function of Henyey & Greenstein:
     /// between −1 and 1, 0 for all directions alike.
@@ -53,7 +53,7 @@ pub struct DraineLobe {
     pub share: f32,
 }
 
-/// What a medium takes from light on the way: the transmittance of a length is e^(−(absorption + scattering) · length).
+/// Extinction coefficient σ_t = σ_a + σ_s of a medium: the transmittance of a length is e^(−σ_t · length), the Beer–Lambert law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extinction {
     /// By its parts.
@@ -75,6 +75,16 @@ pub enum Extinction {
 impl Extinction {
     /// That of a vacuum.
     pub const NONE: Self = Self::Parts { absorption: Color::BLACK, scattering: Color::BLACK };
+
+    /// Both colours, with their keys in scene files.
+    pub(crate) fn colors(self) -> [(&'static str, Color); 2] {
+        match self {
+            Self::Parts { absorption, scattering } => {
+                [("absorption", absorption), ("scattering", scattering)]
+            }
+            Self::Sum { sum, albedo } => [("extinction", sum), ("albedo", albedo)],
+        }
+    }
 
     fn scatters(self) -> bool {
         match self {

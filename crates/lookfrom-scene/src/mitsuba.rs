@@ -101,7 +101,7 @@ struct Reader<'s, 'f> {
     /// Images by path and whether their values are raw.
     images: HashMap<(PathBuf, bool), ImageId>,
     media: HashMap<*const Plugin, MediumId>,
-    /// Where the mesh whose surface is read has its attributes.
+    /// Slots of the attributes of the mesh whose surface is read.
     slots: Slots,
     meshes: HashMap<shape::MeshKey, (Vec<MeshId>, Slots)>,
     /// Meshes with the normals of their files.

@@ -2,7 +2,7 @@
 
 mod spectral_film;
 
-pub use self::spectral_film::SpectralFilm;
+pub use self::spectral_film::{Band, SpectralFilm};
 
 use crate::error::Location;
 use crate::image::srgb_from_linear;
@@ -157,7 +157,7 @@ impl ImageSettings {
     /// The same picture, with no layers of an EXR beside it.
     #[must_use]
     pub fn without_layers(self) -> Self {
-        let spectral_film = self.spectral_film.map(SpectralFilm::without_buckets);
+        let spectral_film = self.spectral_film.as_ref().map(SpectralFilm::of_picture);
         Self { layers: Layers::None, light_paths: Vec::new(), spectral_film, ..self }
     }
 }

@@ -50,6 +50,20 @@ impl Curve {
         }
     }
 
+    /// The wavelengths in nm from which and to which it may be above 0: those of a table, or all.
+    #[cfg(feature = "mitsuba")]
+    pub(crate) fn support(&self) -> [f32; 2] {
+        match self {
+            Self::Tabulated { wavelengths, values } => {
+                let is_lit = |value: &f32| *value > 0.0;
+                let first = values.iter().position(is_lit).map_or(0, |index| index.saturating_sub(1));
+                let last = values.iter().rposition(is_lit).map_or(0, |index| index + 1).min(values.len() - 1);
+                [wavelengths[first], wavelengths[last]]
+            }
+            Self::Constant(_) | Self::Blackbody { .. } => [SHORTEST as f32, LONGEST as f32],
+        }
+    }
+
     /// The spectrum with its first and last values extended to the ends of the visible range.
     pub(crate) fn extended(self) -> Self {
         let Self::Tabulated { mut wavelengths, mut values } = self else { return self };

@@ -76,7 +76,7 @@ use crate::material::{MaterialKind, Scalar};
 use crate::scene::{
     CurveId, ImageId, MaterialId, MediumId, MeshId, ObjectId, Scene, TextureId, VertexNormals,
 };
-use crate::settings::Integrator;
+use crate::settings::{Integrator, SpectralFilm};
 use crate::shape::Emission;
 use crate::suggest::nearest;
 use crate::validate;
@@ -275,6 +275,10 @@ impl Reader<'_, '_> {
         }
         if let Some(table) = top.maybe("image", |value| value.table("[image]")) {
             self.scene.image = settings::image(&table);
+            if let Some(bands) = table.maybe("bands", |value| self.bands(value)) {
+                let film = self.scene.image.spectral_film.get_or_insert(SpectralFilm::NONE);
+                film.bands = bands;
+            }
             self.has_image = true;
         }
         if let Some(table) = top.maybe("render", |value| value.table("[render]")) {

@@ -18,7 +18,7 @@ use crate::grid::Placed;
 use crate::image::Image;
 use crate::light::Power;
 use crate::material::{Color, Scalar};
-use crate::medium::{DROPLETS, Density, Extinction, Medium};
+use crate::medium::{DROPLETS, Density, Medium};
 use crate::scene::{CurveId, ImageId, Instance, MaterialId, MediumId, Scene, TextureId};
 use crate::spectrum::Curve;
 
@@ -79,14 +79,8 @@ fn check_picture(part: &Part<'_>, image: &Image) -> Result<()> {
 }
 
 fn check_medium(part: &Part<'_>, medium: &Medium) -> Result<()> {
-    let coefficients = match medium.extinction {
-        Extinction::Parts { absorption, scattering } => {
-            [("absorption", absorption), ("scattering", scattering)]
-        }
-        Extinction::Sum { sum, albedo } => [("extinction", sum), ("albedo", albedo)],
-    };
-    for (name, coefficient) in coefficients {
-        part.color(name, coefficient)?;
+    for (name, color) in medium.extinction.colors() {
+        part.color(name, color)?;
     }
     part.color("emission", medium.emission)?;
     part.at_least_zero("scale", medium.scale.into())?;

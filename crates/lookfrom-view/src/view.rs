@@ -85,7 +85,7 @@ impl ViewRequest {
         }
         check_size([image.width, image.height])?;
         // Whatever may be asked for of this film is in it.
-        let spectral_film = image.spectral_film.map(SpectralFilm::without_buckets);
+        let spectral_film = image.spectral_film.as_ref().map(SpectralFilm::of_picture);
         session.set_image(ImageSettings {
             layers: Layers::Geometry,
             denoise: true,

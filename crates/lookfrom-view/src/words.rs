@@ -92,6 +92,7 @@ fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
         }
     }
     keys.push(("distance", number(camera.distance)));
+    keys.extend(camera.clip.map(|planes| ("clip", list(&planes))));
     keys
 }
 

@@ -34,7 +34,7 @@ use crate::shading::texture::{SpectralMode, SpectrumTexture, SpectrumType, Textu
 /// A medium.
 #[derive(Clone, Debug)]
 pub struct Medium {
-    /// What it takes from light on the way, per unit of length.
+    /// Extinction coefficient σ_t, per unit of length.
     pub extinction: Extinction,
     /// The distribution of scattered light over directions; `None` in a medium that only absorbs.
     pub phase: Option<Phase>,
@@ -46,7 +46,7 @@ pub struct Medium {
     pub varying: Option<Arc<Varying>>,
 }
 
-/// The extinction of a medium: [`lookfrom_scene::medium::Extinction`] with spectra.
+/// Extinction coefficient of a medium: [`lookfrom_scene::medium::Extinction`] with spectra.
 #[derive(Clone, Copy, Debug)]
 pub enum Extinction {
     /// By its parts, σ_a and σ_s.

@@ -311,7 +311,7 @@ impl Renderer {
         &self.view.image
     }
 
-    /// What rays of the camera see that hit nothing; a measurement is of light alone.
+    /// Background of rays of the camera that hit nothing: the environment alone for a measurement.
     fn background(&self) -> Background {
         if self.surface.is_some() { Background::Environment } else { self.image().background }
     }

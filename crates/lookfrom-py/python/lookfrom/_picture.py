@@ -38,7 +38,8 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
     position (h, w, 3), uv (h, w, 2), depth (h, w) and variance (h, w, 3), means over the samples, in the space of the camera
     (x right, y up, z forward); `layers="motion"` gives "motion" (h, w, 2) besides: pixels (x right, y up) while the shutter is
     open; light_path={"direct": "C<RD>L"} gives a layer "direct" (h, w, 3); spectral_buckets=16 with color="spectral" gives a
-    layer "spectrum" (h, w, 16), by wavelength; a denoised picture has the layer "noisy".
+    layer "spectrum" (h, w, 16), by wavelength; a scene's band "red" is a layer "band.red" (h, w); a denoised picture has the layer
+    "noisy".
 
     In Jupyter it shows itself.
     """
@@ -69,7 +70,10 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
         parts: dict[str, list[NDArray[np.float32]]] = {}
         for channel, numbers in self._native.channels().items():
             stem, _, _ = channel.rpartition(".")
-            name = _NAMES.get(stem, stem) if stem else "uv" if channel in ("u", "v") else channel
+            if stem in ("", "band"):
+                name = "uv" if channel in ("u", "v") else channel
+            else:
+                name = _NAMES.get(stem, stem)
             parts.setdefault(name, []).append(numbers.reshape(self.height, self.width))
         return {name: np.stack(part, axis=-1) if len(part) > 1 else part[0] for name, part in parts.items()}
 

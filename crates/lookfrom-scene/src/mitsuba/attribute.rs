@@ -25,7 +25,7 @@ pub(super) struct Attribute {
     name: String,
 }
 
-/// Where a mesh has an attribute.
+/// Slot of a mesh for an attribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     /// In its colours.
@@ -36,7 +36,7 @@ pub(super) enum Slot {
     Color(u32),
 }
 
-/// The attributes of the mesh that is read, and where it has them.
+/// Attributes of a mesh with their slots.
 pub(super) type Slots = Vec<(Attribute, Slot)>;
 
 impl Attribute {
@@ -54,9 +54,9 @@ impl Attribute {
 }
 
 impl Reader<'_, '_> {
-    /// The attributes of meshes that textures in a plugin are of.
-    pub(super) fn attributes(&self, plugin: &Rc<Plugin>) -> Result<Vec<Attribute>> {
-        let (mut found, mut seen, mut rest) = (Vec::new(), Vec::new(), vec![plugin.clone()]);
+    /// The attributes of meshes that textures in plugins are of, those of the last plugin first.
+    pub(super) fn attributes(&self, mut rest: Vec<Rc<Plugin>>) -> Result<Vec<Attribute>> {
+        let (mut found, mut seen) = (Vec::new(), Vec::new());
         while let Some(plugin) = rest.pop() {
             if seen.contains(&Rc::as_ptr(&plugin)) {
                 continue;

@@ -102,12 +102,8 @@ impl Reader<'_, '_> {
             "bumpmap" | "normalmap" => reader.mapped(plugin),
             "blendbsdf" => {
                 let amount = reader.scalar(plugin, "weight", 0.5)?;
-                let parts = plugin.parts("bsdf", &reader.ids)?;
-                let [(_, first), (_, second)] = &parts[..] else {
-                    let message = format!("a blendbsdf has two bsdfs in it, this one has {}", parts.len());
-                    return Err(Error::invalid(&plugin.at, message));
-                };
-                reader.blend(plugin, [first, second], amount)
+                let [first, second] = plugin.two_parts("bsdf", &reader.ids)?;
+                reader.blend(plugin, [&first, &second], amount)
             }
             _ => {
                 let kind = reader.kind(plugin)?;

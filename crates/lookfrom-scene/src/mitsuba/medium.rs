@@ -137,7 +137,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn coefficient(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<[f32; 3]> {
+    /// A colour, or that of a volume that is the same everywhere.
+    pub(super) fn coefficient(&mut self, plugin: &Plugin, name: &str, default: f32) -> Result<[f32; 3]> {
         let Some(property) = plugin.find(name) else { return Ok([default; 3]) };
         if let Some(rgb) = even_color(property) {
             return Ok(rgb);

@@ -148,11 +148,16 @@ impl Plugin {
         }
     }
 
+    /// Its properties that have not been used yet.
+    pub(super) fn unused(&self) -> impl Iterator<Item = &Property> {
+        self.properties.iter().filter(|property| !property.is_used.get())
+    }
+
     /// The plugins of a class among its properties that have not been used yet, with their names.
     pub(super) fn parts(&self, class: &str, ids: &Ids) -> Result<Vec<(&Property, Rc<Plugin>)>> {
         self.is_read.set(true);
         let mut parts = Vec::new();
-        for property in self.properties.iter().filter(|property| !property.is_used.get()) {
+        for property in self.unused() {
             if let Some(plugin) = property.plugin(ids)?.filter(|plugin| plugin.class == class) {
                 property.is_used.set(true);
                 parts.push((property, plugin));
@@ -183,6 +188,20 @@ impl Plugin {
             [_, (second, _), ..] => {
                 let message = format!("the {} has more than one {class}", self.title());
                 Err(Error::invalid(&second.at, message).hint("take all but one out"))
+            }
+        }
+    }
+
+    /// Both plugins of a class among its properties.
+    ///
+    /// # Errors
+    /// `Invalid` if there are not two.
+    pub(super) fn two_parts(&self, class: &str, ids: &Ids) -> Result<[Rc<Plugin>; 2]> {
+        match &self.parts(class, ids)?[..] {
+            [(_, first), (_, second)] => Ok([first.clone(), second.clone()]),
+            parts => {
+                let message = format!("a {} has two {class}s in it, this one has {}", self.kind, parts.len());
+                Err(Error::invalid(&self.at, message))
             }
         }
     }

@@ -9,7 +9,9 @@ use super::plugin::Plugin;
 use crate::camera::{Camera, Lens, Projection, View, Window};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::MediumId;
-use crate::settings::{Background, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler};
+use crate::settings::{
+    Background, Band, ColorMode, Filter, FilterShape, Integrator, Layers, PixelBounds, Sampler, SpectralFilm,
+};
 
 /// Maximum width and height.
 const LARGEST: i64 = 1 << 16;
@@ -188,11 +190,6 @@ impl Reader<'_, '_> {
     }
 
     fn film(&mut self, film: Option<&Plugin>) -> Result<()> {
-        if let Some(film) = film.filter(|film| film.kind == "specfilm") {
-            let message =
-                "a specfilm is one of colours; the option `spectral_buckets` has those of wavelengths";
-            self.warn_once(&film.at, message);
-        }
         let image = &mut self.scene.image;
         (image.width, image.height) = (768, 576);
         image.filter = FilterShape::Gaussian { sigma: 0.5 }.of_radius(2.0);
@@ -223,7 +220,46 @@ impl Reader<'_, '_> {
         if let Some(filter) = film.part("rfilter", &self.ids)? {
             self.scene.image.filter = reconstruction(&filter)?;
         }
+        if film.kind == "specfilm" {
+            self.scene.render.color = ColorMode::Spectral;
+            self.scene.image.spectral_film = Some(self.spectral_film(film)?);
+        }
         Ok(())
+    }
+
+    /// The bands of a film, and the wavelengths at which any has a response.
+    fn spectral_film(&mut self, film: &Plugin) -> Result<SpectralFilm> {
+        let mut bands: Vec<Band> = Vec::new();
+        let mut range = [f32::INFINITY, 0.0_f32];
+        for (property, response) in self.spectra(film)? {
+            let name = property.name.clone();
+            if !Band::is_name(&name) {
+                let message = format!("{name:?} is no name of a band; expected {}", Band::NAME);
+                return Err(Error::invalid(&property.at, message));
+            }
+            let [from, to] = response.support();
+            if from < SpectralFilm::ALL[0] || to > SpectralFilm::ALL[1] {
+                let message = "a band is measured from 360 to 830 nm, without the rest of its response";
+                self.warn_once(&property.at, message);
+            }
+            let band = Band { name, response };
+            if band.width(SpectralFilm::ALL) == 0.0 {
+                self.warn_once(&property.at, "a band without response from 360 to 830 nm is left out");
+                continue;
+            }
+            range = [range[0].min(from), range[1].max(to)];
+            bands.push(band);
+        }
+        if bands.is_empty() {
+            let message = "a specfilm has a spectrum for each of its bands, its response";
+            return Err(Error::invalid(&film.at, message)
+                .hint("add <spectrum name=\"red\" value=\"600:0, 650:1, 700:0\"/>"));
+        }
+        bands.sort_by(|a, b| a.name.cmp(&b.name));
+        let [from, to] = [range[0].max(SpectralFilm::ALL[0]), range[1].min(SpectralFilm::ALL[1])];
+        // At least 1 nm.
+        let from = from.min(SpectralFilm::ALL[1] - 1.0);
+        Ok(SpectralFilm { range: [from, to.max(from + 1.0)], bands, ..SpectralFilm::NONE })
     }
 
     fn sampler(&mut self, sampler: Option<&Plugin>) -> Result<()> {

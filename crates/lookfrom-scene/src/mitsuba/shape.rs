@@ -112,14 +112,11 @@ impl Reader<'_, '_> {
         }
         let to_world = plugin.to_world()?;
         let flip = plugin.boolean("flip_normals", false)?;
-        let mut attributes = Vec::new();
-        for class in ["bsdf", "emitter"] {
-            if let Some(part) = plugin.peek(class, &self.ids)? {
-                let further = self.attributes(&part)?.into_iter();
-                attributes
-                    .extend(further.filter(|attribute| !attributes.contains(attribute)).collect::<Vec<_>>());
-            }
+        let mut textured = Vec::new();
+        for class in ["emitter", "bsdf"] {
+            textured.extend(plugin.peek(class, &self.ids)?);
         }
+        let attributes = self.attributes(textured)?;
         let geometries = self.geometries(plugin, attributes)?;
         let is_made_of_faces = match &*plugin.kind {
             "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),

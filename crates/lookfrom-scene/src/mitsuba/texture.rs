@@ -10,12 +10,12 @@ use glam::DMat4;
 use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use super::xml::blame;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::image;
 use crate::material::{Color, Scalar};
 use crate::model::surface::push_image;
 use crate::scene::{CurveId, ImageId, TextureId};
-use crate::spectrum::{Curve, observer, spectral_radiance};
+use crate::spectrum::{self, Curve, observer, spectral_radiance};
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
 
 const KINDS: &[&str] = &["bitmap", "checkerboard", "mesh_attribute"];
@@ -50,21 +50,13 @@ impl Reader<'_, '_> {
             Value::Curve(curve) => Ok(Color::Curve(self.push_curve(curve.clone()))),
             _ => match property.plugin(&self.ids)? {
                 Some(plugin) if SPECTRA.contains(&&*plugin.kind) => self.spectrum(&plugin),
-                Some(plugin) if plugin.kind == "volume" => self.even_volume(&plugin),
+                Some(plugin) if plugin.kind == "volume" => {
+                    self.coefficient(&plugin, "volume", 1.0).map(Color::Value)
+                }
                 Some(plugin) => self.texture(&plugin).map(Color::Texture),
                 None => Err(property.wrong("a colour or a texture")),
             },
         }
-    }
-
-    /// The colour of a volume on surfaces, which has to be the same everywhere.
-    fn even_volume(&mut self, plugin: &Rc<Plugin>) -> Result<Color> {
-        let volume = self.volume(plugin, "volume", 1.0)?;
-        if volume.lattice.is_even() {
-            return Ok(Color::Value(volume.lattice.cell([0; 3])));
-        }
-        let message = "a texture of a volume that varies in space is not supported";
-        Err(Error::new(ErrorKind::Unsupported, &plugin.at, message))
     }
 
     /// A number that may vary over the surface.
@@ -107,6 +99,30 @@ impl Reader<'_, '_> {
             Some(curve) => Ok(Color::Curve(self.push_curve(curve))),
             None => self.constant(plugin),
         }
+    }
+
+    /// The spectra among the properties of a film, by name.
+    pub(super) fn spectra<'p>(&mut self, film: &'p Plugin) -> Result<Vec<(&'p Property, Curve)>> {
+        let mut spectra = Vec::new();
+        for property in film.unused() {
+            let curve = match (&property.value, property.plugin(&self.ids)?) {
+                (Value::Curve(curve), _) => Some(curve.clone()),
+                (_, Some(plugin)) if plugin.class == "spectrum" => match self.tabulated(&plugin)? {
+                    Some(curve) => Some(curve),
+                    None if plugin.kind == "d65" => spectrum::named("stdillum-D65"),
+                    None => match self.constant(&plugin)? {
+                        Color::Value([x, y, z]) if x == y && y == z => Some(Curve::Constant(x)),
+                        _ => return Err(property.wrong("a response by wavelength, not a colour")),
+                    },
+                },
+                _ => None,
+            };
+            if let Some(curve) = curve {
+                film.find(&property.name);
+                spectra.push((property, curve));
+            }
+        }
+        Ok(spectra)
     }
 
     /// The curve of wavelengths and values; `None` for other spectra.

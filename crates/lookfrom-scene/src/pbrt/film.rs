@@ -116,7 +116,7 @@ fn spectral(parameters: &Parameters) -> Result<SpectralFilm> {
     };
     let range = [wavelength("lambdamin", shortest)?, wavelength("lambdamax", longest)?];
     if SpectralFilm::is_range(range) {
-        return Ok(SpectralFilm { buckets, range });
+        return Ok(SpectralFilm { buckets, range, ..SpectralFilm::NONE });
     }
     Err(match parameters.has("lambdamax") {
         true => parameters.refuse("lambdamax", "a wavelength at least 1 nm longer than \"lambdamin\""),

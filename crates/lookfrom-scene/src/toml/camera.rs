@@ -160,7 +160,6 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         None => w.dot(lookat - lookfrom),
     };
     Ok(Camera {
-        clip: table.maybe("clip", clip),
         at: table.at(),
         view: View::Look { lookfrom, lookat, up },
         target: None,
@@ -168,6 +167,7 @@ fn camera(table: &Table<'_>) -> Result<Camera> {
         lens: thin_lens(table, aperture, focus_distance)?,
         window,
         distance,
+        clip: table.maybe("clip", clip),
         medium: None,
         shutter,
         motion: table.maybe("motion", transform::motion),
@@ -202,7 +202,6 @@ fn camera_by_matrix(table: &Table<'_>) -> Result<Camera> {
     let shutter = table.or("shutter", 0.0, Value::not_negative);
     table.sound(&["matrix", "aperture", "focus_distance"])?;
     Ok(Camera {
-        clip: table.maybe("clip", clip),
         at: table.at(),
         view: View::Matrix(matrix),
         target: lookat.map(|lookat| Target { lookat, up }),
@@ -210,6 +209,7 @@ fn camera_by_matrix(table: &Table<'_>) -> Result<Camera> {
         lens: thin_lens(table, aperture, focus_distance)?,
         window,
         distance,
+        clip: table.maybe("clip", clip),
         medium: None,
         shutter,
         motion: table.maybe("motion", transform::motion),

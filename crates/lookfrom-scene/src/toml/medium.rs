@@ -33,12 +33,16 @@ pub(super) const KEYS: &[&str] = &[
     "bounds",
 ];
 
+/// Mean cosine g of a lobe of a phase function.
+fn mean_cosine(value: Value<'_>) -> Result<f32> {
+    value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
+}
+
 /// A second lobe of a phase function.
 fn draine(value: Value<'_>) -> Result<DraineLobe> {
     let table = value.table("a lobe")?;
     table.allow(&[&["g", "alpha", "share"]]);
-    let g = table
-        .or("g", 0.0, |value| value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0));
+    let g = table.or("g", 0.0, mean_cosine);
     let alpha = table.or("alpha", 1.0, |value| {
         value.single_where("a number of at least 0", |alpha| alpha >= 0.0 && alpha.is_finite())
     });
@@ -74,9 +78,7 @@ impl Reader<'_, '_> {
         table.one_of(&["g", "droplets"]);
         table.one_of(&["draine", "droplets"]);
         medium.draine = table.maybe("draine", draine);
-        medium.g = table.or("g", 0.0, |value| {
-            value.single_where("a number between -1 and 1, exclusive", |g| g.abs() < 1.0)
-        });
+        medium.g = table.or("g", 0.0, mean_cosine);
         medium.droplets = table.maybe("droplets", |value| {
             let what = "a diameter in micrometres, of 0.1 to 50";
             value.single_where(what, |diameter| DROPLETS.contains(&diameter))

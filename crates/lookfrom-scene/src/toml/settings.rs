@@ -1,12 +1,13 @@
 //! `[image]` and `[render]`: settings of the image and of the integrator.
 
+use super::Reader;
 use super::color::plain_color;
 use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::VertexNormals;
 use crate::settings::{
-    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
+    Allocation, Background, Band, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
     LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, Portals, RenderSettings, Sampler, Sensor,
     SpectralFilm, Tonemap,
 };
@@ -28,6 +29,7 @@ pub(super) const IMAGE: &[&str] = &[
     "light_paths",
     "spectral_buckets",
     "wavelengths",
+    "bands",
     "background",
     "denoise",
 ];
@@ -65,7 +67,7 @@ pub(super) const OCCLUSION_DIRECTIONS: &[(&str, bool)] = &[("cosine", true), ("u
 pub(super) const VERTEX_NORMALS: &[(&str, VertexNormals)] =
     &[("smooth", VertexNormals::Smooth), ("as_given", VertexNormals::AsGiven)];
 
-/// Resolution, filter, sensor and tone mapping.
+/// Resolution, filter, sensor and tone mapping, but for the bands of a spectral film.
 pub(super) fn image(table: &Table<'_>) -> ImageSettings {
     table.allow(&[IMAGE]);
     let default = ImageSettings::default();
@@ -125,6 +127,7 @@ fn spectral_film(table: &Table<'_>) -> Option<SpectralFilm> {
     (buckets.is_some() || range.is_some()).then(|| SpectralFilm {
         buckets: buckets.unwrap_or(0) as u32,
         range: range.unwrap_or(SpectralFilm::ALL),
+        bands: Vec::new(),
     })
 }
 
@@ -133,6 +136,27 @@ fn wavelengths(value: Value<'_>) -> Result<[f32; 2]> {
     match SpectralFilm::is_range(range) {
         true => Ok(range),
         false => Err(value.error(format!("`wavelengths` is {range:?}; expected {}", SpectralFilm::RANGE))),
+    }
+}
+
+impl Reader<'_, '_> {
+    /// The bands of a spectral film: a name and a spectrum each.
+    pub(super) fn bands(&mut self, value: Value<'_>) -> Result<Vec<Band>> {
+        let table = value.table("bands: a name and a colour by wavelength each")?;
+        let mut bands = Vec::new();
+        for entry in table.entries() {
+            let name = entry.key().to_owned();
+            if !Band::is_name(&name) {
+                return Err(entry.error(format!("{name:?} is no name of a band; expected {}", Band::NAME)));
+            }
+            if bands.len() == SpectralFilm::MOST_BANDS {
+                return Err(entry.error(format!("more than {} bands", SpectralFilm::MOST_BANDS)));
+            }
+            let response = self.curve(entry, &[])?;
+            bands.push(Band { name, response: self.scene.curves[response.index()].clone() });
+        }
+        bands.sort_by(|a, b| a.name.cmp(&b.name));
+        Ok(bands)
     }
 }
 

@@ -36,7 +36,7 @@ use crate::budget::Budget;
 use crate::digest::digest;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Files, Limits, LoadContext};
-use crate::scene::{CurveId, ImageId, Instance, MeshId, Scene};
+use crate::scene::{ImageId, Instance, MeshId, Scene};
 use crate::shape::{Geometry, Shape};
 use crate::texture::Texture;
 
@@ -133,7 +133,7 @@ struct Writer<'a> {
     /// Files of pictures, by the paths of those that they are copies of.
     copies: BTreeMap<String, String>,
     meshes: BTreeMap<MeshId, String>,
-    spectra: BTreeMap<CurveId, String>,
+    spectra: BTreeMap<String, String>,
     /// By digest.
     measured: BTreeMap<String, String>,
 }

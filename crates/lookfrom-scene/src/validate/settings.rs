@@ -1,10 +1,10 @@
 //! Validation of the settings of picture and integrator.
 
-use super::Part;
+use super::{Part, check_curve};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::scene::Scene;
 use crate::settings::{
-    Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
+    Background, Band, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
 };
 
 /// Maximum of a filter's radius in pixels.
@@ -34,14 +34,26 @@ fn check_image(part: &Part<'_>, image: &ImageSettings) -> Result<()> {
     }
     let most = sensor.max_component;
     part.number("max_component", most.into(), "a number greater than 0", most > 0.0)?;
-    image.spectral_film.map_or(Ok(()), |film| check_spectral_film(part, film))
+    image.spectral_film.as_ref().map_or(Ok(()), |film| check_spectral_film(part, film))
 }
 
-fn check_spectral_film(part: &Part<'_>, SpectralFilm { buckets, range }: SpectralFilm) -> Result<()> {
+fn check_spectral_film(part: &Part<'_>, film: &SpectralFilm) -> Result<()> {
+    let SpectralFilm { buckets, range, bands } = film;
     let most = SpectralFilm::MOST_BUCKETS;
     let expected = format!("a whole number from 0 to {most}");
-    part.number("spectral_buckets", buckets.into(), &expected, buckets <= most)?;
-    part.number("wavelengths", range[0].into(), SpectralFilm::RANGE, SpectralFilm::is_range(range))
+    part.number("spectral_buckets", (*buckets).into(), &expected, *buckets <= most)?;
+    part.number("wavelengths", range[0].into(), SpectralFilm::RANGE, SpectralFilm::is_range(*range))?;
+    let most = SpectralFilm::MOST_BANDS;
+    part.number("bands", bands.len() as f64, &format!("at most {most}"), bands.len() <= most)?;
+    if !bands.is_sorted_by(|a, b| a.name < b.name) {
+        return Err(part.fault("its bands are not sorted by name, each once"));
+    }
+    bands.iter().try_for_each(|Band { name, response }| {
+        if !Band::is_name(name) {
+            return Err(part.fault(format!("{name:?} is no name of a band; expected {}", Band::NAME)));
+        }
+        check_curve(part, response)
+    })
 }
 
 fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {

@@ -2,6 +2,7 @@
 
 mod attributes;
 mod blends;
+mod films;
 mod phases;
 
 use std::f32::consts::FRAC_1_PI;

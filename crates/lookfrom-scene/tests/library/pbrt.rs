@@ -150,13 +150,19 @@ fn films_have_sensors() {
 #[test]
 fn spectral_films_have_buckets() {
     let scene = read("Film \"spectral\" WorldBegin");
-    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 16, range: [360.0, 830.0] }));
+    assert_eq!(
+        scene.image.spectral_film,
+        Some(SpectralFilm { buckets: 16, range: [360.0, 830.0], ..SpectralFilm::NONE })
+    );
     assert_eq!(scene.render.color, ColorMode::Spectral);
     let scene = read(
         "Film \"spectral\" \"integer nbuckets\" 31 \"float lambdamin\" 400 \"float lambdamax\" 710 \"float iso\" 300\n\
          \"string filename\" \"a.exr\" \"bool savefp16\" false WorldBegin",
     );
-    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 31, range: [400.0, 710.0] }));
+    assert_eq!(
+        scene.image.spectral_film,
+        Some(SpectralFilm { buckets: 31, range: [400.0, 710.0], ..SpectralFilm::NONE })
+    );
     assert_eq!(scene.image.sensor.imaging_ratio, 3.0);
     assert_eq!(read("Film \"rgb\" WorldBegin").image.spectral_film, None);
 }

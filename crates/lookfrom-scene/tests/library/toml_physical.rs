@@ -245,6 +245,7 @@ max_component = 10
 layers = true
 spectral_buckets = 20
 wavelengths = [400, 700.5]
+bands = { red = { curve = [[600, 0], [700, 1]] }, all = { constant = 2 } }
 [camera]
 lookfrom = [0, 0, 5]
 lookat = [0, 0, 0]
@@ -259,11 +260,20 @@ window = { x = [-1, 2], y = [0, 1] }
     assert_eq!(sensor.camera.map(CameraSensor::name), Some("sony_ilce_9"));
     assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (2.0, Some(5000.0), 10.0));
     assert_eq!(scene.image.layers, Layers::Geometry);
-    assert_eq!(scene.image.spectral_film, Some(SpectralFilm { buckets: 20, range: [400.0, 700.5] }));
+    let film = scene.image.spectral_film.as_ref().expect("a spectral film");
+    assert_eq!((film.buckets, film.range), (20, [400.0, 700.5]));
+    let bands: Vec<(&str, f64)> =
+        film.bands.iter().map(|band| (&*band.name, band.width([400.0, 700.0]))).collect();
+    assert_eq!(bands, [("all", 600.0), ("red", 50.0)]);
     let film = |image: &str| read(&format!("[image]\n{image}")).image.spectral_film;
-    assert_eq!(film("spectral_buckets = 3"), Some(SpectralFilm { buckets: 3, range: [360.0, 830.0] }));
-    assert_eq!(film("wavelengths = [500, 600]"), Some(SpectralFilm { buckets: 0, range: [500.0, 600.0] }));
+    assert_eq!(film("spectral_buckets = 3"), Some(SpectralFilm { buckets: 3, ..SpectralFilm::NONE }));
+    assert_eq!(
+        film("wavelengths = [500, 600]"),
+        Some(SpectralFilm { range: [500.0, 600.0], ..SpectralFilm::NONE })
+    );
     assert_eq!(film(""), None);
+    let bands = film("bands = { a = { kelvin = 3000 } }").expect("a film of bands alone");
+    assert_eq!((bands.buckets, bands.range, bands.bands.len()), (0, SpectralFilm::ALL, 1));
     let camera = scene.camera.expect("a camera");
     assert_eq!(camera.window, Some(Window { x: [-1.0, 2.0], y: [0.0, 1.0] }));
     for (word, projection) in

@@ -24,7 +24,7 @@ pub(crate) struct Layout {
     pub(super) features: bool,
     /// Number of layers of light-path expressions.
     pub(super) light_paths: usize,
-    /// Number of buckets of a spectral film.
+    /// Number of buckets of a spectral film, and of its bands.
     pub(super) buckets: usize,
 }
 
@@ -61,7 +61,7 @@ impl Layout {
             sensor: aovs && !image.sensor.measures_xyz(),
             features: image.denoise,
             light_paths: image.light_paths.len(),
-            buckets: image.spectral_film.map_or(0, |film| film.buckets as usize),
+            buckets: image.spectral_film.as_ref().map_or(0, |film| film.buckets as usize + film.bands.len()),
         }
     }
 

@@ -21,8 +21,9 @@ use crate::shading::bsdf::lobes::Lobes;
 use grammar::{Ending, Labels, Symbol, is_transmittance, pattern};
 
 /// Names that channels of other contents have.
-const TAKEN: &[&str] =
-    &["A", "Albedo", "B", "G", "N", "Ns", "P", "R", "Variance", "Z", "depth", "film", "noisy", "u", "v"];
+const TAKEN: &[&str] = &[
+    "A", "Albedo", "B", "G", "N", "Ns", "P", "R", "Variance", "Z", "band", "depth", "film", "noisy", "u", "v",
+];
 
 /// Maximum number of layers.
 const MOST_LAYERS: usize = 64;

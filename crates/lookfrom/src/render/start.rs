@@ -146,24 +146,24 @@ impl Renderer {
     /// opens.
     pub(super) fn kernel_ray(&self, ray: &CameraRay) -> Ray {
         let a = self.ray_start + ray.a_from_eye;
-        self.clipped(Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array()))
+        let ray = Ray::new(a.as_vec3().to_array(), ray.direction.as_vec3().to_array());
+        self.clip().map_or(ray, |[t_min, t_max]| Ray { t_min, t_max, ..ray })
     }
 
-    /// A camera ray that meets surfaces only between the distances of the camera's clip.
-    fn clipped(&self, ray: Ray) -> Ray {
+    /// The range of `t` in which camera rays meet surfaces, between the clipping planes of the camera, if it has any.
+    fn clip(&self) -> Option<[f32; 2]> {
         let camera = &self.view.camera;
-        let Some(clip) = camera.clip.filter(|_| camera.is_flat()) else { return ray };
+        let planes = camera.clip.filter(|_| camera.is_flat())?;
         // Rays of parallel cameras may start before the eye.
         let (w, eye) = (camera.w(), camera.lookfrom() - self.world.origin());
         let start = (self.ray_start - eye).dot(w) / w.length_squared();
-        let [t_min, t_max] = clip.map(|distance| ((distance - start) / camera.distance) as f32);
-        Ray { t_min: t_min.max(0.0), t_max, ..ray }
+        Some(planes.map(|distance| (((distance - start) / camera.distance) as f32).max(0.0)))
     }
 
     /// Replaces `start` by the camera rays of the samples.
     pub(super) fn start(&self, ids: &[SampleId], start: &mut Start) {
         let Start { wavelengths, range, times, points, rays, weights, filter_weights } = start;
-        *range = self.image().spectral_film.map(|film| film.range);
+        *range = self.image().spectral_film.as_ref().map(|film| film.range);
         let camera = &self.view.camera;
         let count = if self.is_spectral() { ids.len() } else { 0 };
         self.sampler.two_of_each(count, |k| (ids[k].pixel, ids[k].sample), WAVELENGTH_DIMENSION, wavelengths);
@@ -175,8 +175,8 @@ impl Renderer {
         times.replace(moving.iter().map(|id| self.time(*id)));
         if camera.is_flat() {
             dispatch(level(), FlatRays { renderer: self, ids, rays, weights, filter_weights });
-            if camera.clip.is_some() {
-                rays.iter_mut().for_each(|ray| *ray = self.clipped(*ray));
+            if let Some([t_min, t_max]) = self.clip() {
+                rays.iter_mut().for_each(|ray| (ray.t_min, ray.t_max) = (t_min, t_max));
             }
         } else {
             dispatch(level(), ImagePoints { renderer: self, ids, points, weights });

@@ -89,7 +89,7 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             (format!("{LIGHT_PATH}{index:02}.{}", layer.name), layer.expression.clone())
         }),
     );
-    texts.extend(image.spectral_film.into_iter().flat_map(spectral::texts));
+    texts.extend(image.spectral_film.iter().flat_map(spectral::texts));
     texts.sort();
     texts
 }

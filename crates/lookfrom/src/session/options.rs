@@ -196,7 +196,7 @@ impl Options {
             image.light_paths.retain(|other| other.name != layer.name);
             image.light_paths.push(layer.clone());
         }
-        image.spectral_film = self.spectral_film(image.spectral_film);
+        image.spectral_film = self.spectral_film(image.spectral_film.take());
         replace(&mut image.denoise, self.denoise);
         replace(&mut image.background, self.background);
         replace(&mut render.depth, self.depth);
@@ -209,9 +209,8 @@ impl Options {
     /// The spectral film, in place of that of the scene.
     fn spectral_film(&self, of_scene: Option<SpectralFilm>) -> Option<SpectralFilm> {
         let kept = of_scene.filter(|_| self.spectral_buckets != Some(0));
-        let none = SpectralFilm { buckets: 0, range: SpectralFilm::ALL };
         let is_asked = self.spectral_buckets.is_some_and(|buckets| buckets > 0) || self.wavelengths.is_some();
-        let mut film = if is_asked { kept.unwrap_or(none) } else { kept? };
+        let mut film = if is_asked { kept.unwrap_or(SpectralFilm::NONE) } else { kept? };
         replace(&mut film.buckets, self.spectral_buckets);
         replace(&mut film.range, self.wavelengths);
         Some(film)

@@ -47,7 +47,7 @@ pub struct Camera {
     pub lens_system: Option<Arc<LensSystem>>,
     /// `d`.
     pub distance: f64,
-    /// Distances along the view axis between which its rays meet surfaces; `None` for all before it.
+    /// Distances of the near and the far clipping plane along the view axis; `None` without them.
     pub clip: Option<[f64; 2]>,
     /// `nx`, `ny`.
     pub size: [u32; 2],

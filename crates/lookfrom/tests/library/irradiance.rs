@@ -137,7 +137,7 @@ fn under_a_constant_sky_the_irradiance_is_pi() {
     }
 }
 
-/// What leads to light otherwise than by the first ray is the integrator's, and each pixel has the same mean.
+/// Integrators find the light of further rays, and each pixel has the same mean.
 #[test]
 fn integrators_samplers_and_sizes_agree() {
     let text = |integrator: &str, size: u32| {

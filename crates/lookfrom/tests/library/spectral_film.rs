@@ -145,7 +145,7 @@ fn light_of_all_wavelengths_alike_has_no_noise() {
 }
 
 /// X, Y and Z of a spectrum of the buckets of a film, each constant over its width.
-fn xyz(film: SpectralFilm, spectrum: &[f64]) -> [f64; 3] {
+fn xyz(film: &SpectralFilm, spectrum: &[f64]) -> [f64; 3] {
     const STEPS: usize = 200_000;
     let [from, to] = film.range.map(f64::from);
     let mut xyz = [0.0; 3];
@@ -169,7 +169,7 @@ fn buckets_by_the_matching_functions_are_the_picture() {
         let film = format!("spectral_buckets = {buckets}\nwavelengths = [{from:?}, {to:?}]");
         // This filter has negative weights.
         let film = lit(&format!("filter = \"mitchell\"\n{film}\n{limit}"), OBJECTS).film();
-        let found = xyz(SpectralFilm { buckets, range }, &spectrum(&film));
+        let found = xyz(&SpectralFilm { buckets, range, ..SpectralFilm::NONE }, &spectrum(&film));
         let mut rgb = [0.0; 3];
         let mut variance = [0.0; 3];
         for (x, y) in pixels() {
@@ -191,6 +191,62 @@ fn buckets_by_the_matching_functions_are_the_picture() {
     }
 }
 
+/// A table of TOML: the values at each nm from 360.
+fn table(values: impl Iterator<Item = f64>) -> String {
+    let entries: Vec<String> =
+        values.enumerate().map(|(index, value)| format!("[{}, {value:?}]", 360 + index)).collect();
+    format!("{{ curve = [{}] }}", entries.join(", "))
+}
+
+#[test]
+fn bands_are_integrals_of_light_and_response() {
+    // A triangle, one wavelength and its neighbours, and all that is 2 there.
+    let responses: [fn(f64) -> f64; 3] =
+        [|nm| (1.0 - (nm - 500.0).abs() / 60.0).max(0.0), |nm| f64::from(nm == 610.0), |_| 2.0];
+    for wavelengths in ["", "wavelengths = [430, 700]", "spectral_buckets = 2"] {
+        let [from, to] = if wavelengths.contains("430") { [430, 700] } else { [360, 830] };
+        let table = |k: usize| table((360..=830).map(|nm| responses[k](f64::from(nm))));
+        let bands = format!("bands = {{ a = {}, b = {}, c = {} }}", table(0), table(1), table(2));
+        let film = lit(&format!("filter = \"box\"\n{wavelengths}\n{bands}"), "").film();
+        let found = spectrum(&film);
+        let buckets = found.len() - 3;
+        assert_eq!(buckets, if wavelengths.contains("buckets") { 2 } else { 0 });
+        let curve = curve();
+        for (found, response) in found[buckets..].iter().zip(responses) {
+            let width = f64::from(to - from);
+            // In steps of 1/8 nm, since the response is linear between whole nm, and light constant around them.
+            let values = (0..8 * (to - from)).map(|step| {
+                let nm = f64::from(from) + (f64::from(step) + 0.5) / 8.0;
+                let t = nm - nm.floor();
+                let response = response(nm.floor()) * (1.0 - t) + response(nm.ceil()) * t;
+                curve[(nm - 360.0).round() as usize] * response * width
+            });
+            let count = values.len() as f64;
+            let [sum, squares] = values.fold([0.0; 2], |[sum, squares], v| [sum + v, squares + v * v]);
+            let mean = sum / count;
+            let error = ((squares / count - mean * mean) / (64.0 * 512.0 * 4.0)).sqrt() + 1e-4 * mean;
+            assert!((found - mean).abs() < 4.0 * error, "{wavelengths}: {found} ≠ {mean} ± {error}");
+        }
+    }
+}
+
+#[test]
+fn a_band_of_the_eye_is_the_luminance_of_the_picture() {
+    // Glass leaves samples with one wavelength; the filter has negative weights.
+    let response = table(observer::matching()[1].iter().map(|y| f64::from(*y)));
+    for limit in ["", "max_component = 2"] {
+        let film =
+            lit(&format!("filter = \"mitchell\"\nbands = {{ y = {response} }}\n{limit}"), OBJECTS).film();
+        for (x, y) in pixels() {
+            let rgb = film.mean(x, y);
+            let luminance: f64 = (0..3).map(|c| XYZ_FROM_RGB[1][c] * f64::from(rgb[c])).sum();
+            let band = film.spectrum(x, y).next().map(f64::from).expect("a band") / Y_INTEGRAL;
+            // The observer is a step function of 1 nm, the band linear in between.
+            assert!((band - luminance).abs() < 2e-3 * luminance, "{x}, {y}: {band} ≠ {luminance}");
+        }
+    }
+}
+
 #[test]
 fn the_picture_of_a_range_is_the_same_with_and_without_buckets() {
     let [with, without] =
@@ -208,6 +264,7 @@ width = 5
 height = 3
 spectral_buckets = 4
 wavelengths = [400, 700]
+bands = { wide = { constant = 2 }, red = { curve = [[600, 0], [650, 1], [700, 0]] } }
 [render]
 integrator = "path"
 color = "spectral"
@@ -249,12 +306,18 @@ fn an_exr_has_the_layout_of_fichet_and_others() {
         assert_eq!(text("spectralLayoutVersion"), Some("1.0"));
         assert_eq!(text("emissiveUnits"), Some("W.m^-2.sr^-1"));
         assert_eq!((text("spectral_buckets"), text("wavelengths")), (Some("4"), Some("400 700")));
+        let of_bands: Vec<&str> = names.iter().copied().filter(|name| name.starts_with("band")).collect();
+        assert_eq!(of_bands, ["band.red", "band.wide"]);
+        assert_eq!((text("band.red"), text("band.wide")), (Some("50 nm"), Some("600 nm")));
         // A light bulb is redder than white.
         let sum = |name: &str| -> f32 {
             let found = exr.channels.iter().find(|(known, _)| known == name);
             found.expect("a channel").1.iter().sum()
         };
         assert!(sum("S0.662,500nm") > 2.0 * sum("S0.437,500nm"));
+        // 15 pixels of a light of luminance 1, of which there is twice as much at 600 nm and beyond.
+        let (wide, red) = (sum("band.wide") / 15.0, sum("band.red") / 15.0);
+        assert!((400.0..900.0).contains(&wide) && red > 50.0 && red < wide / 4.0, "{wide}, {red}");
     }
     // What cannot hold them has the same picture.
     let options = Options { format: Some(Format::Png), ..Options::default() };
@@ -266,9 +329,12 @@ fn an_exr_has_the_layout_of_fichet_and_others() {
 fn options_change_the_film_of_a_scene() {
     let film = |spectral_buckets, wavelengths| {
         let options = Options { spectral_buckets, wavelengths, ..Options::default() };
-        session(&options).expect("a scene").image().spectral_film
+        let session = session(&options).expect("a scene");
+        let film = session.image().spectral_film.as_ref()?;
+        assert_eq!(film.bands.is_empty(), spectral_buckets == Some(0));
+        Some(SpectralFilm { bands: Vec::new(), ..film.clone() })
     };
-    let of = |buckets, range| Some(SpectralFilm { buckets, range });
+    let of = |buckets, range| Some(SpectralFilm { buckets, range, ..SpectralFilm::NONE });
     assert_eq!(film(None, None), of(4, [400.0, 700.0]));
     assert_eq!(film(Some(30), None), of(30, [400.0, 700.0]));
     assert_eq!(film(None, Some([360.0, 830.0])), of(4, [360.0, 830.0]));
@@ -285,6 +351,8 @@ fn a_spectral_film_needs_light_of_wavelengths() {
     assert!(session(&Options { spectral_buckets: Some(0), ..rgb }).is_ok());
     let message = refused(&Options { integrator: Some(Integrator::Normals), ..Options::default() });
     assert!(message.contains("normals"), "{message}");
+    let message = refused(&Options { wavelengths: Some([400.0, 500.0]), ..Options::default() });
+    assert!(message.contains("\"red\" has no response between 400 and 500 nm"), "{message}");
     for (buckets, range) in [(u32::MAX, SpectralFilm::ALL), (3, [700.0, 400.0]), (3, [f32::NAN, 500.0])] {
         let options =
             Options { spectral_buckets: Some(buckets), wavelengths: Some(range), ..Options::default() };

@@ -1,4 +1,4 @@
-//! What a camera does not see: lights that are hidden, and what is outside of its clip.
+//! Hidden lights, and the clipping planes of cameras.
 
 use crate::support::{Compiled, scene};
 use lookfrom_scene::Scene;

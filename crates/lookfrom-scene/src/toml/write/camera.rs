@@ -21,7 +21,7 @@ impl Writer<'_> {
             camera;
         let mut fields = Fields::default();
         match *view {
-            _ if matches!(projection, Projection::Irradiance { .. }) && *view == Camera::default().view => {}
+            _ if projection.is_measurement() && *view == Camera::default().view => {}
             View::Look { lookfrom, lookat, up } => {
                 fields.put("lookfrom", lookfrom);
                 fields.put("lookat", lookat);

@@ -85,9 +85,19 @@ impl Writer<'_> {
     /// The table of a spectrum.
     pub(super) fn curve(&mut self, id: CurveId, of: Of) -> Fields {
         let curve = &self.scene.curves[id.index()];
-        let mut fields = match curve {
-            Curve::Constant(value) => return Fields::one("constant", *value),
-            Curve::Blackbody { kelvin } => return Fields::one("kelvin", *kelvin),
+        let mut fields = self.spectrum(curve);
+        if of == Of::Optics && matches!(curve, Curve::Tabulated { .. }) && curve.clone().extended() != *curve
+        {
+            fields.put("ends", "zero");
+        }
+        fields
+    }
+
+    /// The table of a spectrum that is 0 beyond its ends.
+    pub(super) fn spectrum(&mut self, curve: &Curve) -> Fields {
+        match curve {
+            Curve::Constant(value) => Fields::one("constant", *value),
+            Curve::Blackbody { kelvin } => Fields::one("kelvin", *kelvin),
             Curve::Tabulated { .. } if illuminant(curve).is_some() => {
                 Fields::one("illuminant", illuminant(curve).unwrap_or_default())
             }
@@ -96,27 +106,23 @@ impl Writer<'_> {
                 Item::list(wavelengths.iter().zip(values).map(|(nm, value)| [*nm, *value])),
             ),
             Curve::Tabulated { wavelengths, values } => {
-                Fields::one("spd", self.spectrum_file(id, wavelengths, values))
+                Fields::one("spd", self.spectrum_file(wavelengths, values))
             }
-        };
-        if of == Of::Optics && curve.clone().extended() != *curve {
-            fields.put("ends", "zero");
         }
-        fields
     }
 
     /// The file of a spectrum: lines of a wavelength in nm and a value.
-    fn spectrum_file(&mut self, id: CurveId, wavelengths: &[f32], values: &[f32]) -> String {
-        if let Some(file) = self.spectra.get(&id) {
-            return file.clone();
-        }
+    fn spectrum_file(&mut self, wavelengths: &[f32], values: &[f32]) -> String {
         let mut text = String::new();
         for (nm, value) in wavelengths.iter().zip(values) {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{nm:?} {value:?}");
         }
-        let file = self.file("spectrum", "spd", text.into_bytes());
-        self.spectra.insert(id, file.clone());
+        if let Some(file) = self.spectra.get(&text) {
+            return file.clone();
+        }
+        let file = self.file("spectrum", "spd", text.clone().into_bytes());
+        self.spectra.insert(text, file.clone());
         file
     }
 

@@ -12,7 +12,7 @@ use super::text::Fields;
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::{Color, Scalar};
-use crate::medium::{Density, DraineLobe, Extinction, Medium, Temperature, Variation};
+use crate::medium::{Density, DraineLobe, Medium, Temperature, Variation};
 use crate::npy;
 
 /// The most cells of a grid, all of which are written.
@@ -33,15 +33,9 @@ impl Writer<'_> {
             variation,
         } = medium;
         let mut fields = Fields::default();
-        let coefficients = match *extinction {
-            Extinction::Parts { absorption, scattering } => {
-                [("absorption", absorption), ("scattering", scattering)]
-            }
-            Extinction::Sum { sum, albedo } => [("extinction", sum), ("albedo", albedo)],
-        };
-        for (key, coefficient) in coefficients {
-            if coefficient != Color::BLACK {
-                let item = self.color(coefficient, Of::Optics)?;
+        for (key, color) in extinction.colors() {
+            if color != Color::BLACK {
+                let item = self.color(color, Of::Optics)?;
                 fields.put(key, item);
             }
         }

@@ -6,7 +6,7 @@ use super::text::{Fields, Item};
 use crate::light::{Light, LightKind};
 use crate::scene::{Scene, VertexNormals};
 use crate::settings::{
-    Allocation, Background, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
+    Allocation, Background, Band, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
     LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm,
     Tonemap,
 };
@@ -14,7 +14,7 @@ use crate::toml::settings::{BACKGROUNDS, VERTEX_NORMALS};
 use crate::toml::word_of;
 
 impl Writer<'_> {
-    pub(super) fn image(&self) -> Fields {
+    pub(super) fn image(&mut self) -> Fields {
         let ImageSettings {
             width,
             height,
@@ -59,10 +59,17 @@ impl Writer<'_> {
             }
             fields.put("light_paths", paths);
         }
-        if let Some(SpectralFilm { buckets, range }) = *spectral_film {
-            fields.put_unless("spectral_buckets", buckets, 0);
-            if buckets == 0 || range != SpectralFilm::ALL {
-                fields.put("wavelengths", range);
+        if let Some(SpectralFilm { buckets, range, bands }) = spectral_film {
+            fields.put_unless("spectral_buckets", *buckets, 0);
+            if *range != SpectralFilm::ALL || (*buckets == 0 && bands.is_empty()) {
+                fields.put("wavelengths", *range);
+            }
+            if !bands.is_empty() {
+                let mut spectra = Fields::default();
+                for Band { name, response } in bands {
+                    spectra.put(name, self.spectrum(response));
+                }
+                fields.put("bands", spectra);
             }
         }
         match background {

@@ -19,7 +19,7 @@ use lookfrom_scene::scene::{
     CurveId, ImageId, Instance, MaterialId, MediumId, MeshId, Object, ObjectId, TextureId, VertexNormals,
 };
 use lookfrom_scene::settings::{
-    Allocation, Background, ColorMode, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
+    Allocation, Background, Band, ColorMode, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
     LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
 };
 use lookfrom_scene::shape::{Emission, Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand};
@@ -930,13 +930,24 @@ fn settings() -> Vec<(String, Scene)> {
             },
             layers: Layers::Motion,
             light_paths: vec![layer],
-            spectral_film: Some(SpectralFilm { buckets: 7, range: [400.0, 700.5] }),
+            spectral_film: Some(SpectralFilm { buckets: 7, range: [400.0, 700.5], bands: bands() }),
             background,
             denoise: true,
             ..ImageSettings::default()
         };
     }));
     scenes
+}
+
+/// A band with each kind of response.
+fn bands() -> Vec<Band> {
+    let table = |count: usize| Curve::Tabulated {
+        wavelengths: (0..count).map(|k| 400.0 + 0.25 * k as f32).collect(),
+        values: (0..count).map(|k| (k % 7) as f32 * 0.125).collect(),
+    };
+    let responses = [table(5), table(900), Curve::Constant(0.5), Curve::Blackbody { kelvin: 3000.0 }];
+    let names = ["a", "b-1", "c_2", "d"].map(str::to_owned);
+    names.into_iter().zip(responses).map(|(name, response)| Band { name, response }).collect()
 }
 
 /// Shapes with each of their other properties.

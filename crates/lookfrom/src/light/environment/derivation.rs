@@ -201,14 +201,14 @@ impl SkyImage {
             [1.0, 0.0] => "",
             _ => "; v = (½ + v′ (rows − 1)) / rows by v′ = θ/π, since the outermost rows are the poles",
         };
-        let sum = match self.blends_apart(mode) {
-            true => {
+        let (sum, spectrum) = match self.blends_apart(mode) {
+            true => (
                 "scale · D65 · Σ w S(T / (2 max T)) · Σ w · 2 max T, S the smooth spectrum of a colour, of the texels T with the weights w \
-                     of (1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11"
-            }
-            false => "scale · ((1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11)",
+                     of (1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11",
+                "",
+            ),
+            false => ("scale · ((1−f)(1−g) T00 + f(1−g) T10 + (1−f)g T01 + fg T11)", as_spectrum(mode)),
         };
-        let spectrum = if self.blends_apart(mode) { "" } else { as_spectrum(mode) };
         Derivation::new(
             format!(
                 "L = {sum}{spectrum}; f and g are the fractions of u columns − ½ and \

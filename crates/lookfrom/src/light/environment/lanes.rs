@@ -88,9 +88,7 @@ impl SkyImage {
         let v = f32x8::load_array(simd, by_lane!(lane => uv[lane][1]));
         let (wi, per_solid_angle) = self.direction([u, v]);
         let pdf = f32x8::load_array(simd, pdf) * per_solid_angle;
-        let wi = scatter(wi);
-        let rgb = self.texels(simd, textures, [u, v]);
-        SkySamples { wi, li: self.lights(textures, &uv, &rgb, modes), pdf: pdf.into() }
+        SkySamples { wi: scatter(wi), li: self.lights(simd, textures, [u, v], modes), pdf: pdf.into() }
     }
 
     /// Sampled directions.
@@ -102,18 +100,24 @@ impl SkyImage {
         scatter(self.direction([u, v]).0)
     }
 
-    /// The map's colours at (u, v).
+    /// The radiance at (u, v): bilinear look-ups of one picture side by side, others one by one.
     #[inline(always)]
-    fn texels<S: Simd>(&self, simd: S, textures: &Textures, uv: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
-        if self.layout == MapLayout::Octahedral {
+    fn lights<S: Simd>(
+        &self,
+        simd: S,
+        textures: &Textures,
+        uv: [f32x8<S>; 2],
+        modes: &[&SpectralMode; LANES],
+    ) -> [Spectrum; LANES] {
+        if self.layout == MapLayout::Octahedral || modes.iter().any(|mode| self.blends_apart(mode)) {
             let [u, v]: [[f32; LANES]; 2] = uv.map(Into::into);
-            return by_lane!(lane => self.texel(textures, [u[lane], v[lane]]));
+            return by_lane!(lane => self.radiance_at(textures, [u[lane], v[lane]], modes[lane]));
         }
         let image = textures.image(self.image);
         let texels = texture::look_up_lanes(simd, image, self.in_picture(uv), [Wrap::Repeat, Wrap::Clamp]);
         by_lane!(lane => {
             let [r, g, b, _] = texels[lane];
-            [r, g, b]
+            self.radiance([r, g, b], modes[lane])
         })
     }
 
@@ -126,37 +130,22 @@ impl SkyImage {
         with_density: u32,
     ) -> SkySamples {
         let wi = by_lane!(lane => directions[lane].to_array());
-        let MapPoints { uv, per_solid_angle, rgb } =
-            dispatch(level(), Seen { sky: self, textures, directions: &wi });
+        let MapPoints { uv, per_solid_angle, li } =
+            dispatch(level(), Seen { sky: self, textures, directions: &wi, modes });
         let choice = self.choice(IncompletePdf::Allowed);
         let pdf = by_lane!(lane => match with_density & 1 << lane {
             0 => 0.0,
             _ => finite(choice.pdf(uv[lane]) * per_solid_angle[lane]),
         });
-        SkySamples { wi, li: self.lights(textures, &uv, &rgb, modes), pdf }
-    }
-
-    /// The radiance at places of the map with their colours.
-    #[inline(always)]
-    fn lights(
-        &self,
-        textures: &Textures,
-        uv: &[[f32; 2]; LANES],
-        rgb: &[[f32; 3]; LANES],
-        modes: &[&SpectralMode; LANES],
-    ) -> [Spectrum; LANES] {
-        by_lane!(lane => match self.blends_apart(modes[lane]) {
-            true => self.radiance_apart(textures, uv[lane], modes[lane]),
-            false => self.radiance(rgb[lane], modes[lane]),
-        })
+        SkySamples { wi, li, pdf }
     }
 }
 
-/// Points of an environment map, the factors there from densities over the map to those over solid angle, and the colours.
+/// Points of an environment map, the factors there from densities over the map to those over solid angle, and the radiance.
 struct MapPoints {
     uv: [[f32; 2]; LANES],
     per_solid_angle: [f32; LANES],
-    rgb: [[f32; 3]; LANES],
+    li: [Spectrum; LANES],
 }
 
 /// The places in directions.
@@ -164,6 +153,7 @@ struct Seen<'a> {
     sky: &'a SkyImage,
     textures: &'a Textures,
     directions: &'a [[f32; 3]; LANES],
+    modes: &'a [&'a SpectralMode; LANES],
 }
 
 impl Kernel for Seen<'_> {
@@ -171,11 +161,11 @@ impl Kernel for Seen<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> MapPoints {
-        let Self { sky, textures, directions } = self;
+        let Self { sky, textures, directions, modes } = self;
         let ([u, v], per_solid_angle) = sky.uv(gather(simd, directions));
-        let rgb = sky.texels(simd, textures, [u, v]);
+        let li = sky.lights(simd, textures, [u, v], modes);
         let [u, v]: [[f32; LANES]; 2] = [u.into(), v.into()];
-        MapPoints { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), rgb }
+        MapPoints { uv: by_lane!(lane => [u[lane], v[lane]]), per_solid_angle: per_solid_angle.into(), li }
     }
 }
 

@@ -75,9 +75,7 @@ impl Droplets {
         let g = if g.abs() < LEAST { LEAST } else { g };
         Self { ahead: ahead as f32, g: g as f32, alpha: alpha as f32, weight: weight as f32 }
     }
-}
 
-impl Droplets {
     /// A lobe of Henyey and Greenstein with a mean cosine, and one of Draine, of which g = 0 is replaced by the least magnitude.
     pub fn of_lobes(g: f32, draine: DraineLobe) -> Self {
         let own = if f64::from(draine.g.abs()) < LEAST { LEAST as f32 } else { draine.g };
