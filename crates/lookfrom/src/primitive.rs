@@ -26,6 +26,7 @@ pub use mesh::{Mesh, Pose, VertexData};
 pub use patch::Patches;
 pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
+pub(crate) use sphere::points_on_spheres;
 pub use sphere::{SphereBinding, Spheres};
 
 /// The material, light and other attributes of a primitive's surface.

@@ -21,6 +21,7 @@ mod reflectance;
 mod sides;
 
 use class::Class;
+pub(crate) use class::HitClass;
 pub(crate) use compile::Kept;
 pub(crate) use instance::Instance;
 pub use instance::PlacedInstance;
@@ -269,7 +270,18 @@ impl World {
         point
     }
 
-    /// [`World::texture_point`] of a hit on the outside of a mesh, by position and geometric normal, and texture coordinates.
+    /// [`World::texture_point`] of a hit on the outside of a sphere, by position and geometric normal, and texture coordinates.
+    #[inline]
+    pub(crate) fn texture_point_on_sphere(
+        &self,
+        (position, n): ([f64; 3], Vec3),
+        uv: [f32; 2],
+    ) -> TexturePoint<'static> {
+        let world = self.origin + DVec3::from_array(position);
+        TexturePoint { uv: uv.into(), world, n, ..TexturePoint::NOWHERE }
+    }
+
+    /// As [`World::texture_point_on_sphere`], on a mesh.
     #[inline]
     pub(crate) fn texture_point_on_mesh<'a>(
         &self,

@@ -165,7 +165,7 @@ impl Integrator for PathTracer {
             let in_vacuum = in_lanes && batch.is_in_vacuum(index);
             if in_vacuum && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
-            } else if in_vacuum && let Some(class) = batch.mesh_class(self, index) {
+            } else if in_vacuum && let Some(class) = batch.hit_class(self, index) {
                 waiting.push_hit(self, &batch, (class, index), output);
             } else if !in_vacuum && let Some((medium, _)) = medium_on_way(world, path, hit) {
                 waiting.push_in_flight(medium, index);

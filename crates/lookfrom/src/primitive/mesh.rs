@@ -5,7 +5,7 @@ pub(crate) mod lanes;
 use glam::{Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
-use super::triangle::{Tangent, TrianglePoints, Triangles};
+use super::triangle::{SurfacePoints, Tangent, Triangles};
 use super::{MaterialBinding, SurfacePoint};
 use crate::core::vector::Vector;
 use crate::shading::texture::{MORE_UV_SETS, TexturePoint};
@@ -175,7 +175,7 @@ impl Mesh {
 
     /// [`Self::point`] at a time of the shutter (0 … 1).
     pub fn point_at(&self, index: usize, [u, v]: [f32; 2], time: f32) -> SurfacePoint {
-        let TrianglePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv, lift } =
+        let SurfacePoints { points, ng, ns, uv: [s, t], dpdu, dpdv, shading_dpdu, shading_dpdv, lift } =
             self.triangle_at(index, time).points(u, v);
         let point = Point { position: points.position.into(), error: points.error.into() };
         SurfacePoint {

@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
+use lookfrom_simd::Float;
 
 pub(crate) use frame::{QuadricFrames, gather_frames};
 
@@ -305,7 +306,7 @@ impl Quadric {
             QuadricKind::Sphere { radius, z } => {
                 let [from, to] = z.map(|z| polar(z, radius));
                 let v = (polar(p.z, radius) - from) / (to - from);
-                (v, sphere_derivatives(p, radius, [to - from, self.phi_max]))
+                (v, sphere_derivatives(p.into(), radius, [to - from, self.phi_max]).map(DVec3::from))
             }
             QuadricKind::Cylinder { z: [low, high], .. } => {
                 ((p.z - low) / (high - low), [turning(p, self.phi_max), DVec3::new(0.0, 0.0, high - low)])
@@ -379,11 +380,20 @@ impl Procedural for Quadrics {
 
 /// Derivatives of a sphere's point by u and v; poles on z. The array holds the ranges of the polar angle, from the
 /// lowest point to the highest (hence negative), and of φ. At a pole they are those of a point very close to it.
-pub(super) fn sphere_derivatives(p: DVec3, radius: f64, [theta, phi]: [f64; 2]) -> [DVec3; 2] {
-    let p = if p.x == 0.0 && p.y == 0.0 { DVec3::new(1e-5 * radius, 0.0, p.z) } else { p };
-    let ring = p.truncate().length();
-    let (cos, sin) = (p.x / ring, p.y / ring);
-    [turning(p, phi), theta * DVec3::new(p.z * cos, p.z * sin, -ring)]
+#[inline(always)]
+pub(super) fn sphere_derivatives<F: Float<Scalar = f64>>(
+    p: Vector<F>,
+    radius: F,
+    [theta, phi]: [f64; 2],
+) -> [Vector<F>; 2] {
+    let (zero, theta, phi) = (radius.like(0.0), radius.like(theta), radius.like(phi));
+    let is_pole = p.x.eq(zero) & p.y.eq(zero);
+    let x = F::select(is_pole, radius * radius.like(1e-5), p.x);
+    let y = F::select(is_pole, zero, p.y);
+    let ring = (x * x + y * y).sqrt();
+    let (cos, sin) = (x / ring, y / ring);
+    let by_theta = Vector { x: p.z * cos, y: p.z * sin, z: -ring };
+    [Vector { x: -y * phi, y: x * phi, z: zero * phi }, by_theta * theta]
 }
 
 /// The derivative by u, where u is φ / `phi_max`.

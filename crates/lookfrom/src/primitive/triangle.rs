@@ -72,8 +72,8 @@ pub(crate) struct Tangent<R> {
     pub(crate) sign: R,
 }
 
-/// Points on triangles: as [`super::SurfacePoint`].
-pub(crate) struct TrianglePoints<R: Real> {
+/// Points on surfaces: as [`super::SurfacePoint`].
+pub(crate) struct SurfacePoints<R: Real> {
     pub(crate) points: Points<R>,
     pub(crate) ng: Vector<R::Double>,
     pub(crate) ns: Vector<R::Double>,
@@ -88,7 +88,7 @@ pub(crate) struct TrianglePoints<R: Real> {
 impl<R: Real> Triangles<R> {
     /// The points with weight `u` of the second corners and `v` of the third.
     #[inline(always)]
-    pub(crate) fn points(&self, u: R, v: R) -> TrianglePoints<R> {
+    pub(crate) fn points(&self, u: R, v: R) -> SurfacePoints<R> {
         let (points, across) = Points::on_triangles(self.positions, u, v);
         let winding = across.normalize();
         let mut ng = winding * self.orientation;
@@ -110,7 +110,7 @@ impl<R: Real> Triangles<R> {
         ];
         let zero = ng.x.like(0.0);
         let none = Vector { x: zero, y: zero, z: zero };
-        let mut result = TrianglePoints {
+        let mut result = SurfacePoints {
             points,
             ng,
             ns,
@@ -160,7 +160,7 @@ impl<R: Real> Triangles<R> {
     #[inline(always)]
     fn derive(
         &self,
-        at: &mut TrianglePoints<R>,
+        at: &mut SurfacePoints<R>,
         winding: Vector<R::Double>,
         weights: [R; 3],
         is_smooth: WideMask<R>,
@@ -219,7 +219,7 @@ impl<R: Real> Triangles<R> {
     }
 }
 
-impl<R: Real> TrianglePoints<R> {
+impl<R: Real> SurfacePoints<R> {
     /// These points in instances, where the mask is set.
     #[inline(always)]
     pub(crate) fn placed(self, mask: WideMask<R>, placement: &Placement<R>) -> Self {

@@ -1,12 +1,12 @@
 //! Classes of geometries, by the shading that their hits need; known when the world is compiled.
 
-use lookfrom_bvh::{Hit, NONE};
+use lookfrom_bvh::{Hit, NONE, Sphere};
 
 use super::World;
 use crate::core::points::StoredPlacement;
-use crate::primitive::{MaterialBinding, Mesh, Primitives};
+use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
 use crate::shading::bsdf::BsdfClass;
-use crate::shading::material::{Material, MaterialKind};
+use crate::shading::material::MaterialKind;
 
 /// The class of all hits on a geometry.
 #[derive(Clone, Debug)]
@@ -24,6 +24,8 @@ pub(crate) enum Class {
     Spheres {
         /// The material of each one that is bare.
         bare: Vec<Option<u32>>,
+        /// The class of the BSDFs of each one, as for meshes.
+        bsdfs: Vec<Option<BsdfClass>>,
         /// Whether each is an interface of media and nothing else.
         are_interfaces: Vec<bool>,
     },
@@ -38,6 +40,15 @@ pub(crate) struct BareSurface {
     /// Index into the world's materials.
     pub(crate) material: u32,
     /// Whether it is a sphere.
+    pub(crate) is_sphere: bool,
+}
+
+/// The class of a hit that is shaded in lanes from the hit on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct HitClass {
+    /// That of the BSDFs.
+    pub(crate) bsdf: BsdfClass,
+    /// Whether it is on a sphere, and not on a mesh.
     pub(crate) is_sphere: bool,
 }
 
@@ -60,19 +71,23 @@ impl World {
             let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
             is_alone && matches!(self.materials[binding.material as usize].kind, MaterialKind::Interface)
         };
+        let bsdf = |binding: &MaterialBinding| {
+            let is_whole = binding.is_only_material() && !(self.has_open_fronts && binding.single_sided);
+            let material = &self.materials[binding.material as usize];
+            // Paths into what fills a body leave its surface one by one.
+            material.class().filter(|_| is_whole && material.medium.is_none())
+        };
         match primitives {
-            Primitives::Mesh(mesh) => {
-                let binding = &mesh.binding;
-                let is_whole = binding.is_only_material() && !(self.has_open_fronts && binding.single_sided);
-                let material = &self.materials[binding.material as usize];
-                // Paths into what fills a body leave its surface one by one.
-                let bsdf = material.class().filter(|_| is_whole && material.medium.is_none());
-                Class::Mesh { bsdf, bare: bare(binding), is_interface: is_interface(binding) }
-            }
+            Primitives::Mesh(mesh) => Class::Mesh {
+                bsdf: bsdf(&mesh.binding),
+                bare: bare(&mesh.binding),
+                is_interface: is_interface(&mesh.binding),
+            },
             Primitives::Spheres(spheres) => {
                 let bindings = || spheres.binding_of.iter().map(|&of| &spheres.bindings[of as usize].binding);
                 Class::Spheres {
                     bare: bindings().map(bare).collect(),
+                    bsdfs: bindings().map(bsdf).collect(),
                     are_interfaces: bindings().map(is_interface).collect(),
                 }
             }
@@ -108,9 +123,10 @@ impl World {
         }
     }
 
-    /// The class of the BSDFs at a hit on a mesh that has one; `None` for instances with a material of their own, or that move.
+    /// The class of a hit on a mesh, or a sphere outside of instances, that has one; `None` for instances with a material of their own,
+    /// or that move.
     #[inline]
-    pub(crate) fn mesh_class(&self, hit: &Hit) -> Option<BsdfClass> {
+    pub(crate) fn hit_class(&self, hit: &Hit) -> Option<HitClass> {
         let class = match hit.instance {
             NONE => &self.classes[hit.geometry as usize],
             instance => {
@@ -121,16 +137,17 @@ impl World {
                 &self.object_classes[instance.object as usize][hit.geometry as usize]
             }
         };
-        match class {
-            Class::Mesh { bsdf, .. } => *bsdf,
-            Class::Spheres { .. } | Class::General => None,
-        }
+        let (bsdf, is_sphere) = match class {
+            Class::Mesh { bsdf, .. } => (*bsdf, false),
+            Class::Spheres { bsdfs, .. } if hit.instance == NONE => (bsdfs[hit.primitive as usize], true),
+            Class::Spheres { .. } | Class::General => (None, false),
+        };
+        bsdf.map(|bsdf| HitClass { bsdf, is_sphere })
     }
 
-    /// The mesh of a hit on what stands still, its material, and the placement of the instance that it is in; `None` for other
-    /// geometries.
+    /// The mesh of a hit on what stands still, and the placement of the instance that it is in; `None` for other geometries.
     #[inline(always)]
-    pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, &Material, Option<StoredPlacement<'_>>)> {
+    pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, Option<StoredPlacement<'_>>)> {
         let (primitives, placement) = match hit.instance {
             NONE => (&self.primitives[hit.geometry as usize], None),
             id => {
@@ -138,7 +155,16 @@ impl World {
                 (&self.objects[object][hit.geometry as usize], Some(self.standing_placement(id)))
             }
         };
-        let Primitives::Mesh(mesh) = primitives else { return None };
-        Some((mesh, &self.materials[mesh.binding.material as usize], placement))
+        if let Primitives::Mesh(mesh) = primitives { Some((mesh, placement)) } else { None }
+    }
+
+    /// The sphere of a hit outside of instances; `None` for other geometries.
+    #[inline(always)]
+    pub(crate) fn sphere(&self, hit: &Hit) -> Option<(&Sphere, &SphereBinding)> {
+        if hit.instance != NONE {
+            return None;
+        }
+        let Primitives::Spheres(spheres) = &self.primitives[hit.geometry as usize] else { return None };
+        Some(spheres.get(hit.primitive as usize))
     }
 }

@@ -7,11 +7,11 @@
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
 mod bent_frames;
+mod class_hits;
+mod class_points;
 mod in_medium;
 mod kernel;
 mod medium;
-mod mesh_hits;
-mod mesh_points;
 mod skies;
 mod vertices;
 
@@ -19,10 +19,10 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_simd::LaneMask;
 
+use class_points::ClassPoints;
 pub(super) use in_medium::MediumVertex;
 use kernel::{ScatterKernel, Scattered, Task};
 use medium::MediumKernel;
-use mesh_points::MeshPoints;
 use vertices::VertexColumns;
 
 use super::subsurface::exit_below;
@@ -44,10 +44,10 @@ use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::subsurface::Subsurface;
 use crate::shading::bsdf::{Bsdf, BsdfClass, BsdfSample, Uniform, bsdf_classes};
-use crate::world::World;
+use crate::world::{HitClass, World};
 
-/// Paths that wait for others of their class: those that hit meshes by their class and those that hit nothing, in bins, and
-/// all others as vertices.
+/// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
+/// nothing, in bins, and all others as vertices.
 #[derive(Default)]
 pub(super) struct Waiting {
     /// Whether they wait at all: otherwise each is scattered alone, at once.
@@ -66,10 +66,14 @@ pub(super) struct Waiting {
 /// The bin of paths that hit nothing, after those of the classes.
 const ESCAPED: usize = BsdfClass::COUNT;
 
+/// The bin of the first class of paths that hit spheres.
+const ON_SPHERES: usize = ESCAPED + 1;
+const _: () = assert!(ON_SPHERES + BsdfClass::COUNT <= Bins::COUNT, "bins of other kinds");
+
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
 #[derive(Default)]
 struct Memory {
-    points: MeshPoints,
+    points: ClassPoints,
     scattered: Scattered,
 }
 
@@ -122,12 +126,13 @@ impl Waiting {
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (class, index): (BsdfClass, usize),
+        (HitClass { bsdf, is_sphere }, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
         let memory = &mut self.memory;
-        self.bins.push(class as usize, index as u32, 0, |eight| {
-            with_class!(class, tracer.scatter_mesh_hits(batch, eight, memory, output));
+        let first = if is_sphere { ON_SPHERES } else { 0 };
+        self.bins.push(first + bsdf as usize, index as u32, 0, |eight| {
+            with_class!(bsdf, tracer.scatter_hits(batch, eight, memory, output));
         });
     }
 
@@ -224,9 +229,11 @@ impl Waiting {
         tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
         for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
             let memory = &mut self.memory;
-            self.bins.flush(1 << class as usize, |eight| {
-                with_class!(class, tracer.scatter_mesh_hits(batch, eight, memory, output));
-            });
+            for first in [0, ON_SPHERES] {
+                self.bins.flush(1 << (first + class as usize), |eight| {
+                    with_class!(class, tracer.scatter_hits(batch, eight, memory, output));
+                });
+            }
             let (world, scattered) = (batch.world, &mut memory.scattered);
             with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
         }

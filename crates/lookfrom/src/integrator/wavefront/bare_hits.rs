@@ -1,9 +1,9 @@
 //! Eight hits on bare surfaces ([`World::bare_surface`](crate::world::World::bare_surface)) side by side.
 
-use lookfrom_bvh::{Hit, Ray, Sphere};
+use lookfrom_bvh::{Hit, Ray};
 
 use crate::core::lanes::LANES;
-use crate::primitive::{Mesh, Primitives, SphereBinding};
+use crate::primitive::{Mesh, Primitives};
 use crate::world::World;
 
 /// Eight hits on bare surfaces of one kind of shape.
@@ -35,16 +35,4 @@ pub(in crate::integrator) fn mesh<'a>(world: &'a World, hit: &Hit) -> Option<&'a
         Primitives::Mesh(mesh) => Some(mesh),
         _ => None,
     }
-}
-
-/// The sphere of a hit on one.
-#[inline(always)]
-pub(in crate::integrator) fn sphere<'a>(
-    world: &'a World,
-    hit: &Hit,
-) -> Option<(&'a Sphere, &'a SphereBinding)> {
-    let Primitives::Spheres(spheres) = &world.primitives[hit.geometry as usize] else { return None };
-    let primitive = hit.primitive as usize;
-    let binding = &spheres.bindings[spheres.binding_of[primitive] as usize];
-    Some((&spheres.spheres[primitive], binding))
 }

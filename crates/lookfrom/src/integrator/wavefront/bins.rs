@@ -2,9 +2,6 @@
 
 use crate::core::lanes::LANES;
 
-/// Number of bins: kinds share them where there are more.
-const BINS: usize = 64;
-
 /// Paths that wait, by kind: memory that is reused.
 #[derive(Debug, Default)]
 pub(in crate::integrator) struct Bins {
@@ -49,6 +46,9 @@ impl Bin {
 }
 
 impl Bins {
+    /// Number of bins: kinds share them where there are more.
+    pub(in crate::integrator) const COUNT: usize = 64;
+
     /// All bins with an even number, and all with an odd one.
     pub(in crate::integrator) const EVEN: u64 = 0x5555_5555_5555_5555;
     pub(in crate::integrator) const ODD: u64 = !Self::EVEN;
@@ -63,9 +63,9 @@ impl Bins {
         shade: impl FnOnce(&Eight<'_>),
     ) {
         if self.bins.is_empty() {
-            self.bins.resize(BINS, Bin::default());
+            self.bins.resize(Self::COUNT, Bin::default());
         }
-        let number = kind % BINS;
+        let number = kind % Self::COUNT;
         let bin = &mut self.bins[number];
         bin.push(path, material);
         self.used |= 1 << number;

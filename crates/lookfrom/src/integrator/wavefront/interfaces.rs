@@ -85,7 +85,7 @@ fn interior_behind(
 fn binding<'a>(world: &'a World, hit: &Hit) -> Option<&'a MaterialBinding> {
     match bare_hits::mesh(world, hit) {
         Some(mesh) => Some(&mesh.binding),
-        None => bare_hits::sphere(world, hit).map(|(_, sphere)| &sphere.binding),
+        None => world.sphere(hit).map(|(_, sphere)| &sphere.binding),
     }
 }
 

@@ -1,15 +1,14 @@
 //! Bare surfaces: one, or eight side by side, from their hits.
 
-use glam::Vec2;
-use lookfrom_bvh::{Hit, Point};
+use lookfrom_bvh::Point;
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::bare_hits::{self, BareHits};
 use crate::aov::FirstSurfaceColumns;
-use crate::core::lanes::{LANES, by_lane, gather, gather_rays, scatter, store, store_f64};
+use crate::core::lanes::{LANES, by_lane, gather_rays, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
-use crate::primitive::points_on_meshes;
+use crate::primitive::{points_on_meshes, points_on_spheres};
 use crate::shading::interaction::SurfaceInteraction;
 use crate::world::World;
 
@@ -139,50 +138,12 @@ fn on_spheres<S: Simd>(
     wants_uvs: bool,
 ) -> Shapes<S> {
     let hits = &bare.hits;
-    let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
-    let near = origin + direction * Real::widen(t);
-    let (center, radius, flip) = if bare.are_on_one() {
-        let (center, radius, flip) = sphere_row(world, hits[0]);
-        let like = f64x8::splat(simd, flip);
-        (Vector::splat(like, center.map(f64::from)), f64x8::splat(simd, f64::from(radius)), like)
-    } else {
-        let rows = by_lane!(lane => sphere_row(world, hits[lane]));
-        (
-            gather(simd, &by_lane!(lane => rows[lane].0)).widen(),
-            Real::widen(f32x8::load_array(simd, by_lane!(lane => rows[lane].1))),
-            f64x8::load_array(simd, by_lane!(lane => rows[lane].2)),
-        )
+    let Some(first) = world.sphere(hits[0]) else { return nowhere(simd) };
+    let spheres = match bare.are_on_one() {
+        true => [first; LANES],
+        false => by_lane!(lane => world.sphere(hits[lane]).unwrap_or(first)),
     };
-    let points = Points::<f32x8<S>>::on_spheres(center, radius, near);
-    let ng = (points.position - center).normalize() * flip;
-    let uv = if wants_uvs { Some(sphere_uvs(simd, world, hits, Vector::narrow(ng))) } else { None };
-    (points, ng, ng, uv, None)
-}
-
-/// The texture coordinates of hits on spheres, by their normals; one by one.
-#[inline(always)]
-fn sphere_uvs<S: Simd>(
-    simd: S,
-    world: &World,
-    hits: &[&Hit; LANES],
-    normals: Vector<f32x8<S>>,
-) -> [f32x8<S>; 2] {
-    let normals = scatter(normals);
-    let uvs = by_lane!(lane => match bare_hits::sphere(world, hits[lane]) {
-        Some((_, binding)) => binding.uv(normals[lane].into()),
-        None => Vec2::ZERO,
-    });
-    [
-        f32x8::load_array(simd, by_lane!(lane => uvs[lane].x)),
-        f32x8::load_array(simd, by_lane!(lane => uvs[lane].y)),
-    ]
-}
-
-/// The centre and the radius of a sphere, and −1 where its outside is the side of the centre, otherwise 1.
-#[inline(always)]
-fn sphere_row(world: &World, hit: &Hit) -> ([f32; 3], f32, f64) {
-    match bare_hits::sphere(world, hit) {
-        Some((sphere, binding)) => (sphere.center, sphere.radius, if binding.flip { -1.0 } else { 1.0 }),
-        None => ([0.0; 3], 1.0, 1.0),
-    }
+    let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
+    let at = points_on_spheres(simd, &spheres, origin + direction * Real::widen(t), [wants_uvs, false]);
+    (at.points, at.ng, at.ns, wants_uvs.then_some(at.uv), None)
 }

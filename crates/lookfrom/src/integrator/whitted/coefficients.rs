@@ -169,7 +169,7 @@ pub(super) fn texture_point<'a>(
         let on_outside = world.texture_point_on_mesh(mesh, hit, (position, ng.into()), uv.into());
         return TexturePoint { is_inside, ..on_outside };
     }
-    let uv = bare_hits::sphere(world, hit).map_or(Vec2::ZERO, |(_, binding)| binding.uv(ng.into()));
+    let uv = world.sphere(hit).map_or(Vec2::ZERO, |(_, binding)| binding.uv(ng.into()));
     let world = world.origin + DVec3::from_array(position);
     TexturePoint { uv, world, color: [1.0; 3], n: ng.into(), is_inside, ..TexturePoint::NOWHERE }
 }

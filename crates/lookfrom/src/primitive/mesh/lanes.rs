@@ -7,7 +7,7 @@ use super::Mesh;
 use crate::core::lanes::{LANES, bitmask, by_lane, from_rows, load, row_at, set_row};
 use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
-use crate::primitive::triangle::{Tangent, TrianglePoints, Triangles};
+use crate::primitive::triangle::{SurfacePoints, Tangent, Triangles};
 
 /// A triangle in each lane: its mesh and its index there. Texture coordinates are 0 where neither they nor derivatives are
 /// wanted.
@@ -93,7 +93,7 @@ pub(crate) fn points_on_meshes<S: Simd>(
     hits: &[&Hit; LANES],
     placements: &[Option<StoredPlacement<'_>>; LANES],
     wants_uvs: bool,
-) -> TrianglePoints<f32x8<S>> {
+) -> SurfacePoints<f32x8<S>> {
     let indices = by_lane!(lane => hits[lane].primitive);
     let is_one = by_lane!(lane => std::ptr::eq(meshes[lane], meshes[0]) && indices[lane] == indices[0]);
     let triangles = match bitmask(&is_one) == (1 << LANES) - 1 {
@@ -166,8 +166,8 @@ mod tests {
     /// The numbers of a point.
     type Numbers = ([[f64; 3]; 9], [f32; 2]);
 
-    fn numbers(at: &TrianglePoints<f32>) -> Numbers {
-        let TrianglePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift } = *at;
+    fn numbers(at: &SurfacePoints<f32>) -> Numbers {
+        let SurfacePoints { points, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift } = *at;
         let vectors = [points.position, points.error, ng, ns, dpdu, dpdv, shading_dpdu, shading_dpdv, lift];
         (vectors.map(<[f64; 3]>::from), uv)
     }

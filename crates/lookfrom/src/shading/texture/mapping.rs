@@ -3,11 +3,12 @@
 use std::f32::consts::PI;
 use std::f64::consts::PI as PI_F64;
 
-use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec2, DVec3, Vec2};
 use lookfrom_scene::texture::Mapping;
-use lookfrom_simd::Float;
+use lookfrom_simd::{Float, Real};
 
 use super::TexturePoint;
+use crate::core::vector::Vector;
 
 /// Coordinates are clamped to this; single-precision numbers of this size have long lost their fraction.
 const FARTHEST: f32 = 1_073_741_824.0;
@@ -107,8 +108,9 @@ fn spherical(p: DVec3) -> Vec2 {
 
 /// The coordinates on a unit sphere whose poles lie on the y axis: u around from +x toward −z by `atan2(−z, x)`, v from the
 /// south pole.
-pub fn sphere_uv(n: Vec3) -> Vec2 {
-    let u = libm::atan2f(-n.z, n.x) / (2.0 * PI);
-    let v = libm::acosf((-n.y).clamp(-1.0, 1.0)) / PI;
-    Vec2::new(if u < 0.0 { u + 1.0 } else { u }, v)
+#[inline(always)]
+pub(crate) fn sphere_uv<R: Real>(n: Vector<R>) -> [R; 2] {
+    let u = (-n.z).zip(n.x, libm::atan2f) / (2.0 * PI);
+    let v = Float::clamp(-n.y, -1.0, 1.0).map(libm::acosf) / PI;
+    [R::select(u.lt(u.like(0.0)), u + 1.0, u), v]
 }

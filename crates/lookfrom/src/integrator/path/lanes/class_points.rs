@@ -1,21 +1,21 @@
-//! The points of hits on meshes, side by side.
+//! The points of hits on meshes, or on spheres, side by side.
 
-use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, Kernel, Real, Simd, f32x8, prelude::*};
 
 use super::bent_frames::BentFrames;
-use super::mesh_hits::MeshHits;
+use super::class_hits::{ClassHits, Shapes};
 use super::vertices::VertexColumns;
 use crate::core::lanes::{Columns, by_lane, gather, row, shade_together, store};
 use crate::core::points::Lift;
 use crate::core::vector::Vector;
-use crate::primitive::points_on_meshes;
+use crate::primitive::{points_on_meshes, points_on_spheres};
 use crate::shading::footprint::{Changes, SurfaceFootprint};
 use crate::shading::material::frame_about;
 use crate::world::World;
 
 /// The points of eight hits, in the frames of materials without bump mapping.
 #[derive(Default)]
-pub(super) struct MeshPoints {
+pub(super) struct ClassPoints {
     pub(super) surfaces: VertexColumns,
     pub(super) uv: Columns<2>,
     /// Bit i for lane i: whether the ray hit the outside.
@@ -49,35 +49,41 @@ impl Footprints {
 }
 
 /// Finds the points of hits.
-pub(super) struct MeshKernel<'a> {
+pub(super) struct PointsKernel<'a> {
     pub(super) world: &'a World,
-    pub(super) mesh_hits: &'a MeshHits<'a>,
-    pub(super) points: &'a mut MeshPoints,
+    pub(super) class_hits: &'a ClassHits<'a>,
+    pub(super) points: &'a mut ClassPoints,
 }
 
-impl MeshKernel<'_> {
+impl PointsKernel<'_> {
     #[inline(never)]
     pub(super) fn set_points(self) {
         shade_together(self);
     }
 }
 
-impl Kernel for MeshKernel<'_> {
+impl Kernel for PointsKernel<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, mesh_hits: MeshHits { hits, vary, are_first, pixels }, points } = self;
+        let Self { world, class_hits: ClassHits { hits, shapes, vary, are_first, pixels }, points } = self;
         let are_first = *are_first != 0;
-        let at = points_on_meshes(
-            simd,
-            &by_lane!(lane => hits[lane].mesh),
-            &by_lane!(lane => hits[lane].hit),
-            &by_lane!(lane => hits[lane].placement),
-            *vary || are_first,
-        );
-        let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction));
-        let wide_wo = -direction.widen().normalize();
+        let wants_uvs = *vary || are_first;
+        let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction)).widen();
+        let at = match shapes {
+            Shapes::Meshes(shapes) => {
+                let (meshes, placements) =
+                    (by_lane!(lane => shapes[lane].0), by_lane!(lane => shapes[lane].1));
+                points_on_meshes(simd, &meshes, &by_lane!(lane => hits[lane].hit), &placements, wants_uvs)
+            }
+            Shapes::Spheres(spheres) => {
+                let origin = gather(simd, &by_lane!(lane => hits[lane].path.ray.origin)).widen();
+                let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.t));
+                points_on_spheres(simd, spheres, origin + direction * Real::widen(t), [wants_uvs, true])
+            }
+        };
+        let wide_wo = -direction.normalize();
         let wo = Vector::narrow(wide_wo);
         let [ng, ns]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.ng), Vector::narrow(at.ns)];
         let n = ns.negate_where(ns.dot(ng).lt(ns.x.like(0.0)));

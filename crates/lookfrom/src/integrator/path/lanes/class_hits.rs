@@ -1,13 +1,13 @@
-//! Hits on triangle meshes, shaded in lanes from the hit on: most of most pictures.
+//! Hits on triangle meshes and spheres, shaded in lanes from the hit on: most of most pictures.
 
 use glam::{DVec3, Vec3};
-use lookfrom_bvh::{Hit, OriginPrimitive};
+use lookfrom_bvh::{Hit, OriginPrimitive, Sphere};
 use lookfrom_scene::material::BackFace;
 use lookfrom_simd::LaneMask;
 
 use super::Memory;
+use super::class_points::{ClassPoints, PointsKernel};
 use super::kernel::ScatterKernel;
-use super::mesh_points::{MeshKernel, MeshPoints};
 use super::vertices::VertexColumns;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::{LANES, bitmask, by_lane, row, set_row};
@@ -15,12 +15,11 @@ use crate::core::points::StoredPlacement;
 use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput, dimension};
 use crate::integrator::wavefront::{Boundary, Eight};
 use crate::integrator::{Event, Integrator, Probe, SampleStream};
-use crate::primitive::Mesh;
-use crate::shading::bsdf::BsdfClass;
+use crate::primitive::{MaterialBinding, Mesh, SphereBinding};
 use crate::shading::footprint::PixelFootprint;
 use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext};
 use crate::shading::texture::{LookUps, TexturePoint};
-use crate::world::World;
+use crate::world::{HitClass, World};
 
 impl<'a> HitBatch<'a> {
     /// Whether a path travels in no medium and comes from no shadow catcher.
@@ -30,46 +29,44 @@ impl<'a> HitBatch<'a> {
         path.interior.is_empty() && !path.state.is_catcher
     }
 
-    /// The class of a path that met a mesh whose material has BSDFs of a class, and is to go on from there.
+    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, and is to go on from there.
     #[inline]
-    pub(in crate::integrator) fn mesh_class(&self, tracer: &PathTracer, index: usize) -> Option<BsdfClass> {
+    pub(in crate::integrator) fn hit_class(&self, tracer: &PathTracer, index: usize) -> Option<HitClass> {
         match self.paths[index].depth < tracer.depth {
-            true => self.world.mesh_class(&self.hits[index]),
+            true => self.world.hit_class(&self.hits[index]),
             false => None,
         }
     }
-
-    /// A plain path that has such a class.
-    #[inline(always)]
-    fn mesh_hit(&self, index: u32) -> Option<MeshHit<'a>> {
-        let (path, hit) = (&self.paths[index as usize], &self.hits[index as usize]);
-        let (mesh, material, placement) = self.world.mesh(hit)?;
-        Some(MeshHit { path, hit, mesh, material, placement })
-    }
 }
 
-/// A path that met a mesh.
+/// A path that met a mesh or a sphere.
 #[derive(Clone, Copy)]
-pub(super) struct MeshHit<'a> {
+pub(super) struct ClassHit<'a> {
     pub(super) path: &'a Path,
     pub(super) hit: &'a Hit,
-    pub(super) mesh: &'a Mesh,
+    pub(super) binding: &'a MaterialBinding,
     pub(super) material: &'a Material,
-    /// The placement of the instance that the mesh is in.
-    pub(super) placement: Option<StoredPlacement<'a>>,
 }
 
-impl MeshHit<'_> {
+impl ClassHit<'_> {
     /// Whether the path passes the surface where it hit the back of it.
     #[inline]
     fn passes_back_faces(&self) -> bool {
-        self.mesh.binding.single_sided && !self.path.blurred
+        self.binding.single_sided && !self.path.blurred
     }
 }
 
-/// Eight hits on meshes of one class, and the points there. Unused lanes repeat the last hit.
-pub(super) struct MeshHits<'a> {
-    pub(super) hits: [MeshHit<'a>; LANES],
+/// What eight hits are on.
+pub(super) enum Shapes<'a> {
+    /// Meshes, and the placements of the instances that they are in.
+    Meshes([(&'a Mesh, Option<StoredPlacement<'a>>); LANES]),
+    Spheres([(&'a Sphere, &'a SphereBinding); LANES]),
+}
+
+/// Eight hits on meshes or on spheres of one class, and the points there. Unused lanes repeat the last hit.
+pub(super) struct ClassHits<'a> {
+    pub(super) hits: [ClassHit<'a>; LANES],
+    pub(super) shapes: Shapes<'a>,
     /// Whether any material varies.
     pub(super) vary: bool,
     /// Lanes of camera rays whose surfaces AOVs need.
@@ -79,8 +76,8 @@ pub(super) struct MeshHits<'a> {
 }
 
 impl PathTracer {
-    /// Scatters up to eight paths of a batch that met meshes of one class.
-    pub(super) fn scatter_mesh_hits<B: MaterialRow, P: Probe>(
+    /// Scatters up to eight paths of a batch that met meshes, or spheres, of one class.
+    pub(super) fn scatter_hits<B: MaterialRow, P: Probe>(
         &self,
         batch: &HitBatch<'_>,
         eight: &Eight<'_>,
@@ -90,11 +87,11 @@ impl PathTracer {
         let world = batch.world;
         let Memory { points, scattered } = memory;
         let wants_first = output.queues.first_surfaces.are_wanted();
-        let Some(mesh_hits) = MeshHits::of(batch, eight.paths, wants_first) else { return };
-        let hits = &mesh_hits.hits;
+        let Some(class_hits) = ClassHits::of(batch, eight.paths, wants_first) else { return };
+        let hits = &class_hits.hits;
 
-        // Find the points; paths from the camera pass the back faces of single-sided meshes.
-        MeshKernel { world, mesh_hits: &mesh_hits, points }.set_points();
+        // Find the points; paths from the camera pass the back faces of single-sided shapes.
+        PointsKernel { world, class_hits: &class_hits, points }.set_points();
         let active = self.pass_back_faces(batch, eight.paths, (hits, points.front), output);
         if active == 0 {
             return;
@@ -102,28 +99,28 @@ impl PathTracer {
 
         // Evaluate the materials, and bend the frames.
         let mut look_ups = None;
-        let varying = mesh_hits.texture_points(world, points, &mut look_ups);
+        let varying = class_hits.texture_points(world, points, &mut look_ups);
         let varying = varying.as_ref();
         let rows = self.rows::<B, P>(batch, hits, varying, points, output);
         points.bent.bend(&mut points.surfaces, points.front);
         if P::LISTENS {
             tell_of_shading(world, (hits, active), &rows, points, output);
         }
-        if active & mesh_hits.are_first != 0 {
+        if active & class_hits.are_first != 0 {
             let first = output.queues.first_surfaces.block();
-            mesh_hits.leave(world, active, varying, points, first);
+            class_hits.leave(world, active, varying, points, first);
             output.queues.first_surfaces.leave_block();
         }
 
         // Scatter, but for what is black from behind.
-        let active = active & !mesh_hits.are_black(&points.surfaces);
+        let active = active & !class_hits.are_black(&points.surfaces);
         let Some(first) = &rows[0] else { return };
         let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
         let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
         let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
         ScatterKernel { world, surfaces: &points.surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
         let departure = |lane: usize| {
-            let MeshHit { path, hit, .. } = hits[lane];
+            let ClassHit { path, hit, .. } = hits[lane];
             let origin_primitive = OriginPrimitive::of(hit);
             (Departure { path, origin_primitive, boundary: Boundary::None }, false)
         };
@@ -136,7 +133,7 @@ impl PathTracer {
         &self,
         batch: &HitBatch<'_>,
         indices: &[u32],
-        (hits, front): (&[MeshHit<'_>; LANES], u32),
+        (hits, front): (&[ClassHit<'_>; LANES], u32),
         output: &mut StepOutput<'_, P>,
     ) -> u32 {
         let mut active = (1 << indices.len()) - 1;
@@ -155,16 +152,16 @@ impl PathTracer {
     fn rows<B: MaterialRow, P: Probe>(
         &self,
         batch: &HitBatch<'_>,
-        hits: &[MeshHit<'_>; LANES],
+        hits: &[ClassHit<'_>; LANES],
         varying: Option<&[TexturePoint<'_>; LANES]>,
-        points: &mut MeshPoints,
+        points: &mut ClassPoints,
         output: &mut StepOutput<'_, P>,
     ) -> [Option<B>; LANES] {
         let world = batch.world;
-        let &mut MeshPoints { ref mut surfaces, front, smooth, ref mut bent, .. } = points;
+        let &mut ClassPoints { ref mut surfaces, front, smooth, ref mut bent, .. } = points;
         let mut rows = [None; LANES];
         for (lane, hit) in hits.iter().enumerate() {
-            let MeshHit { path, material, .. } = hit;
+            let ClassHit { path, material, .. } = hit;
             let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
             let mut throughput = path.beta;
             let context = ShadingContext {
@@ -197,15 +194,32 @@ impl PathTracer {
     }
 }
 
-impl<'a> MeshHits<'a> {
+impl<'a> ClassHits<'a> {
     #[inline(always)]
     fn of(batch: &HitBatch<'a>, indices: &[u32], wants_first: bool) -> Option<Self> {
-        let hits = by_lane!(lane => batch.mesh_hit(indices[lane.min(indices.len() - 1)])?);
+        let index = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
+        let (world, all) = (batch.world, batch.hits);
+        let (shapes, bindings) = match world.sphere(&all[index(0)]) {
+            None => {
+                let meshes = by_lane!(lane => world.mesh(&all[index(lane)])?);
+                (Shapes::Meshes(meshes), by_lane!(lane => &meshes[lane].0.binding))
+            }
+            Some(_) => {
+                let spheres = by_lane!(lane => world.sphere(&all[index(lane)])?);
+                (Shapes::Spheres(spheres), by_lane!(lane => &spheres[lane].1.binding))
+            }
+        };
+        let hits = by_lane!(lane => ClassHit {
+            path: &batch.paths[index(lane)],
+            hit: &all[index(lane)],
+            binding: bindings[lane],
+            material: &world.materials[bindings[lane].material as usize],
+        });
         let vary = hits.iter().any(|hit| hit.material.varies);
         let are_first = if wants_first { bitmask(&by_lane!(lane => hits[lane].path.is_root())) } else { 0 };
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
         let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
-        Some(Self { hits, vary, are_first, pixels })
+        Some(Self { hits, shapes, vary, are_first, pixels })
     }
 
     /// The lanes that see surfaces from behind which are black there.
@@ -224,7 +238,7 @@ impl<'a> MeshHits<'a> {
     fn texture_points<'b>(
         &self,
         world: &'b World,
-        MeshPoints { surfaces, uv, front, footprints, .. }: &MeshPoints,
+        ClassPoints { surfaces, uv, front, footprints, .. }: &ClassPoints,
         look_ups: &'b mut Option<LookUps>,
     ) -> Option<[TexturePoint<'b>; LANES]>
     where
@@ -236,7 +250,12 @@ impl<'a> MeshHits<'a> {
         let mut points = [TexturePoint::NOWHERE; LANES];
         for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
             let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
-            points[lane] = world.texture_point_on_mesh(hit.mesh, hit.hit, at, row(uv, lane));
+            points[lane] = match &self.shapes {
+                Shapes::Meshes(meshes) => {
+                    world.texture_point_on_mesh(meshes[lane].0, hit.hit, at, row(uv, lane))
+                }
+                Shapes::Spheres(_) => world.texture_point_on_sphere(at, row(uv, lane)),
+            };
             points[lane].is_inside = front & 1 << lane == 0;
             if self.pixels.is_some() && hit.material.needs_footprint {
                 points[lane].footprint = Some(footprints.of(lane));
@@ -259,7 +278,7 @@ impl<'a> MeshHits<'a> {
         world: &World,
         active: u32,
         varying: Option<&[TexturePoint<'_>; LANES]>,
-        MeshPoints { surfaces, uv, bent, .. }: &MeshPoints,
+        ClassPoints { surfaces, uv, bent, .. }: &ClassPoints,
         first: &mut FirstSurfaceColumns,
     ) {
         surfaces.leave(first);
@@ -281,13 +300,13 @@ impl<'a> MeshHits<'a> {
 #[cold]
 fn tell_of_shading<B: MaterialRow, P: Probe>(
     world: &World,
-    (hits, active): (&[MeshHit<'_>; LANES], u32),
+    (hits, active): (&[ClassHit<'_>; LANES], u32),
     rows: &[Option<B>; LANES],
-    points: &MeshPoints,
+    points: &ClassPoints,
     output: &mut StepOutput<'_, P>,
 ) {
     for lane in LaneMask(active) {
-        let (MeshHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
+        let (ClassHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
         let surface = world.surface_at(&path.ray, hit, output.time(path));
         output.probe.notice(|| Event::Shaded {
             address: path.address,
