@@ -81,6 +81,22 @@ fn pinned_pictures_are_the_same_at_every_level_and_on_any_number_of_threads() {
     assert_eq!(lines.lines().count(), pinned.lines().count());
 }
 
+#[test]
+fn guides_are_the_same_at_every_level() {
+    let stage = Stage::new("guides");
+    let room = root().join("docs/benchmarks/portals/window.toml");
+    let picture = |level: &str, portals: &str| {
+        let settings = "--integrator path --width 16 --height 12 --samples 2 --denoise off";
+        let mut command = stage.command(&format!("render -q -o p.exr {settings} --portals {portals}"));
+        let output = command.arg(&room).env("LOOKFROM_SIMD", level).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        hash(&pixels(&stage))
+    };
+    let guided = picture("sse2", "auto");
+    assert_eq!(guided, picture("avx2", "auto"));
+    assert_ne!(guided, picture("avx2", "named"));
+}
+
 /// The values of all channels of the picture, without the header, which names the version and the path.
 fn pixels(stage: &Stage) -> Vec<u8> {
     use lookfrom_scene::{Disk, LoadContext, image};

@@ -69,7 +69,11 @@ impl Renderer {
             renderer.integrator.trace_events(&renderer, chunks[chunk], &mut events, &mut batch);
             events.into_iter().filter_map(Visited::of).collect::<Vec<_>>()
         });
-        visited.into_iter().flatten().collect()
+        let mut visited: Vec<Visited> = visited.into_iter().flatten().collect();
+        // Paths that are shaded together are told of in another order than those that are shaded alone; and neighbours must not follow one
+        // another, since the learner takes points in turns.
+        visited.sort_by_cached_key(|visited| visited.point.key());
+        visited
     }
 }
 

@@ -55,6 +55,17 @@ pub(crate) struct GuidePoint {
     pub(crate) transmits: bool,
 }
 
+impl GuidePoint {
+    /// A key by which points are in an order that does not depend on how they were found, and as if at random.
+    pub(crate) fn key(&self) -> (u64, [u32; 10]) {
+        let Self { point, n, facing, transmits } = *self;
+        let [point, n, facing] = [point, n, facing].map(|v| v.to_array().map(f32::to_bits));
+        let mut bits = [u32::from(transmits); 10];
+        bits[1..].copy_from_slice(&[point, n, facing].concat());
+        (hash::of_bytes(bits.iter().flat_map(|bits| bits.to_le_bytes())), bits)
+    }
+}
+
 /// A ray whose visibility is asked for: the index of a point, and a unit direction.
 pub(crate) type Query = (u32, Vec3);
 

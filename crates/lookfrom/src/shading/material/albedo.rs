@@ -31,7 +31,7 @@ impl Material {
     /// Whether its [`albedo()`] is [`of_coefficients`].
     #[inline]
     pub(crate) fn has_albedo_of_coefficients(&self) -> bool {
-        matches!(self.kind, MaterialKind::Whitted(_))
+        matches!(self.kind, MaterialKind::Whitted(_) | MaterialKind::Diffuse { .. })
     }
 }
 

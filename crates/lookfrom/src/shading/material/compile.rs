@@ -18,6 +18,16 @@ use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
+/// Whether a path sees nothing of Whitted's model but diffuse reflection, of no more light than there is.
+fn is_matte(whitted: &written::Whitted) -> bool {
+    let written::Whitted { ambient, diffuse, specular, mirror, transmission, .. } = *whitted;
+    let is_bounded = match diffuse {
+        Color::Value(rgb) => rgb.iter().all(|c| *c <= 1.0),
+        Color::Texture(_) | Color::Curve(_) => true,
+    };
+    ambient.is_none() && is_bounded && [specular, mirror, transmission] == [Color::BLACK; 3]
+}
+
 /// Compiles materials. A mix may only refer to earlier ones.
 pub(crate) struct Compiler<'a> {
     textures: &'a Textures,
@@ -70,6 +80,10 @@ impl<'a> Compiler<'a> {
     fn kind(&mut self, kind: &written::MaterialKind) -> MaterialKind {
         use written::MaterialKind as Written;
         match kind {
+            // In lanes, with the same light.
+            Written::Whitted(whitted) if is_matte(whitted) => {
+                MaterialKind::Diffuse { reflectance: self.unbounded(whitted.diffuse) }
+            }
             Written::Whitted(whitted) => MaterialKind::Whitted(Box::new(self.whitted(whitted))),
             Written::Diffuse { reflectance } => {
                 MaterialKind::Diffuse { reflectance: self.albedo(*reflectance) }

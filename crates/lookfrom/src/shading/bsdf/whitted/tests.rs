@@ -45,6 +45,30 @@ fn lit_as_the_tree_of_rays_is() {
     }
 }
 
+/// Materials of diffuse reflection alone have the class of Lambertian reflection ([`crate::shading::material`]).
+#[test]
+fn matte_it_is_lambertian_reflection_bit_for_bit() {
+    for trial in 0..5000 {
+        let diffuse = Spectrum(std::array::from_fn(|lane| number(80, trial * 4 + lane as u64)));
+        let black = Spectrum::BLACK;
+        let whitted = Bsdf::Whitted(WhittedBsdf {
+            diffuse,
+            specular: black,
+            mirror: black,
+            transmission: black,
+            ..pair(trial).0
+        });
+        let lambertian = Bsdf::diffuse(diffuse);
+        let wo = uniform_direction([number(1, trial), number(2, trial)]);
+        let wi = uniform_direction([number(3, trial), number(4, trial)]);
+        let (mode, all) = (Mode::Radiance, Lobes::ALL);
+        assert_eq!(whitted.f(wo, wi, mode), lambertian.f(wo, wi, mode));
+        assert_eq!(whitted.pdf(wo, wi, mode, all), lambertian.pdf(wo, wi, mode, all));
+        let (uc, u) = (number(5, trial), [number(6, trial), number(7, trial)]);
+        assert_eq!(whitted.sample(wo, uc, u, mode, all), lambertian.sample(wo, uc, u, mode, all));
+    }
+}
+
 #[test]
 fn branches_as_the_tree_of_rays_does() {
     let mut met = [0; 3];
