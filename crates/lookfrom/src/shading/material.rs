@@ -405,7 +405,10 @@ impl Evaluator<'_> {
     }
 
     fn diffuse(&self, reflectance: &SpectrumTexture) -> Diffuse {
-        Diffuse::new(self.albedo(reflectance))
+        match reflectance.is_unbounded() {
+            true => Diffuse { reflectance: self.textures.spectrum(reflectance, self.point, self.mode) },
+            false => Diffuse::new(self.albedo(reflectance)),
+        }
     }
 
     fn conductor(&self, metal: &Metal, roughness: &Roughness, &energy: &Energy) -> Conductor {

@@ -26,7 +26,7 @@ pub enum MaterialKind {
     Whitted(Box<WhittedMaterial>),
     /// Diffuse (Lambertian) reflection.
     Diffuse {
-        /// Fraction of light that is reflected.
+        /// Fraction of light that is reflected: an albedo, or Whitted's `k_d`, which is unbounded.
         reflectance: SpectrumTexture,
     },
     /// Diffuse reflection and transmission.

@@ -116,6 +116,12 @@ impl SpectrumTexture {
         matches!(self.input, Input::Texture(_))
     }
 
+    /// True if it is no reflectance, but may be above 1.
+    #[inline]
+    pub(crate) fn is_unbounded(&self) -> bool {
+        self.spectrum_type == SpectrumType::Unbounded
+    }
+
     /// True if it is this grey everywhere.
     #[inline]
     pub fn is_gray(&self, value: f32) -> bool {
