@@ -65,7 +65,9 @@ def test_light_by_wavelength_and_in_bands() -> None:
     bands = {"red": {"curve": [[600, 0], [650, 1], [700, 0]]}, "all": {"constant": 1}}
     image = {"width": 6, "height": 4, "bands": bands, "spectral_buckets": 3}
     sky = {"type": "environment", "color": {"constant": 1}}
-    picture = lookfrom.render({"image": image, "light": [sky]}, integrator="path", color="spectral", samples=16)
+    picture = lookfrom.render(
+        {"image": image, "light": [sky]}, integrator="path", color="spectral", samples=16
+    )
     assert set(picture) == {"spectrum", "band.red", "band.all"}
     assert picture["spectrum"].shape == (4, 6, 3) and picture["band.red"].shape == (4, 6)
     # The same radiance everywhere: its integral over all wavelengths, and times the response.
