@@ -8,6 +8,14 @@ use crate::error::Location;
 use crate::image::srgb_from_linear;
 use crate::spectrum::CameraSensor;
 
+/// The names that [`is_channel_name`] allows, in words.
+pub const CHANNEL_NAME: &str = "letters, digits, _ and -";
+
+/// Whether a scene may give this name to channels of an EXR.
+pub fn is_channel_name(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
 /// Maximum number of pixels of a picture: 2³⁰.
 pub const MOST_PIXELS: u64 = 1 << 30;
 

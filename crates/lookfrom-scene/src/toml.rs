@@ -275,9 +275,9 @@ impl Reader<'_, '_> {
         }
         if let Some(table) = top.maybe("image", |value| value.table("[image]")) {
             self.scene.image = settings::image(&table);
-            if let Some(bands) = table.maybe("bands", |value| self.bands(value)) {
-                let film = self.scene.image.spectral_film.get_or_insert(SpectralFilm::NONE);
-                film.bands = bands;
+            let film = self.scene.image.spectral_film.clone().unwrap_or(SpectralFilm::NONE);
+            if let Some(film) = table.maybe("bands", |value| self.with_bands(film, value)) {
+                self.scene.image.spectral_film = Some(film);
             }
             self.has_image = true;
         }

@@ -18,6 +18,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Affine, Hit, Point};
+use lookfrom_simd::{Float, Real};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
@@ -28,6 +29,9 @@ pub use quadric::{Quadric, QuadricKind, Quadrics};
 pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub(crate) use sphere::points_on_spheres;
 pub use sphere::{SphereBinding, Spheres};
+
+use crate::core::points::{Placement, Points};
+use crate::core::vector::Vector;
 
 /// The material, light and other attributes of a primitive's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,6 +139,41 @@ impl SurfacePoint {
             lift: DVec3::ZERO,
             color: [1.0; 3],
             binding,
+        }
+    }
+}
+
+/// Points on surfaces, one or several side by side: as [`SurfacePoint`].
+pub(crate) struct SurfacePoints<R: Real> {
+    pub(crate) points: Points<R>,
+    pub(crate) ng: Vector<R::Double>,
+    pub(crate) ns: Vector<R::Double>,
+    pub(crate) uv: [R; 2],
+    pub(crate) dpdu: Vector<R::Double>,
+    pub(crate) dpdv: Vector<R::Double>,
+    pub(crate) shading_dpdu: Vector<R::Double>,
+    pub(crate) shading_dpdv: Vector<R::Double>,
+    pub(crate) lift: Vector<R::Double>,
+}
+
+impl<R: Real> SurfacePoints<R> {
+    /// These points in instances, where the mask is set.
+    #[inline(always)]
+    pub(crate) fn placed(self, mask: <R::Double as Float>::Mask, placement: &Placement<R>) -> Self {
+        let points = self.points.placed(placement);
+        Self {
+            points: Points {
+                position: Vector::select(mask, points.position, self.points.position),
+                error: Vector::select(mask, points.error, self.points.error),
+            },
+            ng: Vector::select(mask, placement.normal(self.ng).normalize(), self.ng),
+            ns: Vector::select(mask, placement.normal(self.ns).normalize(), self.ns),
+            uv: self.uv,
+            dpdu: Vector::select(mask, placement.vector(self.dpdu), self.dpdu),
+            dpdv: Vector::select(mask, placement.vector(self.dpdv), self.dpdv),
+            shading_dpdu: Vector::select(mask, placement.vector(self.shading_dpdu), self.shading_dpdu),
+            shading_dpdv: Vector::select(mask, placement.vector(self.shading_dpdv), self.shading_dpdv),
+            lift: Vector::select(mask, placement.vector(self.lift), self.lift),
         }
     }
 }

@@ -270,9 +270,9 @@ impl World {
         point
     }
 
-    /// [`World::texture_point`] of a hit on the outside of a sphere, by position and geometric normal, and texture coordinates.
+    /// [`World::texture_point`] of a hit on the outside of a surface without vertex data, by position and geometric normal, and texture coordinates.
     #[inline]
-    pub(crate) fn texture_point_on_sphere(
+    pub(crate) fn texture_point_at(
         &self,
         (position, n): ([f64; 3], Vec3),
         uv: [f32; 2],
@@ -281,18 +281,16 @@ impl World {
         TexturePoint { uv: uv.into(), world, n, ..TexturePoint::NOWHERE }
     }
 
-    /// As [`World::texture_point_on_sphere`], on a mesh.
+    /// As [`World::texture_point_at`], with the vertex data of a mesh.
     #[inline]
     pub(crate) fn texture_point_on_mesh<'a>(
         &self,
         mesh: &Mesh,
         hit: &Hit,
-        (position, n): ([f64; 3], Vec3),
+        at: ([f64; 3], Vec3),
         uv: [f32; 2],
     ) -> TexturePoint<'a> {
-        let world = self.origin + DVec3::from_array(position);
-        let point = TexturePoint { uv: uv.into(), world, n, ..TexturePoint::NOWHERE };
-        mesh.completed(point, hit.primitive as usize, hit.u, hit.v)
+        mesh.completed(self.texture_point_at(at, uv), hit.primitive as usize, hit.u, hit.v)
     }
 
     /// The alpha test: whether the surface exists where a ray hit it. Stochastic for alpha between 0 and 1, by `u ∈ [0,

@@ -229,37 +229,31 @@ impl Reader<'_, '_> {
 
     /// The bands of a film, and the wavelengths at which any has a response.
     fn spectral_film(&mut self, film: &Plugin) -> Result<SpectralFilm> {
-        let mut bands: Vec<Band> = Vec::new();
+        let mut measuring = SpectralFilm::NONE;
         let mut range = [f32::INFINITY, 0.0_f32];
         for (property, response) in self.spectra(film)? {
-            let name = property.name.clone();
-            if !Band::is_name(&name) {
-                let message = format!("{name:?} is no name of a band; expected {}", Band::NAME);
-                return Err(Error::invalid(&property.at, message));
-            }
             let [from, to] = response.support();
             if from < SpectralFilm::ALL[0] || to > SpectralFilm::ALL[1] {
                 let message = "a band is measured from 360 to 830 nm, without the rest of its response";
                 self.warn_once(&property.at, message);
             }
-            let band = Band { name, response };
+            let band = Band { name: property.name.clone(), response };
             if band.width(SpectralFilm::ALL) == 0.0 {
                 self.warn_once(&property.at, "a band without response from 360 to 830 nm is left out");
                 continue;
             }
             range = [range[0].min(from), range[1].max(to)];
-            bands.push(band);
+            measuring.add(band).map_err(|message| Error::invalid(&property.at, message))?;
         }
-        if bands.is_empty() {
+        if measuring.bands.is_empty() {
             let message = "a specfilm has a spectrum for each of its bands, its response";
             return Err(Error::invalid(&film.at, message)
                 .hint("add <spectrum name=\"red\" value=\"600:0, 650:1, 700:0\"/>"));
         }
-        bands.sort_by(|a, b| a.name.cmp(&b.name));
         let [from, to] = [range[0].max(SpectralFilm::ALL[0]), range[1].min(SpectralFilm::ALL[1])];
         // At least 1 nm.
         let from = from.min(SpectralFilm::ALL[1] - 1.0);
-        Ok(SpectralFilm { range: [from, to.max(from + 1.0)], bands, ..SpectralFilm::NONE })
+        Ok(SpectralFilm { range: [from, to.max(from + 1.0)], ..measuring })
     }
 
     fn sampler(&mut self, sampler: Option<&Plugin>) -> Result<()> {

@@ -101,7 +101,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The spectra among the properties of a film, by name.
+    /// Spectra among the properties of a film, with these properties.
     pub(super) fn spectra<'p>(&mut self, film: &'p Plugin) -> Result<Vec<(&'p Property, Curve)>> {
         let mut spectra = Vec::new();
         for property in film.unused() {

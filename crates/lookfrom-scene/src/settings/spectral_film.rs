@@ -1,5 +1,6 @@
 //! The spectral film: a range of wavelengths that are sampled uniformly, in buckets of equal width, and bands with responses.
 
+use super::{CHANNEL_NAME, is_channel_name};
 use crate::spectrum::{Curve, LONGEST, SHORTEST};
 
 /// A film that sums light by wavelength beside the picture, as pbrt-v4's film of that name and Mitsuba's `specfilm`. It needs
@@ -19,19 +20,19 @@ pub struct SpectralFilm {
 /// A band of a sensor: light is measured by its response, as the integral of radiance · response over wavelengths in nm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// Its channel is `band.` and this: letters, digits, `_` and `-`.
+    /// Its channel is `band.` and this: see [`is_channel_name`].
     pub name: String,
     /// At least 0.
     pub response: Curve,
 }
 
 impl Band {
-    /// The names that [`Band::is_name`] allows, in words.
-    pub const NAME: &str = "letters, digits, _ and -";
-
-    /// Whether a name is one of a band.
-    pub fn is_name(name: &str) -> bool {
-        !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+    /// What is wrong with its name, in words.
+    pub(crate) fn check_name(&self) -> Result<(), String> {
+        match is_channel_name(&self.name) {
+            true => Ok(()),
+            false => Err(format!("{:?} is no name of a band; expected {CHANNEL_NAME}", self.name)),
+        }
     }
 
     /// The integral of the response over a range of wavelengths, in nm.
@@ -91,6 +92,24 @@ impl SpectralFilm {
         let [shortest, longest] = self.range;
         let bucket = (nm - shortest) / (longest - shortest) * self.buckets as f32;
         (bucket as usize).min(self.buckets as usize - 1)
+    }
+
+    /// Adds a band, in the order of names.
+    ///
+    /// # Errors
+    /// In words, for a name that is none or is there already, and for too many bands.
+    pub(crate) fn add(&mut self, band: Band) -> Result<(), String> {
+        band.check_name()?;
+        if self.bands.len() == Self::MOST_BANDS {
+            return Err(format!("more than {} bands", Self::MOST_BANDS));
+        }
+        match self.bands.binary_search_by(|other| other.name.cmp(&band.name)) {
+            Ok(_) => Err(format!("two bands are named {:?}", band.name)),
+            Err(place) => {
+                self.bands.insert(place, band);
+                Ok(())
+            }
+        }
     }
 
     /// Whether it measures light beside the picture.

@@ -140,23 +140,16 @@ fn wavelengths(value: Value<'_>) -> Result<[f32; 2]> {
 }
 
 impl Reader<'_, '_> {
-    /// The bands of a spectral film: a name and a spectrum each.
-    pub(super) fn bands(&mut self, value: Value<'_>) -> Result<Vec<Band>> {
+    /// A spectral film with bands: a name and a spectrum each.
+    pub(super) fn with_bands(&mut self, mut film: SpectralFilm, value: Value<'_>) -> Result<SpectralFilm> {
         let table = value.table("bands: a name and a colour by wavelength each")?;
-        let mut bands = Vec::new();
         for entry in table.entries() {
-            let name = entry.key().to_owned();
-            if !Band::is_name(&name) {
-                return Err(entry.error(format!("{name:?} is no name of a band; expected {}", Band::NAME)));
-            }
-            if bands.len() == SpectralFilm::MOST_BANDS {
-                return Err(entry.error(format!("more than {} bands", SpectralFilm::MOST_BANDS)));
-            }
             let response = self.curve(entry, &[])?;
-            bands.push(Band { name, response: self.scene.curves[response.index()].clone() });
+            let response = self.scene.curves[response.index()].clone();
+            let band = Band { name: entry.key().to_owned(), response };
+            film.add(band).map_err(|message| entry.error(message))?;
         }
-        bands.sort_by(|a, b| a.name.cmp(&b.name));
-        Ok(bands)
+        Ok(film)
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Part, check_curve};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::scene::Scene;
 use crate::settings::{
-    Background, Band, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
+    Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
 };
 
 /// Maximum of a filter's radius in pixels.
@@ -48,11 +48,9 @@ fn check_spectral_film(part: &Part<'_>, film: &SpectralFilm) -> Result<()> {
     if !bands.is_sorted_by(|a, b| a.name < b.name) {
         return Err(part.fault("its bands are not sorted by name, each once"));
     }
-    bands.iter().try_for_each(|Band { name, response }| {
-        if !Band::is_name(name) {
-            return Err(part.fault(format!("{name:?} is no name of a band; expected {}", Band::NAME)));
-        }
-        check_curve(part, response)
+    bands.iter().try_for_each(|band| {
+        band.check_name().map_err(|message| part.fault(message))?;
+        check_curve(part, &band.response)
     })
 }
 

@@ -6,7 +6,7 @@
 
 mod grammar;
 
-use lookfrom_scene::settings::LightPathLayer;
+use lookfrom_scene::settings::{CHANNEL_NAME, LightPathLayer, is_channel_name};
 use lookfrom_scene::suggest;
 use lookfrom_scene::{Error, Location, Result};
 use regex_automata::Anchored;
@@ -230,9 +230,8 @@ fn no_light<'a>(label: &str, layers: &[LightPathLayer], lights: impl Iterator<It
 }
 
 fn check_name(name: &str, at: &Location) -> Result<()> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if name.is_empty() || !name.chars().all(is_word) {
-        let message = format!("{name:?} is no name of a layer; expected letters, digits, _ and -");
+    if !is_channel_name(name) {
+        let message = format!("{name:?} is no name of a layer; expected {CHANNEL_NAME}");
         return Err(Error::invalid(at, message));
     }
     if TAKEN.contains(&name) {

@@ -5,7 +5,8 @@ pub(crate) mod lanes;
 use glam::{Vec2, Vec3, Vec4};
 use lookfrom_bvh::Point;
 
-use super::triangle::{SurfacePoints, Tangent, Triangles};
+use super::SurfacePoints;
+use super::triangle::{Tangent, Triangles};
 use super::{MaterialBinding, SurfacePoint};
 use crate::core::vector::Vector;
 use crate::shading::texture::{MORE_UV_SETS, TexturePoint};

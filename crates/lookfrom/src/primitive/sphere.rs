@@ -7,8 +7,7 @@ use lookfrom_bvh::Sphere;
 use lookfrom_simd::{Float, Real, Simd, f32x8, f64x8, prelude::*};
 
 use super::quadric::sphere_derivatives;
-use super::triangle::SurfacePoints;
-use super::{MaterialBinding, SurfacePoint};
+use super::{MaterialBinding, SurfacePoint, SurfacePoints};
 use crate::core::lanes::{LANES, by_lane, gather};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
@@ -41,7 +40,7 @@ impl SphereBinding {
     #[inline]
     pub(crate) fn uv(&self, ng: Vec3) -> Vec2 {
         let from_center = if self.flip { -ng } else { ng };
-        texture::sphere_uv::<f32>((self.object_from_sphere * from_center).into()).into()
+        texture::sphere_uv(OwnAxes::new(self).own(from_center.into())).into()
     }
 }
 
@@ -57,8 +56,9 @@ impl Spheres {
         let (sphere, binding) = self.get(index);
         let (lanes, axes) = (SphereLanes::new(sphere, binding), OwnAxes::new(binding));
         let (mut at, outward) = lanes.points(near.into());
-        axes.set_derivatives(&mut at, outward, lanes.radius);
-        let uv = texture::sphere_uv(axes.own(outward)).into();
+        let own = axes.own(outward);
+        axes.set_derivatives(&mut at, own, lanes.radius);
+        let uv = texture::sphere_uv(own).into();
         let derivatives = [at.dpdu.into(), at.dpdv.into()];
         SurfacePoint::plain(at.points.into(), at.ng.into(), uv, derivatives, binding.binding)
     }
@@ -121,17 +121,18 @@ impl OwnAxes<f32> {
 }
 
 impl<R: Real> OwnAxes<R> {
+    /// A vector in these axes.
     #[inline(always)]
     fn own(&self, outward: Vector<R>) -> Vector<R> {
         let [x, y, z] = self.0;
         x * outward.x + y * outward.y + z * outward.z
     }
 
-    /// The derivatives by the texture coordinates on spheres of some radii.
+    /// The derivatives by the texture coordinates on spheres of some radii, at unit vectors from the centres in these axes.
     #[inline(always)]
-    fn set_derivatives(&self, at: &mut SurfacePoints<R>, outward: Vector<R>, radius: R::Double) {
+    fn set_derivatives(&self, at: &mut SurfacePoints<R>, own: Vector<R>, radius: R::Double) {
         // Their poles are on z.
-        let own = self.own(outward).widen();
+        let own = own.widen();
         let on_z = Vector { x: own.x, y: -own.z, z: own.y } * radius;
         let [dpdu, dpdv] = sphere_derivatives(on_z, radius, [-PI, 2.0 * PI]);
         (at.dpdu, at.dpdv) = (self.turned_back(dpdu), self.turned_back(dpdv));
@@ -188,11 +189,12 @@ pub(crate) fn points_on_spheres<S: Simd>(
             gather(simd, &by_lane!(lane => spheres[lane].1.object_from_sphere.z_axis.to_array())),
         ])
     };
+    let own = axes.own(outward);
     if wants_uvs {
-        at.uv = texture::sphere_uv(axes.own(outward));
+        at.uv = texture::sphere_uv(own);
     }
     if wants_derivatives {
-        axes.set_derivatives(&mut at, outward, lanes.radius);
+        axes.set_derivatives(&mut at, own, lanes.radius);
     }
     at
 }

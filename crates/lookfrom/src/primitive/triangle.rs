@@ -5,7 +5,8 @@
 
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, f64x8, mask64x8, prelude::*};
 
-use crate::core::points::{Placement, Points};
+use super::SurfacePoints;
+use crate::core::points::Points;
 use crate::core::vector::Vector;
 use crate::core::warp;
 
@@ -70,19 +71,6 @@ impl Triangles<f32> {
 pub(crate) struct Tangent<R> {
     pub(crate) along: Vector<R>,
     pub(crate) sign: R,
-}
-
-/// Points on surfaces: as [`super::SurfacePoint`].
-pub(crate) struct SurfacePoints<R: Real> {
-    pub(crate) points: Points<R>,
-    pub(crate) ng: Vector<R::Double>,
-    pub(crate) ns: Vector<R::Double>,
-    pub(crate) uv: [R; 2],
-    pub(crate) dpdu: Vector<R::Double>,
-    pub(crate) dpdv: Vector<R::Double>,
-    pub(crate) shading_dpdu: Vector<R::Double>,
-    pub(crate) shading_dpdv: Vector<R::Double>,
-    pub(crate) lift: Vector<R::Double>,
 }
 
 impl<R: Real> Triangles<R> {
@@ -216,28 +204,6 @@ impl<R: Real> Triangles<R> {
         }
         let (s, t) = warp::basis_about(-Vector::<R>::narrow(winding));
         [Vector::select(is_regular, dpdu, s.widen()), Vector::select(is_regular, dpdv, t.widen())]
-    }
-}
-
-impl<R: Real> SurfacePoints<R> {
-    /// These points in instances, where the mask is set.
-    #[inline(always)]
-    pub(crate) fn placed(self, mask: WideMask<R>, placement: &Placement<R>) -> Self {
-        let points = self.points.placed(placement);
-        Self {
-            points: Points {
-                position: Vector::select(mask, points.position, self.points.position),
-                error: Vector::select(mask, points.error, self.points.error),
-            },
-            ng: Vector::select(mask, placement.normal(self.ng).normalize(), self.ng),
-            ns: Vector::select(mask, placement.normal(self.ns).normalize(), self.ns),
-            uv: self.uv,
-            dpdu: Vector::select(mask, placement.vector(self.dpdu), self.dpdu),
-            dpdv: Vector::select(mask, placement.vector(self.dpdv), self.dpdv),
-            shading_dpdu: Vector::select(mask, placement.vector(self.shading_dpdu), self.shading_dpdu),
-            shading_dpdv: Vector::select(mask, placement.vector(self.shading_dpdv), self.shading_dpdv),
-            lift: Vector::select(mask, placement.vector(self.lift), self.lift),
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Whitted's coefficients at eight bare surfaces side by side. The bits are those of [`Coefficients::at`].
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use lookfrom_bvh::Hit;
 use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
 
@@ -170,6 +170,5 @@ pub(super) fn texture_point<'a>(
         return TexturePoint { is_inside, ..on_outside };
     }
     let uv = world.sphere(hit).map_or(Vec2::ZERO, |(_, binding)| binding.uv(ng.into()));
-    let world = world.origin + DVec3::from_array(position);
-    TexturePoint { uv, world, color: [1.0; 3], n: ng.into(), is_inside, ..TexturePoint::NOWHERE }
+    TexturePoint { is_inside, ..world.texture_point_at((position, ng.into()), uv.into()) }
 }

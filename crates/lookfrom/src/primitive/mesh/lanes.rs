@@ -7,7 +7,8 @@ use super::Mesh;
 use crate::core::lanes::{LANES, bitmask, by_lane, from_rows, load, row_at, set_row};
 use crate::core::points::{StoredPlacement, gather_placements};
 use crate::core::vector::Vector;
-use crate::primitive::triangle::{SurfacePoints, Tangent, Triangles};
+use crate::primitive::SurfacePoints;
+use crate::primitive::triangle::{Tangent, Triangles};
 
 /// A triangle in each lane: its mesh and its index there. Texture coordinates are 0 where neither they nor derivatives are
 /// wanted.

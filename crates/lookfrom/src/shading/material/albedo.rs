@@ -99,8 +99,9 @@ fn of_kind(
             let coefficients = [color(&k.diffuse), color(&k.mirror), color(&k.transmission)];
             Spectrum::from_rgb(of_coefficients(coefficients))
         }
+        // Whitted's k_d may be above 1.
         MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
-            color(reflectance)
+            color(reflectance).map(|lane| lane.clamp(0.0, 1.0))
         }
         MaterialKind::Plastic(plastic) => color(&plastic.reflectance),
         MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {

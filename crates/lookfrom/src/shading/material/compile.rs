@@ -18,14 +18,10 @@ use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bssrdf::table::ProfileTable;
 use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
-/// Whether a path sees nothing of Whitted's model but diffuse reflection, of no more light than there is.
+/// Whether a path sees nothing of Whitted's model but diffuse reflection.
 fn is_matte(whitted: &written::Whitted) -> bool {
-    let written::Whitted { ambient, diffuse, specular, mirror, transmission, .. } = *whitted;
-    let is_bounded = match diffuse {
-        Color::Value(rgb) => rgb.iter().all(|c| *c <= 1.0),
-        Color::Texture(_) | Color::Curve(_) => true,
-    };
-    ambient.is_none() && is_bounded && [specular, mirror, transmission] == [Color::BLACK; 3]
+    let written::Whitted { ambient, specular, mirror, transmission, .. } = *whitted;
+    ambient.is_none() && [specular, mirror, transmission] == [Color::BLACK; 3]
 }
 
 /// Compiles materials. A mix may only refer to earlier ones.

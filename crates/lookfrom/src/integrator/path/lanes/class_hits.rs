@@ -56,7 +56,7 @@ impl ClassHit<'_> {
     }
 }
 
-/// What eight hits are on.
+/// Shapes of eight hits, all of one kind.
 pub(super) enum Shapes<'a> {
     /// Meshes, and the placements of the instances that they are in.
     Meshes([(&'a Mesh, Option<StoredPlacement<'a>>); LANES]),
@@ -254,7 +254,7 @@ impl<'a> ClassHits<'a> {
                 Shapes::Meshes(meshes) => {
                     world.texture_point_on_mesh(meshes[lane].0, hit.hit, at, row(uv, lane))
                 }
-                Shapes::Spheres(_) => world.texture_point_on_sphere(at, row(uv, lane)),
+                Shapes::Spheres(_) => world.texture_point_at(at, row(uv, lane)),
             };
             points[lane].is_inside = front & 1 << lane == 0;
             if self.pixels.is_some() && hit.material.needs_footprint {
