@@ -69,6 +69,7 @@ pub mod texture;
 pub mod toml;
 mod validate;
 pub mod variables;
+mod volume;
 pub mod warning;
 
 pub use budget::Budget;

@@ -5,7 +5,6 @@
 //! class. Offsets are those of `PNanoVDB.h`. Values are at whole index coordinates; outside of the box of the active ones they are zero here,
 //! whatever the background is. Checksums and statistics are not read.
 
-mod bytes;
 mod cells;
 mod directory;
 mod header;
@@ -16,7 +15,6 @@ use std::path::Path;
 
 use glam::{DMat4, DVec3, IVec3, Vec3};
 
-use self::bytes::Bytes;
 use self::directory::Entry;
 use self::header::Header;
 use self::tree::Tree;
@@ -24,6 +22,7 @@ use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
 use crate::grid::Grid;
 use crate::suggest;
+use crate::volume::bytes::Bytes;
 
 /// A grid of a file, in index space.
 #[derive(Clone, Debug)]

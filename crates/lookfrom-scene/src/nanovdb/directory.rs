@@ -2,10 +2,11 @@
 
 use std::borrow::Cow;
 
-use super::bytes::Bytes;
 use super::header::check_version;
 use crate::budget::{Budget, Reserved};
 use crate::error::{Error, ErrorKind, Location, Result};
+use crate::volume::bytes::Bytes;
+use crate::volume::{blosc, zip};
 
 /// The first bytes of a segment.
 const MAGICS: [&[u8]; 2] = [b"NanoVDB0", b"NanoVDB2"];
@@ -25,7 +26,7 @@ pub(super) struct Entry<'a> {
     codec: u16,
     /// Bytes when it is unpacked.
     size: u64,
-    stored: &'a [u8],
+    stored: Bytes<'a>,
 }
 
 /// All grids of a file, in order.
@@ -50,7 +51,7 @@ pub(super) fn entries(bytes: Bytes<'_>) -> Result<Vec<Entry<'_>>> {
             at += METADATA + length;
         }
         for (name, size, length) in grids {
-            let stored = bytes.slice(at, length, &format!("the grid {name:?}"))?;
+            let stored = bytes.part(at, length, &format!("the grid {name:?}"))?;
             entries.push(Entry { name, codec, size, stored });
             at += length;
         }
@@ -76,38 +77,37 @@ fn no_segment(bytes: Bytes<'_>, at: u64, magic: &[u8]) -> Error {
 impl<'a> Entry<'a> {
     /// The bytes of the grid.
     pub(super) fn unpacked(&self, at: &Location, budget: &Budget) -> Result<Reserved<Cow<'a, [u8]>>> {
-        let damaged = |message: String| {
-            let message = format!("the grid {:?} {message}", self.name);
-            Error::syntax(at, message).hint("the file may be damaged: write it again")
-        };
-        match self.codec {
-            0 => match self.stored.get(..self.size as usize) {
-                Some(stored) => Ok(Cow::Borrowed(stored).into()),
-                None => Err(damaged(format!("has {} bytes, expected {}", self.stored.len(), self.size))),
-            },
-            1 => {
-                let stored = Bytes::new(self.stored, at, " of the packed grid");
-                let packed = stored.slice(8, stored.u64(0)?, "the packed grid")?;
-                let memory = budget.reserve(self.size, "the unpacked grid", at)?;
-                let unpacked =
-                    miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(packed, self.size as usize);
-                match unpacked {
-                    Ok(unpacked) if unpacked.len() as u64 == self.size => {
-                        Ok(Reserved::new(unpacked.into(), memory))
-                    }
-                    Ok(unpacked) => {
-                        Err(damaged(format!("unpacks to {} bytes, expected {}", unpacked.len(), self.size)))
-                    }
-                    Err(error) => Err(damaged(format!("cannot be unpacked: {error}"))),
-                }
-            }
-            codec => {
-                let name = if codec == 2 { "BLOSC".to_owned() } else { format!("the unknown codec {codec}") };
-                let message =
-                    format!("the grid {:?} is compressed by {name}, expected ZIP or none", self.name);
-                let error = Error::new(ErrorKind::Unsupported, at, message);
-                Err(error.hint("write it again with the codec ZIP or NONE of NanoVDB"))
-            }
+        if self.codec == 0 {
+            let grid = self.stored.slice(0, self.size, &format!("the grid {:?}", self.name))?;
+            return Ok(Cow::Borrowed(grid).into());
         }
+        let unpack = match self.codec {
+            1 => zip::unpack,
+            2 => blosc::unpack,
+            codec => {
+                let message = format!(
+                    "the grid {:?} is compressed by the unknown codec {codec}, expected ZIP, BLOSC or none",
+                    self.name
+                );
+                let error = Error::new(ErrorKind::Unsupported, at, message);
+                return Err(error.hint("write it again with the codec BLOSC, ZIP or NONE of NanoVDB"));
+            }
+        };
+        let memory = budget.reserve(self.size, "the unpacked grid", at)?;
+        let mut unpacked = vec![0; self.size as usize];
+        let (mut room, mut at) = (&mut *unpacked, 0);
+        // One stream of zlib, or chunks of Blosc of a gibibyte each.
+        while !room.is_empty() {
+            let packed = self.stored.part(at + 8, self.stored.u64(at)?, "the packed grid")?;
+            let size = if self.codec == 1 { self.size } else { blosc::length(packed)? };
+            let (into, rest) = room.split_at_mut_checked(size as usize).ok_or_else(|| {
+                let message = format!("the grid {:?} has more than {} bytes", self.name, self.size);
+                self.stored.error(at, ErrorKind::Syntax, message)
+            })?;
+            unpack(packed, into)?;
+            room = rest;
+            at += 8 + packed.length();
+        }
+        Ok(Reserved::new(unpacked.into(), memory))
     }
 }

@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::bytes::Bytes;
 use super::leaf::Kind;
 use crate::error::{ErrorKind, Result};
+use crate::volume::bytes::Bytes;
 
 /// Bytes of the header; the tree follows.
 pub(super) const HEADER: u64 = 672;

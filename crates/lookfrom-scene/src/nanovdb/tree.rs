@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use glam::IVec3;
 
-use super::bytes::Bytes;
 use super::header::HEADER;
 use super::leaf::Kind;
 use crate::error::{Error, ErrorKind, Result};
+use crate::volume::bytes::Bytes;
 
 /// The position of the root node, from the tree on, is there.
 const ROOT: u64 = HEADER + 24;

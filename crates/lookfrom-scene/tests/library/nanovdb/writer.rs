@@ -9,6 +9,10 @@ const LOWER: usize = 33_856;
 const TREE: usize = 672;
 const ROOT: usize = TREE + 64;
 
+/// Bytes of chunks of Blosc, and of blocks in them: NanoVDB has chunks of a gibibyte and blocks of 2¹⁸.
+const CHUNK: usize = 1 << 18;
+const BLOCK: usize = 1 << 16;
+
 /// A grid to be written.
 #[derive(Clone)]
 pub(crate) struct Sketch {
@@ -135,13 +139,35 @@ pub(crate) fn file(codec: u16, grids: &[Sketch]) -> Vec<u8> {
 }
 
 fn packed(codec: u16, bytes: &[u8]) -> Vec<u8> {
-    if codec == 0 {
-        return bytes.to_vec();
+    match codec {
+        0 => return bytes.to_vec(),
+        2 => return bytes.chunks(CHUNK).flat_map(blosc).collect(),
+        _ => {}
     }
     let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
     encoder.write_all(bytes).expect("memory");
     let packed = encoder.finish().expect("memory");
     [&(packed.len() as u64).to_le_bytes()[..], &packed].concat()
+}
+
+/// A chunk of Blosc after its length: each block of LZ4 in four parts, with shuffled bytes.
+fn blosc(bytes: &[u8]) -> Vec<u8> {
+    let mut chunk = vec![2, 1, 0x21, 4];
+    [bytes.len(), BLOCK, 0].iter().for_each(|length| chunk.extend((*length as u32).to_le_bytes()));
+    let starts = chunk.len();
+    chunk.resize(starts + 4 * bytes.len().div_ceil(BLOCK), 0);
+    for (index, block) in bytes.chunks(BLOCK).enumerate() {
+        let start = (chunk.len() as u32).to_le_bytes();
+        chunk[starts + 4 * index..][..4].copy_from_slice(&start);
+        let shuffled: Vec<u8> = (0..4).flat_map(|byte| block.iter().skip(byte).step_by(4)).copied().collect();
+        for part in shuffled.chunks(if block.len() == BLOCK { BLOCK / 4 } else { BLOCK }) {
+            let packed = lz4_flex::block::compress(part);
+            let packed = if packed.len() < part.len() { &packed } else { part };
+            chunk.extend((packed.len() as u32).to_le_bytes());
+            chunk.extend(packed);
+        }
+    }
+    [&(chunk.len() as u64).to_le_bytes()[..], &chunk].concat()
 }
 
 /// A leaf of numbers, by the place of each in it.

@@ -132,7 +132,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "excerpt image measured medium",
             "atmosphere lens light settings",
             "shape",
-            "composite scene text",
+            "composite scene text volume",
             "builder chain count duplicates model nanovdb shutter",
             "boolean hair ies npy stl subdivision tessellation validate",
             "obj ply",

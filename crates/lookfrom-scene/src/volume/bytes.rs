@@ -4,8 +4,10 @@ use crate::error::{Error, ErrorKind, Location, Result};
 
 /// Bytes of a file.
 #[derive(Clone, Copy)]
-pub(super) struct Bytes<'a> {
+pub(crate) struct Bytes<'a> {
     bytes: &'a [u8],
+    /// The position of the first of them, for messages.
+    start: u64,
     file: &'a Location,
     /// Suffix of positions in messages.
     of: &'static str,
@@ -13,11 +15,11 @@ pub(super) struct Bytes<'a> {
 
 impl<'a> Bytes<'a> {
     /// Bytes of `file`; `of` follows their positions in messages.
-    pub(super) fn new(bytes: &'a [u8], file: &'a Location, of: &'static str) -> Self {
-        Self { bytes, file, of }
+    pub(crate) fn new(bytes: &'a [u8], file: &'a Location, of: &'static str) -> Self {
+        Self { bytes, start: 0, file, of }
     }
 
-    pub(super) fn length(&self) -> u64 {
+    pub(crate) fn length(&self) -> u64 {
         self.bytes.len() as u64
     }
 
@@ -25,7 +27,7 @@ impl<'a> Bytes<'a> {
     ///
     /// # Errors
     /// `Syntax` if there are fewer.
-    pub(super) fn slice(&self, at: u64, length: u64, what: &str) -> Result<&'a [u8]> {
+    pub(crate) fn slice(&self, at: u64, length: u64, what: &str) -> Result<&'a [u8]> {
         let end = at.checked_add(length).filter(|&end| end <= self.length());
         let slice = end.and_then(|end| self.bytes.get(at as usize..end as usize));
         slice.ok_or_else(|| {
@@ -36,6 +38,14 @@ impl<'a> Bytes<'a> {
         })
     }
 
+    /// As [`slice`](Self::slice), with the same positions in messages.
+    ///
+    /// # Errors
+    /// `Syntax` if there are fewer.
+    pub(crate) fn part(&self, at: u64, length: u64, what: &str) -> Result<Self> {
+        Ok(Self { bytes: self.slice(at, length, what)?, start: self.start + at, ..*self })
+    }
+
     /// The number at a position, by its bytes.
     fn number<const N: usize>(&self, at: u64) -> Result<[u8; N]> {
         let mut bytes = [0; N];
@@ -43,32 +53,33 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
-    pub(super) fn u16(&self, at: u64) -> Result<u16> {
+    pub(crate) fn u16(&self, at: u64) -> Result<u16> {
         self.number(at).map(u16::from_le_bytes)
     }
 
-    pub(super) fn u32(&self, at: u64) -> Result<u32> {
+    pub(crate) fn u32(&self, at: u64) -> Result<u32> {
         self.number(at).map(u32::from_le_bytes)
     }
 
-    pub(super) fn i32(&self, at: u64) -> Result<i32> {
+    pub(crate) fn i32(&self, at: u64) -> Result<i32> {
         self.number(at).map(i32::from_le_bytes)
     }
 
-    pub(super) fn u64(&self, at: u64) -> Result<u64> {
+    pub(crate) fn u64(&self, at: u64) -> Result<u64> {
         self.number(at).map(u64::from_le_bytes)
     }
 
-    pub(super) fn f32(&self, at: u64) -> Result<f32> {
+    pub(crate) fn f32(&self, at: u64) -> Result<f32> {
         self.number(at).map(f32::from_le_bytes)
     }
 
-    pub(super) fn f64(&self, at: u64) -> Result<f64> {
+    pub(crate) fn f64(&self, at: u64) -> Result<f64> {
         self.number(at).map(f64::from_le_bytes)
     }
 
     /// An error at a position.
-    pub(super) fn error(&self, at: u64, kind: ErrorKind, message: impl std::fmt::Display) -> Error {
+    pub(crate) fn error(&self, at: u64, kind: ErrorKind, message: impl std::fmt::Display) -> Error {
+        let at = self.start.saturating_add(at);
         Error::new(kind, self.file, format!("{message} (at byte {at}{})", self.of))
     }
 }
