@@ -42,9 +42,10 @@ pub mod medium;
 pub mod mitsuba;
 pub mod model;
 pub mod motion;
-pub mod nanovdb;
+mod nanovdb;
 pub mod npy;
 pub mod obj;
+mod openvdb;
 mod packed;
 mod parallel;
 #[cfg(feature = "pbrt")]
@@ -69,7 +70,8 @@ pub mod texture;
 pub mod toml;
 mod validate;
 pub mod variables;
-mod volume;
+pub mod vdb;
+pub mod volume;
 pub mod warning;
 
 pub use budget::Budget;

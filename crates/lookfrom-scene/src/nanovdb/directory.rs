@@ -12,8 +12,6 @@ use crate::volume::{blosc, zip};
 const MAGICS: [&[u8]; 2] = [b"NanoVDB0", b"NanoVDB2"];
 /// The first bytes of a grid without a segment, from version 32.6 on.
 const RAW: &[u8] = b"NanoVDB1";
-/// Bytes 0 to 3 of an OpenVDB file.
-const OPEN_VDB: &[u8] = b" BDV";
 
 /// Bytes of the header of a segment.
 const SEGMENT: u64 = 16;
@@ -67,9 +65,6 @@ fn no_segment(bytes: Bytes<'_>, at: u64, magic: &[u8]) -> Error {
     if at == 0 && magic == RAW {
         return unsupported("a grid without a segment around it")
             .hint("`nanovdb::io::writeGrid` writes files of segments");
-    }
-    if at == 0 && magic.starts_with(OPEN_VDB) {
-        return unsupported("an OpenVDB file, expected a NanoVDB file").hint("`nanovdb_convert` converts it");
     }
     bytes.error(at, ErrorKind::Syntax, "expected a segment, which begins with `NanoVDB0` or `NanoVDB2`")
 }

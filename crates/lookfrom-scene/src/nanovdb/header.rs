@@ -5,6 +5,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::leaf::Kind;
 use crate::error::{ErrorKind, Result};
 use crate::volume::bytes::Bytes;
+use crate::volume::{check_class, check_map};
 
 /// Bytes of the header; the tree follows.
 pub(super) const HEADER: u64 = 672;
@@ -59,18 +60,12 @@ impl Header {
         }
         check_version(bytes, 16)?;
         let unsupported = |at, message: String| bytes.error(at, ErrorKind::Unsupported, message);
-        let named = |names: &[&str], number: u32| match names.get(number as usize) {
-            Some(name) => format!("{name:?}"),
-            None => number.to_string(),
-        };
         let [class, kind] = [bytes.u32(CLASS)?, bytes.u32(TYPE)?];
-        if !matches!(class, 0 | 2) {
-            let message = format!("a grid of the class {}, expected a fog volume", named(CLASSES, class));
-            return Err(unsupported(CLASS, message).hint("densities are grids of the class \"fog volume\""));
-        }
+        let class = CLASSES.get(class as usize).map_or_else(|| class.to_string(), ToString::to_string);
+        check_class(&class, bytes, CLASS)?;
         let kind = Kind::of(kind).ok_or_else(|| {
-            let message =
-                format!("a grid of the type {}, expected float, Fp4, Fp8, Fp16 or FpN", named(TYPES, kind));
+            let name = TYPES.get(kind as usize).map_or_else(|| kind.to_string(), |name| format!("{name:?}"));
+            let message = format!("a grid of the type {name}, expected float, Fp4, Fp8, Fp16 or FpN");
             unsupported(TYPE, message).hint("convert it to a grid of the type float")
         })?;
         Ok(Self { kind, world_from_index: map(bytes)? })
@@ -83,11 +78,7 @@ fn map(bytes: Bytes<'_>) -> Result<DMat4> {
     let rows = [vector(MATRIX)?, vector(MATRIX + 24)?, vector(MATRIX + 48)?];
     let linear = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
     let map = DMat4::from_mat3_translation(linear, vector(TRANSLATION)?);
-    let determinant = linear.determinant();
-    if !map.is_finite() || !map.inverse().is_finite() || determinant == 0.0 {
-        let message = "the map from index space to the world has no inverse";
-        return Err(bytes.error(MATRIX, ErrorKind::Invalid, message));
-    }
+    check_map(&map, bytes, MATRIX)?;
     Ok(map)
 }
 

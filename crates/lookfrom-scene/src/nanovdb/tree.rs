@@ -6,17 +6,15 @@ use glam::IVec3;
 
 use super::header::HEADER;
 use super::leaf::Kind;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::volume::bytes::Bytes;
+use crate::volume::nodes::{Nodes, Tile, check_near};
 
 /// The position of the root node, from the tree on, is there.
 const ROOT: u64 = HEADER + 24;
 /// Bytes of the root node before its tiles, and of each tile.
 const ROOT_BASE: u64 = 64;
 const ROOT_TILE: u64 = 32;
-
-/// Coordinates are below this, so that they and their halves are exact in `f32`.
-const FARTHEST: i32 = 1 << 22;
 
 /// A kind of inner nodes.
 struct Level {
@@ -36,33 +34,13 @@ const LEVELS: [Level; 2] = [
     Level { name: "a lower node", children: 4, cells: 3, mask: 544, table: 1088, bytes: 33856 },
 ];
 
-/// A cube of one value.
-pub(super) struct Tile {
-    /// Its least coordinates.
-    pub(super) first: IVec3,
-    /// Number of cells along a side: whole bricks.
-    pub(super) side: i32,
-    pub(super) value: f32,
-}
-
-/// A cube of 8³ values.
-pub(super) struct Leaf<'a> {
-    /// Its least coordinates.
-    pub(super) first: IVec3,
-    pub(super) bytes: &'a [u8],
-}
-
-/// Values of a tree, by tiles and leaves.
+/// The nodes of a tree, and the bytes of its leaves.
 pub(super) struct Tree<'a> {
-    pub(super) bytes: Bytes<'a>,
+    bytes: Bytes<'a>,
     pub(super) kind: Kind,
-    /// Value outside of leaves and tiles.
-    pub(super) background: f32,
-    /// Tiles of other values than the background.
-    pub(super) tiles: Vec<Tile>,
-    pub(super) leaves: Vec<Leaf<'a>>,
-    /// The least coordinates of active values, and the largest plus 1; both zero if there are none.
-    pub(super) bounds: [IVec3; 2],
+    pub(super) nodes: Nodes,
+    /// The bytes of the leaves, in their order.
+    pub(super) leaves: Vec<&'a [u8]>,
     /// Bytes that nodes have not taken yet: fewer than that, if no two of them are one.
     left: u64,
 }
@@ -78,18 +56,16 @@ impl<'a> Tree<'a> {
         let corner = |at| Ok(IVec3::new(bytes.i32(at)?, bytes.i32(at + 4)?, bytes.i32(at + 8)?));
         let [low, high] = [corner(root)?, corner(root + 12)?];
         let is_empty = low.cmpgt(high).any();
-        if !is_empty && [low, high].iter().any(|corner| !is_near(*corner)) {
-            return Err(too_far(bytes, root));
+        if !is_empty {
+            check_near(low, bytes, root)?;
+            check_near(high, bytes, root)?;
         }
-        let mut tree = Self {
-            bytes,
-            kind,
+        let nodes = Nodes {
             background: bytes.f32(root + 28)?,
-            tiles: Vec::new(),
-            leaves: Vec::new(),
             bounds: if is_empty { [IVec3::ZERO; 2] } else { [low, high + 1] },
-            left: bytes.length(),
+            ..Nodes::default()
         };
+        let mut tree = Self { bytes, kind, nodes, leaves: Vec::new(), left: bytes.length() };
         tree.read_root(root)?;
         Ok(tree)
     }
@@ -108,14 +84,12 @@ impl<'a> Tree<'a> {
             }
             let first = IVec3::from_array(first);
             let value = self.bytes.f32(at + 20)?;
-            if child == 0 && value == self.background {
+            if child == 0 && value == self.nodes.background {
                 continue;
             }
-            if !is_near(first) {
-                return Err(too_far(self.bytes, at));
-            }
+            check_near(first, self.bytes, at)?;
             match child {
-                0 => self.tiles.push(Tile { first, side: 1 << 12, value }),
+                0 => self.nodes.tiles.push(Tile { first, side: 1 << 12, value }),
                 child => self.read_inner(&LEVELS, root.wrapping_add(child), first)?,
             }
         }
@@ -135,8 +109,8 @@ impl<'a> Tree<'a> {
                 continue;
             }
             let value = f32::from_le_bytes([entry[0], entry[1], entry[2], entry[3]]);
-            if value != self.background {
-                self.tiles.push(Tile { first, side: 1 << level.cells, value });
+            if value != self.nodes.background {
+                self.nodes.tiles.push(Tile { first, side: 1 << level.cells, value });
             }
         }
         Ok(())
@@ -148,7 +122,8 @@ impl<'a> Tree<'a> {
             self.bytes.error(at, ErrorKind::Syntax, "a leaf with codes of more than 16 bits")
         })?;
         let bytes = self.take(at, length, "a leaf")?;
-        self.leaves.push(Leaf { first, bytes });
+        self.nodes.leaves.push(first);
+        self.leaves.push(bytes);
         Ok(())
     }
 
@@ -164,14 +139,4 @@ impl<'a> Tree<'a> {
         })?;
         Ok(node)
     }
-}
-
-/// Whether coordinates are small enough.
-fn is_near(corner: IVec3) -> bool {
-    corner.cmplt(IVec3::splat(FARTHEST)).all() && corner.cmpgt(IVec3::splat(-FARTHEST)).all()
-}
-
-fn too_far(bytes: Bytes<'_>, at: u64) -> Error {
-    let error = bytes.error(at, ErrorKind::Limit, "index coordinates beyond ±2²²");
-    error.hint("move the grid to the origin of index space, and its map the other way")
 }

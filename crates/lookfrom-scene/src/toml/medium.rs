@@ -10,8 +10,8 @@ use crate::error::Result;
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
 use crate::medium::{DROPLETS, Density, DraineLobe, Extinction, Medium, Variation};
-use crate::nanovdb;
 use crate::scene::{MaterialId, MediumId};
+use crate::volume::placement;
 
 /// The keys of media, besides those of transforms.
 pub(super) const KEYS: &[&str] = &[
@@ -246,7 +246,7 @@ fn variation(table: &Table<'_>, density: Volume, temperature: Option<Hot>) -> Va
     let mut bounds = density.bounds;
     let temperature = temperature.and_then(|mut hot| {
         let of = &mut hot.volume;
-        let place = nanovdb::placement(&density.world_from_medium, &of.world_from_medium, of.bounds);
+        let place = placement(&density.world_from_medium, &of.world_from_medium, of.bounds);
         if place.is_none() {
             table.note(table.error_at("temperature", "its axes are not those of `density`"));
         }

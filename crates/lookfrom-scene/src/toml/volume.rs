@@ -14,7 +14,7 @@ use super::value::Value;
 use crate::error::{Location, Result};
 use crate::grid::{Grid, Placed};
 use crate::medium::{Density, Temperature};
-use crate::{nanovdb, npy};
+use crate::{npy, vdb};
 
 /// The keys of numbers that are an array of NumPy in a box.
 pub(super) const ARRAY: &[&str] = &["npy", "min", "max"];
@@ -129,9 +129,9 @@ impl Reader<'_, '_> {
             return Ok(Volume { bounds: placed.bounds, placed, world_from_medium: DMat4::IDENTITY });
         };
         table.allow(&[FILE, more]);
-        let path = self.resolve(file, "the name of a NanoVDB file")?;
+        let path = self.resolve(file, "the name of a NanoVDB or OpenVDB file")?;
         let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
-        let volume = nanovdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
+        let volume = vdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
         let (faces, bounds) = (volume.faces(), volume.bounds.map(IVec3::as_vec3));
         // What is negative is nothing.
         let grid = Arc::new(volume.grid.map(|number| number.max(0.0)));

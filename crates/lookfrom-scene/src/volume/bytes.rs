@@ -47,7 +47,7 @@ impl<'a> Bytes<'a> {
     }
 
     /// The number at a position, by its bytes.
-    fn number<const N: usize>(&self, at: u64) -> Result<[u8; N]> {
+    pub(crate) fn number<const N: usize>(&self, at: u64) -> Result<[u8; N]> {
         let mut bytes = [0; N];
         bytes.copy_from_slice(self.slice(at, N as u64, "a number")?);
         Ok(bytes)

@@ -27,6 +27,7 @@ mod models_hostile;
 mod models_places;
 mod named_files;
 mod nanovdb;
+mod openvdb;
 mod pbrt;
 mod pbrt_errors;
 mod pbrt_hostile;

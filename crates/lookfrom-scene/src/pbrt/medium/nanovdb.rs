@@ -10,7 +10,8 @@ use super::temperature;
 use crate::error::{ErrorKind, Location, Result};
 use crate::grid::Placed;
 use crate::medium::{Density, Medium, Temperature, Variation};
-use crate::nanovdb::{NanoVdb, Volume, placement};
+use crate::vdb::VdbFile;
+use crate::volume::{Volume, placement};
 
 impl Reader<'_, '_> {
     /// Variation of a medium, in index space of the densities; `None` if its file is missing.
@@ -29,7 +30,7 @@ impl Reader<'_, '_> {
             bytes => bytes.map_err(|error| p.place.blame(error))?,
         };
         let at = Location::file(&path);
-        let file = NanoVdb::new(&bytes, &at).map_err(|error| p.place.blame(error))?;
+        let file = VdbFile::new(&bytes, &at).map_err(|error| p.place.blame(error))?;
         let density = file.volume(name, self.context).map_err(|error| p.place.blame(error))?;
         let density = density.ok_or_else(|| file.without(name))?;
         let mut bounds = density.bounds.map(IVec3::as_vec3);
@@ -52,7 +53,7 @@ impl Reader<'_, '_> {
     fn temperatures(
         &mut self,
         p: &Parameters,
-        file: &NanoVdb<'_>,
+        file: &VdbFile<'_>,
         density: &Volume,
     ) -> Result<Option<(Temperature, [Vec3; 2])>> {
         let name = p.string("temperaturename")?.unwrap_or("temperature");

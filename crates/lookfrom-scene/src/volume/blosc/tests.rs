@@ -7,15 +7,15 @@ use crate::error::Location;
 
 /// How a chunk is packed.
 #[derive(Clone, Copy, Debug)]
-struct Packing {
+struct ChunkPacking {
     flags: u8,
     codec: u8,
     type_size: usize,
     block: usize,
 }
 
-fn packed(bytes: &[u8], by: Packing) -> Vec<u8> {
-    let Packing { flags, codec, type_size, block } = by;
+fn packed(bytes: &[u8], by: ChunkPacking) -> Vec<u8> {
+    let ChunkPacking { flags, codec, type_size, block } = by;
     let mut chunk = vec![2, 1, flags | codec << 5, type_size as u8];
     [bytes.len(), block, 0].iter().for_each(|length| chunk.extend((*length as u32).to_le_bytes()));
     if flags & STORED != 0 {
@@ -72,7 +72,7 @@ fn what_was_packed_is_unpacked() {
                 for (type_size, block) in
                     [(1, 256), (2, 1024), (4, 512), (4, 2048), (3, 384), (8, 1024), (20, 400)]
                 {
-                    let by = Packing { flags, codec, type_size, block };
+                    let by = ChunkPacking { flags, codec, type_size, block };
                     let bytes = sample(length);
                     assert_eq!(unpacked(&packed(&bytes, by), length), Ok(bytes), "{length} {by:?}");
                 }
@@ -97,7 +97,7 @@ fn a_chunk_of_c_blosc_is_unpacked() {
 
 #[test]
 fn what_is_not_unpacked_is_told() {
-    let good = Packing { flags: SHUFFLED, codec: 1, type_size: 4, block: 1024 };
+    let good = ChunkPacking { flags: SHUFFLED, codec: 1, type_size: 4, block: 1024 };
     let of = |at: usize, byte: u8| {
         let mut chunk = packed(&sample(2048), good);
         chunk[at] = byte;
@@ -119,7 +119,7 @@ fn what_is_not_unpacked_is_told() {
 #[test]
 fn broken_chunks_are_survived() {
     for codec in [1, 3] {
-        let whole = packed(&sample(2048), Packing { flags: SHUFFLED, codec, type_size: 4, block: 1024 });
+        let whole = packed(&sample(2048), ChunkPacking { flags: SHUFFLED, codec, type_size: 4, block: 1024 });
         for at in 0..whole.len() {
             assert!(unpacked(&whole[..at], 2048).is_err(), "{at}");
             for bit in 0..8 {

@@ -2,17 +2,19 @@
 
 use glam::IVec3;
 
-use super::tree::Tree;
+use super::nodes::Nodes;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::grid::{BLOCK, BRICK, Grid};
 
 /// The values of a tree in its bounds, and the index coordinates of the first cell. Its memory is counted as that of the scene.
+/// `values` are asked for leaf by leaf, by their index, in order: the values of each with z fastest.
 ///
 /// # Errors
-/// `Invalid` for values that are not finite; `Limit` for too many cells, or too little memory.
-pub(super) fn grid(
-    tree: &Tree<'_>,
+/// Those of `values`; `Invalid` for values that are not finite; `Limit` for too many cells, or too little memory.
+pub(crate) fn grid(
+    tree: &Nodes,
+    mut values: impl FnMut(usize) -> Result<[f32; BLOCK]>,
     context: &mut LoadContext<'_>,
     at: &Location,
 ) -> Result<(Grid<f32>, IVec3)> {
@@ -40,11 +42,10 @@ pub(super) fn grid(
         check(tile.value, tile.first)?;
         grid.fill(of_grid(bricks(tile.first)), of_grid(bricks(tile.first + tile.side)), tile.value);
     }
-    for leaf in &tree.leaves {
-        let brick = bricks(leaf.first);
+    for (leaf, &first) in tree.leaves.iter().enumerate() {
+        let (values, brick) = (values(leaf)?, bricks(first));
         if brick.cmpge(low).all() && brick.cmplt(end).all() {
-            let values = tree.kind.values(leaf.bytes);
-            values.iter().try_for_each(|&value| check(value, leaf.first))?;
+            values.iter().try_for_each(|&value| check(value, first))?;
             grid.set_brick(of_grid(brick), &by_x(&values));
         }
     }
@@ -52,13 +53,13 @@ pub(super) fn grid(
 }
 
 /// The first brick and the one behind the last along each axis: of all other values than zero in the bounds, and at least one.
-fn extent(tree: &Tree<'_>) -> [IVec3; 2] {
+fn extent(tree: &Nodes) -> [IVec3; 2] {
     let [low, high] = tree.bounds.map(bricks);
     if tree.background != 0.0 {
         return [low, high + 1];
     }
     let tiles = tree.tiles.iter().map(|tile| [bricks(tile.first), bricks(tile.first + tile.side)]);
-    let leaves = tree.leaves.iter().map(|leaf| [bricks(leaf.first), bricks(leaf.first) + 1]);
+    let leaves = tree.leaves.iter().map(|&first| [bricks(first), bricks(first) + 1]);
     let all = tiles.chain(leaves).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([low; 2]);
     let first = low.max(all[0]).min(high);
     [first, (high + 1).min(all[1]).max(first + 1)]

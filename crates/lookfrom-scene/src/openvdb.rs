@@ -1,0 +1,105 @@
+//! Reader for OpenVDB's files (Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology").
+//!
+//! Files with the versions 222 to 226 of the format (OpenVDB 3 to 13), of which one grid is read: a tree of `float` or `double`, also stored as
+//! `half`, that is a fog volume or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
+//! `readTopology` and `readBuffers` of `tree/`. Statistics are not read: bounds are those of the active values.
+
+mod cursor;
+mod directory;
+mod map;
+mod mask;
+mod numbers;
+mod tree;
+mod values;
+
+use glam::DMat4;
+
+use self::cursor::Cursor;
+use self::directory::Descriptor;
+use self::numbers::Precision;
+use self::tree::OpenTree;
+use self::values::Packing;
+use crate::error::{Location, Result};
+use crate::files::LoadContext;
+use crate::grid::BLOCK;
+use crate::volume::bytes::Bytes;
+use crate::volume::{Volume, cells, check_class};
+
+/// The first bytes of a file.
+pub(crate) const MAGIC: &[u8] = b" BDV\0\0\0\0";
+
+/// The content of a file.
+pub(crate) struct OpenVdb<'a> {
+    at: &'a Location,
+    bytes: Bytes<'a>,
+    entries: Vec<Descriptor>,
+}
+
+/// What stands before the tree of a grid.
+struct Prelude<'a> {
+    packing: Packing,
+    world_from_index: DMat4,
+    /// At the tree.
+    cursor: Cursor<'a>,
+}
+
+impl<'a> OpenVdb<'a> {
+    /// The content of a file, of which the directory is read; `at` is for messages.
+    ///
+    /// # Errors
+    /// `Syntax` for what is no such file; `Unsupported` for other versions.
+    pub(crate) fn new(bytes: &'a [u8], at: &'a Location) -> Result<Self> {
+        let bytes = Bytes::new(bytes, at, "");
+        Ok(Self { at, bytes, entries: directory::entries(bytes)? })
+    }
+
+    /// The first grid with this name, if there is one. One of several with the same name is called `name[0]`, `name[1]` and so on.
+    ///
+    /// # Errors
+    /// As [`vdb::read`](crate::vdb::read).
+    pub(crate) fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
+        let named = |entry: &&Descriptor| entry.name() == name;
+        let entry = self.entries.iter().find(named);
+        let Some(entry) = entry.or_else(|| self.entries.iter().find(|entry| entry.base() == name)) else {
+            return Ok(None);
+        };
+        let mut precision = Precision::of(&entry.tree, self.bytes, entry.grid)?;
+        let Prelude { mut packing, world_from_index, mut cursor } = self.prelude(entry)?;
+        if let Some(parent) = &entry.parent {
+            // Its tree is that of another grid.
+            let parent = self.entries.iter().find(|entry| entry.unique == *parent).ok_or_else(|| {
+                let message = format!("the grid {name:?} has the tree of another one, which is not there");
+                cursor.damaged(message)
+            })?;
+            precision = Precision::of(&parent.tree, self.bytes, parent.grid)?;
+            Prelude { packing, cursor, .. } = self.prelude(parent)?;
+        }
+        let mut tree = OpenTree::new(cursor, packing, precision, context, self.at)?;
+        let OpenTree { nodes, masks, values, cursor, .. } = &mut tree;
+        let read = |leaf: usize| {
+            let mut numbers = [0.0; BLOCK];
+            cursor.slice(masks[leaf].bytes(), "the mask of a leaf")?;
+            values.read(cursor, masks[leaf], &mut numbers)?;
+            Ok(numbers)
+        };
+        let (grid, first) = cells::grid(nodes, read, context, self.at)?;
+        Ok(Some(Volume { grid, first, world_from_index, bounds: nodes.bounds }))
+    }
+
+    /// The names of the grids.
+    pub(crate) fn names(&self) -> Vec<&str> {
+        self.entries.iter().map(Descriptor::name).collect()
+    }
+
+    /// Reads what stands before a tree.
+    fn prelude(&self, entry: &Descriptor) -> Result<Prelude<'a>> {
+        let mut cursor = Cursor::new(self.bytes, entry.grid);
+        let packing = Packing::read(&mut cursor)?;
+        cursor.metadata(|name, at, value| match name {
+            b"class" => check_class(&String::from_utf8_lossy(value), self.bytes, at),
+            _ => Ok(()),
+        })?;
+        let world_from_index = map::read(&mut cursor)?;
+        Ok(Prelude { packing, world_from_index, cursor })
+    }
+}

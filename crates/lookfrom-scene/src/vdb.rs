@@ -1,0 +1,76 @@
+//! Files of volumes, in NanoVDB's format or in OpenVDB's: which of the two a file has is told by its first bytes.
+
+use std::path::Path;
+
+use crate::error::{Error, Location, Result};
+use crate::files::LoadContext;
+use crate::nanovdb::NanoVdb;
+use crate::openvdb::{self, OpenVdb};
+use crate::suggest;
+use crate::volume::Volume;
+
+/// Reads the first grid with this name.
+///
+/// # Errors
+/// `Io`; `Syntax` for what is no such file; `Invalid` if it has no such grid, or values that are not finite; `Unsupported` for grids of
+/// other versions, types, classes, maps and compressions; `Limit` for too many cells, or too little memory.
+pub fn read(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Volume> {
+    let bytes = context.read(path)?;
+    let at = Location::file(path);
+    let file = VdbFile::new(&bytes, &at)?;
+    match file.volume(name, context)? {
+        Some(volume) => Ok(volume),
+        None => Err(file.without(name)),
+    }
+}
+
+/// The content of a file.
+pub struct VdbFile<'a> {
+    at: &'a Location,
+    format: VdbFormat<'a>,
+}
+
+enum VdbFormat<'a> {
+    Nano(NanoVdb<'a>),
+    Open(OpenVdb<'a>),
+}
+
+impl<'a> VdbFile<'a> {
+    /// The content of a file, of which the directory is read; `at` is for messages.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn new(bytes: &'a [u8], at: &'a Location) -> Result<Self> {
+        let format = match bytes.starts_with(openvdb::MAGIC) {
+            true => VdbFormat::Open(OpenVdb::new(bytes, at)?),
+            false => VdbFormat::Nano(NanoVdb::new(bytes, at)?),
+        };
+        Ok(Self { at, format })
+    }
+
+    /// The first grid with this name, if there is one.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
+        match &self.format {
+            VdbFormat::Nano(file) => file.volume(name, context),
+            VdbFormat::Open(file) => file.volume(name, context),
+        }
+    }
+
+    /// The error that there is no grid with this name.
+    pub fn without(&self, name: &str) -> Error {
+        let names = match &self.format {
+            VdbFormat::Nano(file) => file.names(),
+            VdbFormat::Open(file) => file.names(),
+        };
+        let found: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+        let found = if found.is_empty() { "no grids".to_owned() } else { found.join(", ") };
+        let error = Error::invalid(self.at, format!("no grid is called {name:?}; found {found}"));
+        match suggest::nearest(name, names) {
+            Some(near) => error.hint(format!("did you mean {near:?}?")),
+            None => error.hint("name one of these grids"),
+        }
+    }
+}
