@@ -404,6 +404,7 @@ impl Evaluator<'_> {
         })
     }
 
+    #[inline]
     fn diffuse(&self, reflectance: &SpectrumTexture) -> Diffuse {
         match reflectance.is_unbounded() {
             true => Diffuse { reflectance: self.textures.spectrum(reflectance, self.point, self.mode) },
@@ -441,6 +442,7 @@ impl Evaluator<'_> {
         Plastic::new(base, surface, plastic.is_nonlinear, plastic.interface)
     }
 
+    #[inline]
     fn albedo(&self, color: &SpectrumTexture) -> Spectrum {
         self.textures.albedo(color, self.point, self.mode)
     }

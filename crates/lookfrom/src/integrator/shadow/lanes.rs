@@ -2,10 +2,10 @@
 //! everywhere, eight at a time. The bits are those of `passing`.
 
 use lookfrom_bvh::{Hit, Ray};
-use lookfrom_simd::{Kernel, Simd, dispatch, level, prelude::*};
+use lookfrom_simd::{Kernel, Simd, prelude::*};
 
 use super::ShadowLight;
-use crate::core::lanes::{LANES, by_lane, filled, gather_rays, scatter};
+use crate::core::lanes::{LANES, are_shaded_together, by_lane, filled, gather_rays, scatter, shade_together};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::SpectralModes;
 use crate::integrator::wavefront::{BareHits, Surfaces};
@@ -31,7 +31,7 @@ impl Crossings {
     /// Takes a ray that a surface lets pass, with its hit, unless that is of another kind.
     #[inline(always)]
     pub(super) fn take(&mut self, world: &World, place: u32, hit: &Hit) -> bool {
-        let Some(bare) = world.bare_surface(hit) else { return false };
+        let Some(bare) = world.bare_surface(hit).filter(|_| are_shaded_together()) else { return false };
         let material = &world.materials[bare.material as usize];
         if material.whitted.transmission.varies() || matches!(material.kind, MaterialKind::Interface) {
             return false;
@@ -61,7 +61,7 @@ impl Crossings {
                 let passed = self.passed.as_deref_mut();
                 let kernel =
                     GoOn { world, places, are_on_spheres, rays, hits, modes, lights, chosen, passed };
-                are_all_lit &= dispatch(level(), kernel);
+                are_all_lit &= shade_together(kernel);
                 places.clear();
             }
         }

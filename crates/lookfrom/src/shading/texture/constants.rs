@@ -10,9 +10,22 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
 impl Textures {
-    /// As [`Textures::spectrum`], for colours that do not vary.
-    #[inline(always)]
+    /// As [`Textures::spectrum`], for colours that do not vary. Not inlined, since a material has several.
+    #[inline(never)]
     pub(crate) fn constants<S: Simd>(
+        &self,
+        simd: S,
+        colors: &[&SpectrumTexture; LANES],
+        modes: &[&SpectralMode; LANES],
+    ) -> Spectrum<f32x8<S>> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.constants_now(simd, colors, modes),
+        )
+    }
+
+    #[inline(always)]
+    fn constants_now<S: Simd>(
         &self,
         simd: S,
         colors: &[&SpectrumTexture; LANES],

@@ -25,9 +25,22 @@ pub(crate) struct TexturePoints<S: Simd> {
 }
 
 impl Textures {
-    /// The spectra at eight points; `None` for textures that are not evaluated side by side.
-    #[inline(always)]
+    /// The spectra at eight points; `None` for textures that are not evaluated side by side. Not inlined, since a material has several.
+    #[inline(never)]
     pub(crate) fn spectra<S: Simd>(
+        &self,
+        simd: S,
+        texture: &SpectrumTexture,
+        at: &TexturePoints<S>,
+    ) -> Option<Spectrum<f32x8<S>>> {
+        simd.vectorize(
+            #[inline(always)]
+            || self.spectra_now(simd, texture, at),
+        )
+    }
+
+    #[inline(always)]
+    fn spectra_now<S: Simd>(
         &self,
         simd: S,
         texture: &SpectrumTexture,
