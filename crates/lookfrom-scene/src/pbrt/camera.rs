@@ -20,8 +20,7 @@ impl Reader<'_, '_> {
             self.scene.camera = Some(Camera {
                 at: Location { file: self.scene.materials[0].at.file.clone(), ..Location::default() },
                 view: View::Matrix(DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0))),
-                projection: Projection::Perspective { fov: 90.0 },
-                window: window(None, aspect),
+                projection: along_height(Projection::Perspective { fov: 90.0 }, aspect),
                 ..Camera::default()
             });
             return Ok(());
@@ -44,7 +43,7 @@ impl Reader<'_, '_> {
         };
         let is_flat = matches!(projection, Projection::Perspective { .. } | Projection::Orthographic { .. });
         let frame = parameters.positive("frameaspectratio", aspect as f32)?;
-        let aspect = if parameters.has("frameaspectratio") { f64::from(frame) } else { aspect };
+        let frame = parameters.has("frameaspectratio").then_some(f64::from(frame));
         let given = parameters.floats("screenwindow", ParameterType::Float)?;
         let given = given.map(|numbers| {
             <[f32; 4]>::try_from(numbers)
@@ -52,7 +51,8 @@ impl Reader<'_, '_> {
                 .filter(|[x0, x1, y0, y1]| x0 != x1 && y0 != y1)
                 .ok_or_else(|| parameters.refuse("screenwindow", "4 numbers around an area: x0 x1 y0 y1"))
         });
-        let window = window(given.transpose()?, aspect);
+        let window = given.transpose()?.map(window).or(frame.map(frame_window));
+        let projection = if window.is_none() { along_height(projection, aspect) } else { projection };
         let lens = lens(parameters)?;
         // Our camera space has x to the left.
         let flip = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
@@ -81,17 +81,30 @@ fn field_of_view(parameters: &Parameters) -> Result<f64> {
     parameters.float_where("fov", 90.0, "an angle between 0 and 180 degrees", ok).map(f64::from)
 }
 
-/// The screen window: as written, or ±1 along the shorter side. The unit is half of the projection's field of view, which
-/// pbrt measures along the shorter side, and we along the height.
-fn window(written: Option<[f32; 4]>, aspect: f64) -> Option<Window> {
-    if let Some(numbers) = written {
-        let [x0, x1, y0, y1] = numbers.map(f64::from);
-        return Some(Window { x: [x0, x1], y: [y0, y1] });
+/// A projection whose field of view is that of the shorter side, as pbrt's, with that of the height of a picture instead, as ours. No
+/// window has to say so: a picture that is asked for in another shape then shows more at its sides, as pbrt's does, and is not stretched.
+fn along_height(projection: Projection, aspect: f64) -> Projection {
+    let longer = (1.0 / aspect).max(1.0);
+    match projection {
+        Projection::Perspective { fov } if longer > 1.0 => {
+            let half = libm::tan((0.5 * fov).to_radians());
+            Projection::Perspective { fov: 2.0 * libm::atan(longer * half).to_degrees() }
+        }
+        Projection::Orthographic { height } => Projection::Orthographic { height: height * longer },
+        other => other,
     }
-    if aspect > 1.0 {
-        return Some(Window { x: [-aspect, aspect], y: [-1.0, 1.0] });
-    }
-    Some(Window { x: [-1.0, 1.0], y: [-1.0 / aspect, 1.0 / aspect] })
+}
+
+/// The screen window as written: in units of half the projection's field of view.
+fn window(numbers: [f32; 4]) -> Window {
+    let [x0, x1, y0, y1] = numbers.map(f64::from);
+    Window { x: [x0, x1], y: [y0, y1] }
+}
+
+/// The screen window of a frame of an aspect ratio that need not be the picture's: ±1 along the shorter side.
+fn frame_window(aspect: f64) -> Window {
+    let [x, y] = [aspect.max(1.0), (1.0 / aspect).max(1.0)];
+    Window { x: [-x, x], y: [-y, y] }
 }
 
 fn lens(parameters: &Parameters) -> Result<Option<Lens>> {

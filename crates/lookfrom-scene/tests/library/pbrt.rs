@@ -80,9 +80,18 @@ fn the_camera_sees_what_pbrts_sees() {
     assert!((target.lookat - DVec3::new(3.0, 0.0, 4.0)).length() < 1e-12, "{target:?}");
     let reset = read("LookAt 3 0 0  3 0 5  0 1 0 Identity Camera \"perspective\" WorldBegin");
     assert_eq!(reset.camera.and_then(|camera| camera.target), None);
-    // The field of view is that of the shorter side.
-    assert_eq!(camera.projection, Projection::Perspective { fov: 30.0 });
-    assert_eq!(camera.window, Some(Window { x: [-1.0, 1.0], y: [-2.0, 2.0] }));
+    // The field of view is that of the shorter side. Nothing fixes the sides of a picture that is asked for in another shape.
+    let Projection::Perspective { fov } = camera.projection else { panic!("{:?}", camera.projection) };
+    assert!(((fov.to_radians() / 2.0).tan() / 15_f64.to_radians().tan() - 2.0).abs() < 1e-12, "{fov}");
+    assert_eq!(camera.window, None);
+    let wide = read(
+        "Film \"rgb\" \"integer xresolution\" 300 \"integer yresolution\" 100 Camera \"perspective\" WorldBegin",
+    );
+    let wide = wide.camera.expect("one");
+    assert_eq!((wide.projection, wide.window), (Projection::Perspective { fov: 90.0 }, None));
+    let framed =
+        read("Camera \"orthographic\" \"float frameaspectratio\" .5 WorldBegin").camera.expect("one");
+    assert_eq!(framed.window, Some(Window { x: [-1.0, 1.0], y: [-2.0, 2.0] }));
     let lens = camera.lens.expect("one");
     assert_eq!((lens.radius, lens.focus_distance), (0.5, 7.0));
     assert_eq!(scene.image.crop, Some(PixelBounds { x0: 0, y0: 100, x1: 100, y1: 400 }));
