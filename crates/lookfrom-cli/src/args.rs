@@ -186,7 +186,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair), folders of them, or - for one from stdin
+    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb), folders of them, or - for one from stdin
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -271,7 +271,7 @@ impl RenderArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml, .pbrt, .xml), models (.gltf, .glb, .obj, .ply, .stl, .hair) or pictures and films (.exr)
+    /// Scenes (.toml, .pbrt, .xml), models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb) or pictures and films (.exr)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
@@ -330,7 +330,7 @@ pub(crate) struct CompareArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 

@@ -27,7 +27,7 @@ fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     scenes.sort();
     if scenes.is_empty() {
         return Err(failed(
-            "a folder without scenes (.toml, .pbrt) and models (.gltf, .glb, .obj, .ply, .stl, .hair)\n  help: folders in it are \
+            "a folder without scenes (.toml, .pbrt) and models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)\n  help: folders in it are \
              not searched: name them"
                 .to_owned(),
         ));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::model::{number, scan, text};
-use crate::{hair, packed, stl};
+use crate::{hair, packed, stl, vdb};
 
 /// A format of scenes or models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +16,7 @@ pub(crate) enum Format {
     Stl,
     Obj,
     Hair,
+    Vdb,
 }
 
 /// A row of the table of formats.
@@ -38,6 +39,7 @@ const FORMATS: &[Row] = &[
     Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
     Row { format: Format::Hair, extensions: &["hair"], may_be_packed: true, sniff: hair::is_hair },
     Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
+    Row { format: Format::Vdb, extensions: &["vdb", "nvdb"], may_be_packed: false, sniff: vdb::is_vdb },
     Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
 ];
 

@@ -1,5 +1,7 @@
 //! Selection of the reader of a file by its format.
 
+mod smoke;
+
 use std::path::Path;
 
 use crate::camera::Camera;
@@ -28,7 +30,8 @@ const CLAY: f32 = 0.8;
 pub const PIPE: &str = "-";
 
 /// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`) or Mitsuba 3 (`.xml`), a glTF file (`.gltf`, `.glb`), or a model file, whose
-/// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none.
+/// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none. A file of volumes (`.vdb`, `.nvdb`) is
+/// white smoke of its densities.
 /// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`] or another pipe, what no other reader knows is our own format.
 ///
 /// # Errors
@@ -85,6 +88,7 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
         Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => scene_of_model(&source, context),
+        Some(Format::Vdb) => smoke::scene(&source, context),
         None if is_stream(path, context) => toml::from_bytes(&source.bytes, path, context),
         None => Err(unknown_format(path)),
     }
@@ -158,6 +162,10 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         }
         Some(Format::Pbrt) => Err(of_scene("pbrt")),
         Some(Format::Mitsuba) => Err(of_scene("Mitsuba")),
+        Some(Format::Vdb) => {
+            let error = unsupported(path, "a volume is no model");
+            Err(error.hint("name it as the `file` of the `density` of a medium, in [media.NAME]"))
+        }
         Some(Format::Toml) | None => Err(unknown_format(path)),
     }
 }
@@ -168,7 +176,7 @@ fn unknown_format(path: &Path) -> Error {
 
 fn unsupported(path: &Path, message: &str) -> Error {
     Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint("scenes are .toml, .pbrt or .xml files, models .gltf, .glb, .obj, .ply, .stl or .hair")
+        .hint("scenes are .toml, .pbrt or .xml files, models .gltf, .glb, .obj, .ply, .stl or .hair, volumes .vdb or .nvdb")
 }
 
 /// The refusal of a format whose reader was not compiled.

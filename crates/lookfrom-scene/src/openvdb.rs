@@ -1,6 +1,6 @@
 //! Reader for OpenVDB's files (Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology").
 //!
-//! Files with the versions 222 to 226 of the format (OpenVDB 3 to 13), of which one grid is read: a tree of `float` or `double`, also stored as
+//! Files with the versions 219 to 226 of the format (OpenVDB 1 to 13), of which one grid is read: a tree of `float` or `double`, also stored as
 //! `half`, that is a fog volume or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
 //! `readTopology` and `readBuffers` of `tree/`. Statistics are not read: bounds are those of the active values.
 
@@ -15,13 +15,12 @@ mod values;
 use glam::DMat4;
 
 use self::cursor::Cursor;
-use self::directory::Descriptor;
+use self::directory::{Descriptor, Directory};
 use self::numbers::Precision;
 use self::tree::OpenTree;
 use self::values::Packing;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
-use crate::grid::BLOCK;
 use crate::volume::bytes::Bytes;
 use crate::volume::{Volume, cells, check_class};
 
@@ -32,7 +31,7 @@ pub(crate) const MAGIC: &[u8] = b" BDV\0\0\0\0";
 pub(crate) struct OpenVdb<'a> {
     at: &'a Location,
     bytes: Bytes<'a>,
-    entries: Vec<Descriptor>,
+    directory: Directory,
 }
 
 /// What stands before the tree of a grid.
@@ -50,7 +49,7 @@ impl<'a> OpenVdb<'a> {
     /// `Syntax` for what is no such file; `Unsupported` for other versions.
     pub(crate) fn new(bytes: &'a [u8], at: &'a Location) -> Result<Self> {
         let bytes = Bytes::new(bytes, at, "");
-        Ok(Self { at, bytes, entries: directory::entries(bytes)? })
+        Ok(Self { at, bytes, directory: Directory::read(bytes)? })
     }
 
     /// The first grid with this name, if there is one. One of several with the same name is called `name[0]`, `name[1]` and so on.
@@ -59,15 +58,16 @@ impl<'a> OpenVdb<'a> {
     /// As [`vdb::read`](crate::vdb::read).
     pub(crate) fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
         let named = |entry: &&Descriptor| entry.name() == name;
-        let entry = self.entries.iter().find(named);
-        let Some(entry) = entry.or_else(|| self.entries.iter().find(|entry| entry.base() == name)) else {
+        let entries = &self.directory.entries;
+        let entry = entries.iter().find(named);
+        let Some(entry) = entry.or_else(|| entries.iter().find(|entry| entry.base() == name)) else {
             return Ok(None);
         };
         let mut precision = Precision::of(&entry.tree, self.bytes, entry.grid)?;
         let Prelude { mut packing, world_from_index, mut cursor } = self.prelude(entry)?;
         if let Some(parent) = &entry.parent {
             // Its tree is that of another grid.
-            let parent = self.entries.iter().find(|entry| entry.unique == *parent).ok_or_else(|| {
+            let parent = entries.iter().find(|entry| entry.unique == *parent).ok_or_else(|| {
                 let message = format!("the grid {name:?} has the tree of another one, which is not there");
                 cursor.damaged(message)
             })?;
@@ -76,25 +76,23 @@ impl<'a> OpenVdb<'a> {
         }
         let mut tree = OpenTree::new(cursor, packing, precision, context, self.at)?;
         let OpenTree { nodes, masks, values, cursor, .. } = &mut tree;
-        let read = |leaf: usize| {
-            let mut numbers = [0.0; BLOCK];
-            cursor.slice(masks[leaf].bytes(), "the mask of a leaf")?;
-            values.read(cursor, masks[leaf], &mut numbers)?;
-            Ok(numbers)
-        };
+        let read = |leaf: usize| values.read_leaf(cursor, masks[leaf]);
         let (grid, first) = cells::grid(nodes, read, context, self.at)?;
         Ok(Some(Volume { grid, first, world_from_index, bounds: nodes.bounds }))
     }
 
     /// The names of the grids.
     pub(crate) fn names(&self) -> Vec<&str> {
-        self.entries.iter().map(Descriptor::name).collect()
+        self.directory.entries.iter().map(Descriptor::name).collect()
     }
 
     /// Reads what stands before a tree.
     fn prelude(&self, entry: &Descriptor) -> Result<Prelude<'a>> {
         let mut cursor = Cursor::new(self.bytes, entry.grid);
-        let packing = Packing::read(&mut cursor)?;
+        let packing = match self.directory.packing {
+            Some(packing) => packing,
+            None => Packing::read(&mut cursor)?,
+        };
         cursor.metadata(|name, at, value| match name {
             b"class" => check_class(&String::from_utf8_lossy(value), self.bytes, at),
             _ => Ok(()),

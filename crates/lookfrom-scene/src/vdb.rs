@@ -24,6 +24,11 @@ pub fn read(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Vo
     }
 }
 
+/// Whether a content begins as a file of volumes.
+pub(crate) fn is_vdb(bytes: &[u8]) -> bool {
+    bytes.starts_with(openvdb::MAGIC) || bytes.starts_with(b"NanoVDB")
+}
+
 /// The content of a file.
 pub struct VdbFile<'a> {
     at: &'a Location,
@@ -59,12 +64,17 @@ impl<'a> VdbFile<'a> {
         }
     }
 
-    /// The error that there is no grid with this name.
-    pub fn without(&self, name: &str) -> Error {
-        let names = match &self.format {
+    /// The names of the grids.
+    pub fn names(&self) -> Vec<&str> {
+        match &self.format {
             VdbFormat::Nano(file) => file.names(),
             VdbFormat::Open(file) => file.names(),
-        };
+        }
+    }
+
+    /// The error that there is no grid with this name.
+    pub fn without(&self, name: &str) -> Error {
+        let names = self.names();
         let found: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
         let found = if found.is_empty() { "no grids".to_owned() } else { found.join(", ") };
         let error = Error::invalid(self.at, format!("no grid is called {name:?}; found {found}"));

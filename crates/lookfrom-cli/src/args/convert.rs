@@ -19,7 +19,7 @@ Exit codes: 0 done, 1 the scene cannot be read, or has what the format has no wo
 
 #[derive(Args, Debug)]
 pub(crate) struct ConvertArguments {
-    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 

@@ -48,7 +48,7 @@ pub(crate) struct FarmArguments {
     #[arg(value_name = "SCHEDULER", value_parser = values::word(Scheduler::WORDS))]
     pub(crate) scheduler: Scheduler,
 
-    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 

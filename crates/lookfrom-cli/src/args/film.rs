@@ -164,7 +164,7 @@ pub(crate) struct DevelopArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FilesArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 

@@ -31,7 +31,7 @@ Give the same options as for the render: they determine the rays of the sample."
 
 #[derive(Args, Debug)]
 pub(crate) struct InspectArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 

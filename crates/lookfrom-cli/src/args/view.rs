@@ -21,7 +21,7 @@ Ctrl-C ends the server. Exit codes: 130 interrupted, 1 scene, 2 usage, 3 the por
 
 #[derive(Args, Debug)]
 pub(crate) struct ViewArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair)
+    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
     #[arg(value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 

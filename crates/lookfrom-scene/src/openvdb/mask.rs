@@ -15,11 +15,6 @@ impl NodeMask<'_> {
         self.0[index / 8] >> (index % 8) & 1 == 1
     }
 
-    /// The number of bits that are set.
-    pub(super) fn count(self) -> usize {
-        self.0.iter().map(|byte| byte.count_ones() as usize).sum()
-    }
-
     /// The least coordinates of bits that are set in a leaf, and the largest plus 1; `None` if there are none.
     pub(super) fn bounds_of_leaf(self) -> Option<[IVec3; 2]> {
         // Eight bytes for each x, a byte for each y, a bit for each z.

@@ -56,7 +56,7 @@ impl<'a> OpenTree<'a> {
         context: &LoadContext<'_>,
         at: &Location,
     ) -> Result<Self> {
-        // The number of buffers of each leaf has been one since version 222.
+        // The number of arrays of a leaf, which leaves say themselves where there may be more than one.
         cursor.u32()?;
         let values = NodeValues::new(&mut cursor, packing, precision)?;
         let mut tree = Self {
@@ -110,7 +110,7 @@ impl<'a> OpenTree<'a> {
         let mut mask = || Ok(NodeMask(self.cursor.slice(count as u64 / 8, "the mask of a node")?));
         let (children, active) = (mask()?, mask()?);
         let mut values = vec![0.0; count];
-        self.values.read(&mut self.cursor, active, &mut values)?;
+        self.values.read(&mut self.cursor, active, Some(children), &mut values)?;
         let is_tile = |index: usize, value: f32| {
             !children.has(index) && (active.has(index) || value != self.nodes.background)
         };

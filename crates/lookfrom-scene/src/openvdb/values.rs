@@ -4,24 +4,41 @@ use super::cursor::Cursor;
 use super::mask::NodeMask;
 use super::numbers::{Precision, number};
 use crate::error::{ErrorKind, Result};
+use crate::grid::BLOCK;
 use crate::volume::{blosc, zip};
 
-/// NodeMask of the flags of a grid.
+/// Flags of a grid.
 const ZIP: u32 = 1;
 const ACTIVE_ALONE: u32 = 2;
 const BLOSC: u32 = 4;
 
+/// The code of values that are all there.
+const ALL: u8 = 6;
+
+/// Bytes of the place of a leaf.
+const PLACE: u64 = 12;
+
 /// How the arrays of a grid are stored.
 #[derive(Clone, Copy)]
-pub(super) struct Packing(u32);
+pub(super) struct Packing {
+    flags: u32,
+    /// Whether the values of each node have a code. Without one, those of inner nodes are not there in the places of children, and
+    /// leaves begin with their places and the number of their arrays, of which the first alone is of use.
+    has_codes: bool,
+}
 
 impl Packing {
+    /// That of all grids of a file before version 222.
+    pub(super) fn of_file(is_zipped: bool) -> Self {
+        Self { flags: if is_zipped { ZIP } else { 0 }, has_codes: false }
+    }
+
     /// # Errors
     /// `Unsupported` for unknown ones.
     pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Self> {
         let flags = cursor.u32()?;
         if flags & !(ZIP | ACTIVE_ALONE | BLOSC) == 0 {
-            return Ok(Self(flags));
+            return Ok(Self { flags, has_codes: true });
         }
         let message = format!("a grid that is compressed by unknown means (flags {flags:#x})");
         let error = cursor.bytes.error(cursor.at - 4, ErrorKind::Unsupported, message);
@@ -29,7 +46,7 @@ impl Packing {
     }
 
     fn has(self, flag: u32) -> bool {
-        self.0 & flag != 0
+        self.flags & flag != 0
     }
 }
 
@@ -58,18 +75,39 @@ impl NodeValues {
         Ok(number(cursor.slice(self.precision.single, "a value")?))
     }
 
-    /// Reads the values of a node whose active ones are known.
+    /// Reads the values of a leaf whose active ones are known.
+    pub(super) fn read_leaf(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        active: NodeMask<'_>,
+    ) -> Result<[f32; BLOCK]> {
+        cursor.slice(active.bytes(), "the mask of a leaf")?;
+        let mut arrays = 1;
+        if !self.packing.has_codes {
+            cursor.slice(PLACE, "the place of a leaf")?;
+            arrays = cursor.u8()?;
+        }
+        let mut numbers = [0.0; BLOCK];
+        self.read(cursor, active, None, &mut numbers)?;
+        for _ in 1..arrays {
+            self.read(cursor, active, None, &mut [0.0; BLOCK])?;
+        }
+        Ok(numbers)
+    }
+
+    /// Reads the values of a node whose active ones are known, and whose children, if it is an inner one.
     pub(super) fn read(
         &mut self,
         cursor: &mut Cursor<'_>,
         active: NodeMask<'_>,
+        children: Option<NodeMask<'_>>,
         into: &mut [f32],
     ) -> Result<()> {
-        let code = cursor.u8()?;
+        let code = if self.packing.has_codes { cursor.u8()? } else { ALL };
         // Those that are not active: one value, another where a mask says so.
         let mut others = [if code == 0 { self.background } else { -self.background }, self.background];
         match code {
-            0 | 1 | 3 | 6 => {}
+            0 | 1 | 3 | ALL => {}
             2 | 4 => others[0] = self.single(cursor)?,
             5 => others = [self.single(cursor)?, self.single(cursor)?],
             _ => {
@@ -83,12 +121,15 @@ impl NodeValues {
             3..=5 => Some(NodeMask(cursor.slice(active.bytes(), "the mask of a node")?)),
             _ => None,
         };
-        let is_complete = code == 6 || !self.packing.has(ACTIVE_ALONE);
-        let count = if is_complete { into.len() } else { active.count() };
+        let are_all = code == ALL || !self.packing.has(ACTIVE_ALONE);
+        let gaps = children.filter(|_| !self.packing.has_codes);
+        let is_there =
+            |index: usize| (are_all || active.has(index)) && !gaps.is_some_and(|gaps| gaps.has(index));
+        let count = (0..into.len()).filter(|index| is_there(*index)).count();
         let width = self.precision.array as usize;
         let mut numbers = self.array(cursor, count)?.chunks_exact(width).map(number);
         for (index, into) in into.iter_mut().enumerate() {
-            let stored = if is_complete || active.has(index) { numbers.next() } else { None };
+            let stored = if is_there(index) { numbers.next() } else { None };
             let other = || others[usize::from(selected.is_some_and(|mask| mask.has(index)))];
             *into = stored.unwrap_or_else(other);
         }

@@ -10,7 +10,7 @@ use lookfrom_scene::medium::Density;
 use lookfrom_scene::volume::Volume;
 use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, load, vdb};
 
-use self::writer::{ACTIVE, BLOSC, Draft, Voxel, ZIP, file};
+use self::writer::{ACTIVE, BLOSC, Draft, Voxel, ZIP, file, file_of_version};
 use crate::nanovdb::writer as nano;
 
 fn read(bytes: Vec<u8>, name: &str) -> Result<Volume> {
@@ -130,6 +130,22 @@ fn volumes_are_those_of_the_same_grids_of_nanovdb() {
     }
 }
 
+/// Before version 222 nodes have all their values, but for those in the places of children, and leaves may have several arrays.
+#[test]
+fn files_of_old_versions_are_read() {
+    let mut random = Dice(2);
+    for (version, flags) in [(219, ZIP), (220, 0), (220, ZIP), (221, 0), (221, ZIP)] {
+        for tree in ["Tree_float_5_4_3", "Tree_float_5_4_3_HalfFloat", "Tree_double_5_4_3"] {
+            let draft = Draft { tree, flags, ..draft(&mut random, 0.75) };
+            let expected = read(file(std::slice::from_ref(&draft)), "density").expect("good");
+
+            let found = read(file_of_version(version, &[draft]), "density")
+                .unwrap_or_else(|error| panic!("{version} {tree} {flags}: {error}"));
+            assert_eq!(whole(&found), whole(&expected), "{version} {tree} {flags}");
+        }
+    }
+}
+
 #[test]
 fn tiles_of_roots_and_empty_grids_are_read() {
     let mut draft = Draft::new("density");
@@ -199,6 +215,42 @@ fn grids_are_found_by_their_names() {
         (error.kind, &*error.message),
         (ErrorKind::Invalid, "no grid is called \"density\"; found no grids")
     );
+}
+
+/// A file alone is a scene: its densities as smoke, alike in every unit of length and of density, behind a box that is not seen.
+#[test]
+fn files_alone_are_scenes() {
+    let scene_of = |grids: &[Draft]| {
+        let files = Memory([(PathBuf::from("a"), file(grids))].into());
+        let mut context = LoadContext::new(&files);
+        load::scene(Path::new("a"), &mut context).map(|scene| (scene, context.warnings))
+    };
+    let of = |value: f32, map: Vec<f64>| {
+        let cells = (0..512).map(|index| (if index % 2 == 0 { value } else { -1.0 }, true)).collect();
+        let leaves = [([8, 0, 0], cells)].into();
+        Draft { leaves, map: ("UniformScaleMap", [map, vec![0.0; 12]].concat()), ..Draft::new("density") }
+    };
+    let velocity = Draft { tree: "Tree_vec3s_5_4_3", ..Draft::new("velocity") };
+    let (small, warnings) = scene_of(&[velocity.clone(), of(0.5, vec![0.25; 3])]).expect("good");
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].message.contains("nothing of \"velocity\""), "{}", warnings[0].message);
+    let (large, warnings) = scene_of(&[of(64.0, vec![-100.0; 3])]).expect("good");
+    assert!(warnings.is_empty());
+    // The mean density along the side of a cube as large as the 256 cells that are not empty.
+    for (scene, density, cell) in [(&small, 0.5, 0.25), (&large, 64.0, 100.0)] {
+        let thickness = scene.media[0].scale * density * cell * 256_f32.cbrt();
+        assert!((thickness - 30.0).abs() < 1e-4, "{thickness}");
+        let bounds = scene.shapes[0].bounds(&scene.meshes);
+        assert_eq!(bounds.max - bounds.min, DVec3::splat(8.0 * f64::from(cell)));
+        assert_eq!(scene.shapes[0].sides.expect("both").outside, None);
+    }
+    let (empty, _) = scene_of(&[Draft::new("density")]).expect("a frame before the smoke");
+    assert_eq!(empty.media[0].scale, 0.0);
+    let (heat, _) =
+        scene_of(&[velocity.clone(), Draft { name: "heat", ..of(1.0, vec![1.0; 3]) }]).expect("good");
+    assert_eq!(heat.media[0].name, "heat");
+    let error = scene_of(&[velocity]).map(|_| ()).expect_err("nothing dense");
+    assert_eq!(error.kind, ErrorKind::Unsupported);
 }
 
 /// In both formats of scenes, under whatever name.

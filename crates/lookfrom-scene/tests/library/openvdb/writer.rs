@@ -45,11 +45,17 @@ impl Draft {
         }
     }
 
-    /// The bytes of the grid.
-    fn bytes(&self) -> Vec<u8> {
-        let mut out = self.flags.to_le_bytes().to_vec();
+    /// The bytes of the grid in a file of a version.
+    fn bytes(&self, version: u32) -> Vec<u8> {
+        let has_codes = version >= 222;
+        let mut out = if has_codes { self.flags.to_le_bytes().to_vec() } else { Vec::new() };
         // Of an unknown type is passed by its size.
-        let metadata = [("class", "string", self.class.as_bytes()), ("other", "__unknown", &[1, 2, 3])];
+        let is_half = u8::from(self.tree.ends_with("HalfFloat"));
+        let metadata = [
+            ("class", "string", self.class.as_bytes()),
+            ("is_saved_as_half_float", "bool", &[is_half]),
+            ("other", "__unknown", &[1, 2, 3]),
+        ];
         out.extend((metadata.len() as u32).to_le_bytes());
         for (name, kind, value) in metadata {
             [name.as_bytes(), kind.as_bytes(), value].iter().for_each(|part| text(&mut out, part));
@@ -77,11 +83,11 @@ impl Draft {
         for upper in uppers {
             corner(&mut out, &upper);
             let children: BTreeSet<_> = lowers.iter().filter(|lower| aligned::<12>(lower) == upper).collect();
-            self.inner::<12, 7>(&mut out, upper, &children, &self.tiles[1]);
+            self.inner::<12, 7>(&mut out, has_codes, (upper, &children), &self.tiles[1]);
             for lower in children {
                 let leaves = self.leaves.keys().filter(|leaf| aligned::<7>(leaf) == *lower);
                 let children: BTreeSet<_> = leaves.collect();
-                self.inner::<7, 3>(&mut out, *lower, &children, &self.tiles[2]);
+                self.inner::<7, 3>(&mut out, has_codes, (*lower, &children), &self.tiles[2]);
                 children.iter().for_each(|leaf| mask(&mut out, self.leaves[*leaf].iter().map(|cell| cell.1)));
             }
         }
@@ -89,9 +95,19 @@ impl Draft {
         let by_node = |leaf: &&[i32; 3]| (aligned::<12>(leaf), aligned::<7>(leaf), **leaf);
         let mut leaves: Vec<_> = self.leaves.keys().collect();
         leaves.sort_by_key(by_node);
-        for cells in leaves.into_iter().map(|leaf| &self.leaves[leaf]) {
+        for leaf in leaves {
+            let cells = &self.leaves[leaf];
             mask(&mut out, cells.iter().map(|cell| cell.1));
-            self.values(&mut out, cells, &vec![false; cells.len()]);
+            if has_codes {
+                self.values(&mut out, cells, &vec![false; cells.len()]);
+                continue;
+            }
+            corner(&mut out, leaf);
+            // A second array, as of those that were never removed.
+            out.push(2);
+            for scale in [1.0, 2.0] {
+                self.array(&mut out, &cells.iter().map(|cell| scale * cell.0).collect::<Vec<_>>());
+            }
         }
         out
     }
@@ -100,8 +116,8 @@ impl Draft {
     fn inner<const N: u32, const M: u32>(
         &self,
         out: &mut Vec<u8>,
-        node: [i32; 3],
-        children: &BTreeSet<&[i32; 3]>,
+        has_codes: bool,
+        (node, children): ([i32; 3], &BTreeSet<&[i32; 3]>),
         tiles: &BTreeMap<[i32; 3], Voxel>,
     ) {
         let side = 1 << (N - M);
@@ -115,7 +131,11 @@ impl Draft {
         let cells: Vec<Voxel> = places.iter().map(cell).collect();
         mask(out, is_child.iter().copied());
         mask(out, cells.iter().map(|cell| cell.1));
-        self.values(out, &cells, &is_child);
+        if has_codes {
+            return self.values(out, &cells, &is_child);
+        }
+        let tiles = cells.iter().zip(is_child).filter(|(_, is_child)| !is_child);
+        self.array(out, &tiles.map(|(cell, _)| cell.0).collect::<Vec<_>>());
     }
 
     /// The values of a node: which of those that are not active are written depends on how many different ones there are.
@@ -194,15 +214,23 @@ fn blosc(bytes: &[u8]) -> Vec<u8> {
 
 /// A file of these grids.
 pub(crate) fn file(grids: &[Draft]) -> Vec<u8> {
+    file_of_version(224, grids)
+}
+
+/// A file of a version of the format. Before 222 the first grid tells how all are packed: by ZIP, as always before 220, or not.
+pub(crate) fn file_of_version(version: u32, grids: &[Draft]) -> Vec<u8> {
     let mut file = b" BDV\0\0\0\0".to_vec();
-    [224_u32, 10, 0].iter().for_each(|number| file.extend(number.to_le_bytes()));
+    [version, 10, 0].iter().for_each(|number| file.extend(number.to_le_bytes()));
     file.push(1);
-    file.extend([b'0'; 36]);
+    if (220..222).contains(&version) {
+        file.push((grids[0].flags & ZIP) as u8);
+    }
+    file.extend(b"00000000-0000-0000-0000-000000000000");
     file.extend(0_u32.to_le_bytes());
     file.extend((grids.len() as u32).to_le_bytes());
     for grid in grids {
         [grid.name, grid.tree, grid.parent].iter().for_each(|part| text(&mut file, part.as_bytes()));
-        let (first, body) = (file.len() as u64 + 24, grid.bytes());
+        let (first, body) = (file.len() as u64 + 24, grid.bytes(version));
         [first, first, first + body.len() as u64].iter().for_each(|at| file.extend(at.to_le_bytes()));
         file.extend(body);
     }
