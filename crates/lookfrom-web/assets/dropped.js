@@ -4,7 +4,7 @@ import { unzip } from "./zip.js";
 
 /** @typedef {import("./worker-transport.js").File} File */
 
-const SCENES = [/\.toml$/i, /\.pbrt$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl|hair)$/i];
+const SCENES = [/\.toml$/i, /\.pbrt$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl|hair)$/i, /\.n?vdb$/i];
 const PICTURE = /\.(exr|hdr|pfm|png|jpe?g|webp|gif|bmp|tga|tiff?)$/i;
 
 /** Whether a file is a picture. @param {string} path */
@@ -14,7 +14,7 @@ export const isPicture = (path) => PICTURE.test(path);
 const depth = (path) => path.split("/").length;
 
 /**
- * The scene among files: own format before pbrt's before models, the least deep first.
+ * The scene among files: own format before pbrt's before models before volumes, the least deep first.
  * @param {File[]} files
  */
 export function sceneOf(files) {
