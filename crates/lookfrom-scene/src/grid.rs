@@ -174,16 +174,36 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
 
     /// Calls a function with all cells that are stored, and their values; those that are left out are zero.
     pub fn for_each(&self, mut of: impl FnMut([u32; 3], T)) {
+        self.for_each_box(|[first, last], value| {
+            for z in first[2]..=last[2] {
+                for y in first[1]..=last[1] {
+                    (first[0]..=last[0]).for_each(|x| of([x, y, z], value));
+                }
+            }
+        });
+    }
+
+    /// As [`Grid::for_each`], with the first and the last cell of boxes of one value: whole bricks, of which a file may fill millions at
+    /// once, or single cells.
+    pub fn for_each_box(&self, mut of: impl FnMut([[u32; 3]; 2], T)) {
+        let blocks = self.values.as_chunks::<BLOCK>().0;
+        let is_even = |block: &[T; BLOCK]| block.iter().all(|value| *value == block[0]);
+        let even: Vec<bool> = blocks.iter().map(is_even).collect();
         let [width, height, _] = self.count.map(|bricks| bricks as usize);
         for (index, &block) in self.bricks.iter().enumerate().filter(|(_, block)| **block != EMPTY) {
             let first = [index % width, index / width % height, index / width / height]
                 .map(|brick| brick as u32 * BRICK);
-            let values = &self.values[block as usize * BLOCK..][..BLOCK];
+            let is_within = |cell: [u32; 3]| (0..3).all(|axis| cell[axis] < self.size[axis]);
+            let (last, values) = (first.map(|first| first + BRICK - 1), &blocks[block as usize]);
+            if even[block as usize] && is_within(last) {
+                of([first, last], values[0]);
+                continue;
+            }
             for (place, &value) in (0..).zip(values) {
                 let offset = [place % BRICK, place / BRICK % BRICK, place / BRICK / BRICK];
                 let cell = std::array::from_fn(|axis| first[axis] + offset[axis]);
-                if (0..3).all(|axis| cell[axis] < self.size[axis]) {
-                    of(cell, value);
+                if is_within(cell) {
+                    of([cell; 2], value);
                 }
             }
         }
@@ -279,6 +299,14 @@ mod tests {
         }
         grid.for_each(|_, value| sum -= value);
         assert_eq!(sum, 0.0);
+        // The brick that was filled, and neither emptied nor written over, is one box.
+        let (mut boxes, mut cells) = (Vec::new(), 0);
+        grid.for_each_box(|[first, last], value| match first == last {
+            true => cells += 1,
+            false => boxes.push((first, last, value)),
+        });
+        assert_eq!(boxes, [([0, 0, 8], [7, 7, 15], 0.5)]);
+        assert_eq!(cells, BLOCK);
         assert_eq!(grid.stored().len(), 2 * BLOCK);
     }
 

@@ -48,9 +48,10 @@ impl Majorants {
             centres.map(|centre| [cell(centre as f32 - REACH), cell(centre as f32 + REACH)]).collect()
         };
         let reached = [reached(0), reached(1), reached(2)];
-        placed.grid.for_each(|at, value| {
+        placed.grid.for_each_box(|[first, last], value| {
             let measure = measure(value);
-            let [x, y, z] = [0, 1, 2].map(|axis| reached[axis][at[axis] as usize]);
+            let [x, y, z] = [0, 1, 2]
+                .map(|axis| [reached[axis][first[axis] as usize][0], reached[axis][last[axis] as usize][1]]);
             for z in z[0]..=z[1] {
                 for y in y[0]..=y[1] {
                     for x in x[0]..=x[1] {
@@ -267,5 +268,41 @@ impl StoredWalk {
         self.ends[0] = walk.end.column();
         self.cell = store(walk.cell);
         self.next = store(walk.next);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use lookfrom_scene::grid::{BLOCK, Grid, Placed};
+
+    use super::*;
+
+    /// Against the values of all cells, one by one.
+    #[test]
+    fn bricks_of_one_value_are_bounded_as_their_cells() {
+        let size = [400, 40, 24];
+        let mut grid = Grid::new(size).expect("a grid");
+        grid.fill([3, 1, 0], [40, 4, 2], 0.5);
+        grid.set_brick([5, 2, 1], &std::array::from_fn::<f32, BLOCK, _>(|index| (index % 7) as f32));
+        let bounds = [Vec3::ZERO, Vec3::from_array(size.map(|cells| cells as f32))];
+        let placed = PlacedGrid::new(&Placed { grid: Arc::new(grid), bounds });
+        let found = Majorants::of_grid(bounds, &placed, |value| 2.0 * value);
+        let mut expected = vec![0.0_f32; found.values.len()];
+        placed.grid.for_each(|cell, value| {
+            let reached = |axis: usize| {
+                let centre = cell[axis] as f32 + 0.5;
+                [-257.0 / 256.0, 257.0 / 256.0].map(|reach| found.cell(axis, centre + reach))
+            };
+            let [[x0, x1], [y0, y1], [z0, z1]] = [reached(0), reached(1), reached(2)];
+            for (x, y, z) in
+                (x0..=x1).flat_map(|x| (y0..=y1).flat_map(move |y| (z0..=z1).map(move |z| (x, y, z))))
+            {
+                let bound = &mut expected[index(found.size, UVec3::new(x, y, z))];
+                *bound = bound.max(2.0 * value);
+            }
+        });
+        assert_eq!(found.values, expected);
     }
 }
