@@ -163,7 +163,7 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         Some(Format::Pbrt) => Err(of_scene("pbrt")),
         Some(Format::Mitsuba) => Err(of_scene("Mitsuba")),
         Some(Format::Vdb) => {
-            let error = unsupported(path, "a volume is no model");
+            let error = Error::new(ErrorKind::Unsupported, &Location::file(path), "a volume is no model");
             Err(error.hint("name it as the `file` of the `density` of a medium, in [media.NAME]"))
         }
         Some(Format::Toml) | None => Err(unknown_format(path)),

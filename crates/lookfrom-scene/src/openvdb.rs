@@ -34,7 +34,7 @@ pub(crate) struct OpenVdb<'a> {
     directory: Directory,
 }
 
-/// What stands before the tree of a grid.
+/// The header of a grid.
 struct Prelude<'a> {
     packing: Packing,
     world_from_index: DMat4,

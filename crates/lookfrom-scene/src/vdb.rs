@@ -18,10 +18,7 @@ pub fn read(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Vo
     let bytes = context.read(path)?;
     let at = Location::file(path);
     let file = VdbFile::new(&bytes, &at)?;
-    match file.volume(name, context)? {
-        Some(volume) => Ok(volume),
-        None => Err(file.without(name)),
-    }
+    file.volume(name, context)?.ok_or_else(|| file.without(name))
 }
 
 /// Whether a content begins as a file of volumes.

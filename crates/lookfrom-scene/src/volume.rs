@@ -6,11 +6,13 @@ pub(crate) mod cells;
 pub(crate) mod nodes;
 pub(crate) mod zip;
 
+use std::sync::Arc;
+
 use glam::{DMat3, DMat4, DVec3, IVec3, Vec3};
 
 use self::bytes::Bytes;
 use crate::error::{ErrorKind, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, Placed};
 
 /// A grid of a file, in index space. Values are at whole index coordinates; outside of the box of the active ones they are zero here,
 /// whatever the background is.
@@ -31,6 +33,18 @@ impl Volume {
     pub fn faces(&self) -> [Vec3; 2] {
         let size = IVec3::from_array(self.grid.size().map(|cells| cells as i32));
         [self.first, self.first + size].map(|corner| corner.as_vec3() - 0.5)
+    }
+
+    /// Whether any value is negative.
+    pub(crate) fn has_negatives(&self) -> bool {
+        self.grid.stored().iter().any(|value| *value < 0.0)
+    }
+
+    /// The values as densities, in index space: what is negative is nothing.
+    pub(crate) fn into_densities(self) -> Placed<f32> {
+        let bounds = self.faces();
+        let grid = if self.has_negatives() { self.grid.map(|value| value.max(0.0)) } else { self.grid };
+        Placed { grid: Arc::new(grid), bounds }
     }
 }
 

@@ -3,13 +3,10 @@
 //! Programs agree neither on the unit of length nor on that of densities. So the coefficients are such that light loses itself in the
 //! smoke after the same part of its size, whatever the numbers are.
 
-use std::sync::Arc;
-
 use glam::{DMat3, DVec3, IVec3, Vec3};
 
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
-use crate::grid::Placed;
 use crate::material::{Color, Material, MaterialKind};
 use crate::medium::{Density, Extinction, Medium, Sides, Variation};
 use crate::remedy::Remedy;
@@ -43,7 +40,7 @@ pub(super) fn scene(source: &Source<'_>, context: &mut LoadContext<'_>) -> Resul
         let remedy = "in a scene of its own, [media.NAME] says what is dense and what is hot";
         context.warnings.push(Warning::notice(&at, message).remedy(Remedy::Words(remedy.to_owned())));
     }
-    Ok(of_volume(name, &volume, &at))
+    Ok(of_volume(name, volume, &at))
 }
 
 /// The grid that is shown: the densities, or else the first that can be.
@@ -62,13 +59,16 @@ fn shown<'a>(file: &'a VdbFile<'_>, context: &mut LoadContext<'_>) -> Result<(&'
     Err(first.unwrap_or_else(|| file.without(DENSITY)))
 }
 
-fn of_volume(name: &str, volume: &Volume, at: &Location) -> Scene {
-    let [faces, bounds] = [volume.faces(), volume.bounds.map(IVec3::as_vec3)];
-    let world_from_index = volume.world_from_index;
-    // What is negative is nothing.
-    let grid = volume.grid.map(|number| number.max(0.0));
-    let dense = || grid.stored().iter().map(|density| f64::from(*density)).filter(|density| *density > 0.0);
-    let (count, sum) = (dense().count() as f64, dense().sum::<f64>());
+fn of_volume(name: &str, volume: Volume, at: &Location) -> Scene {
+    let (world_from_index, bounds) = (volume.world_from_index, volume.bounds.map(IVec3::as_vec3));
+    let placed = volume.into_densities();
+    // The number of cells that are not empty, and the sum of their densities.
+    let (mut count, mut sum) = (0.0, 0.0);
+    placed.grid.for_each_box(|[first, last], density| {
+        let cells: f64 = (0..3).map(|axis| f64::from(last[axis] - first[axis] + 1)).product();
+        count += if density > 0.0 { cells } else { 0.0 };
+        sum += cells * f64::from(density);
+    });
     let cell = DMat3::from_mat4(world_from_index).determinant().abs();
     let along = sum / count * (count * cell).cbrt();
     let scale = if sum > 0.0 { (THICKNESS / along) as f32 } else { 0.0 };
@@ -81,7 +81,7 @@ fn of_volume(name: &str, volume: &Volume, at: &Location) -> Scene {
         variation: Some(Variation {
             world_from_medium: world_from_index,
             bounds: Some(bounds),
-            density: Density::Grid(Placed { grid: Arc::new(grid), bounds: faces }),
+            density: Density::Grid(placed),
             emission_scale: None,
             temperature: None,
         }),

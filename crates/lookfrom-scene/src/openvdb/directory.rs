@@ -45,9 +45,9 @@ impl Descriptor {
     }
 }
 
-/// What stands before all grids.
+/// The header of a file and the descriptors of its grids.
 pub(super) struct Directory {
-    /// How all grids are stored; `None` where each of them says so.
+    /// The compression of all grids; `None` from version 222 on, where each grid has its own.
     pub(super) packing: Option<Packing>,
     /// The grids, in order.
     pub(super) entries: Vec<Descriptor>,

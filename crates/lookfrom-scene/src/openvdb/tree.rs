@@ -33,7 +33,7 @@ struct NodeLevel {
 /// A tree, of which the values of the leaves are still to be read.
 pub(super) struct OpenTree<'a> {
     pub(super) nodes: Nodes,
-    /// Which values of the leaves are active, by leaf.
+    /// The value masks of the leaves.
     pub(super) masks: Vec<NodeMask<'a>>,
     pub(super) values: NodeValues,
     /// At the leaves' values.

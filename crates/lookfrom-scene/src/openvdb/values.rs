@@ -18,7 +18,7 @@ const ALL: u8 = 6;
 /// Bytes of the place of a leaf.
 const PLACE: u64 = 12;
 
-/// How the arrays of a grid are stored.
+/// The compression of a grid's arrays (`io/Compression.h`).
 #[derive(Clone, Copy)]
 pub(super) struct Packing {
     flags: u32,

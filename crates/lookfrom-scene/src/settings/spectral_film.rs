@@ -27,7 +27,10 @@ pub struct Band {
 }
 
 impl Band {
-    /// What is wrong with its name, in words.
+    /// Checks its name.
+    ///
+    /// # Errors
+    /// In words, for a name that is none.
     pub(crate) fn check_name(&self) -> Result<(), String> {
         match is_channel_name(&self.name) {
             true => Ok(()),

@@ -132,13 +132,10 @@ impl Reader<'_, '_> {
         let path = self.resolve(file, "the name of a NanoVDB or OpenVDB file")?;
         let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
         let volume = vdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
-        let (faces, bounds) = (volume.faces(), volume.bounds.map(IVec3::as_vec3));
-        // What is negative is nothing.
-        let grid = Arc::new(volume.grid.map(|number| number.max(0.0)));
         Ok(Volume {
-            placed: Placed { grid, bounds: faces },
+            bounds: volume.bounds.map(IVec3::as_vec3),
             world_from_medium: volume.world_from_index,
-            bounds,
+            placed: volume.into_densities(),
         })
     }
 }

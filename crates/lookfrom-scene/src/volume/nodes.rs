@@ -1,4 +1,4 @@
-//! What trees of grids consist of: cubes of one value, and leaves of 8³ values.
+//! Nodes of VDB trees: tiles, which are cubes of one value, and leaves of 8³ values.
 
 use glam::IVec3;
 

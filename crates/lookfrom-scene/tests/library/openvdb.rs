@@ -244,6 +244,12 @@ fn files_alone_are_scenes() {
         assert_eq!(bounds.max - bounds.min, DVec3::splat(8.0 * f64::from(cell)));
         assert_eq!(scene.shapes[0].sides.expect("both").outside, None);
     }
+    // A tile is as dense as leaves that fill its place.
+    let mut tile = Draft::new("density");
+    tile.tiles[1].insert([0; 3], (0.5, true));
+    let (tile, _) = scene_of(&[tile]).expect("good");
+    let thickness = tile.media[0].scale * 0.5 * 128.0;
+    assert!((thickness - 30.0).abs() < 1e-4, "{thickness}");
     let (empty, _) = scene_of(&[Draft::new("density")]).expect("a frame before the smoke");
     assert_eq!(empty.media[0].scale, 0.0);
     let (heat, _) =

@@ -39,11 +39,14 @@ impl Reader<'_, '_> {
             bounds = [bounds[0].min(low), bounds[1].max(high)];
             temperature = Some(hot);
         }
+        if density.has_negatives() {
+            self.context.warn(&at, "densities below 0 are read as 0");
+        }
         medium.emission_scale = scale * Medium::ABSOLUTE;
         Ok(Some(Variation {
             world_from_medium: self.state.matrix * density.world_from_index,
             bounds: Some(bounds),
-            density: Density::Grid(self.densities(density, &at)),
+            density: Density::Grid(density.into_densities()),
             emission_scale: None,
             temperature,
         }))
@@ -72,16 +75,5 @@ impl Reader<'_, '_> {
             (volume.bounds.map(|corner| place(corner.as_vec3())), volume.faces().map(place));
         let grid = Placed { grid: Arc::new(volume.grid), bounds: faces };
         Ok(Some((temperature(p, grid)?, bounds)))
-    }
-
-    /// The values of a grid of densities, of which those below zero become zero.
-    fn densities(&mut self, volume: Volume, at: &Location) -> Placed<f32> {
-        let bounds = volume.faces();
-        let mut grid = volume.grid;
-        if grid.stored().iter().any(|value| *value < 0.0) {
-            self.context.warn(at, "densities below 0 are read as 0");
-            grid = grid.map(|value| value.max(0.0));
-        }
-        Placed { grid: Arc::new(grid), bounds }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use crate::error::Location;
 
-/// How a chunk is packed.
+/// The compression of a chunk.
 #[derive(Clone, Copy, Debug)]
 struct ChunkPacking {
     flags: u8,

@@ -1,4 +1,4 @@
-//! What is not read, and files that are damaged or claim too much.
+//! Unsupported grids, damaged files, and files that claim too much.
 
 use lookfrom_scene::Budget;
 
