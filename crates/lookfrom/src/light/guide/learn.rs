@@ -150,8 +150,9 @@ impl Learner<'_> {
         node
     }
 
-    /// Halves points along the longest side of their box, and orders them; `None` where they are few, or in one place. Returns the axis,
-    /// the coordinate from which on they are in the second half, and the number of the others.
+    /// Halves points along the longest side of their box where that is possible, else along another, and orders them; `None` where they
+    /// are few, or in one place. Returns the axis, the coordinate from which on they are in the second half, and the number of the
+    /// others.
     fn split(&self, members: &mut [u32]) -> Option<(usize, f32, usize)> {
         if members.len() < 2 * LEAF {
             return None;
@@ -162,12 +163,20 @@ impl Learner<'_> {
             (low, high) = (low.min(place(index)), high.max(place(index)));
         }
         let size = high - low;
-        let axis = (1..3).fold(0, |longest, axis| if size[axis] > size[longest] { axis } else { longest });
-        let coordinate = |index: u32| place(index)[axis];
-        members.sort_unstable_by(|a, b| coordinate(*a).total_cmp(&coordinate(*b)).then(a.cmp(b)));
-        let at = coordinate(members[members.len() / 2]);
-        let middle = members.partition_point(|&index| coordinate(index) < at);
-        (middle > 0).then_some((axis, at, middle))
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|a, b| size[*b].total_cmp(&size[*a]));
+        axes.into_iter().find_map(|axis| {
+            let coordinate = |index: u32| place(index)[axis];
+            members.sort_unstable_by(|a, b| coordinate(*a).total_cmp(&coordinate(*b)).then(a.cmp(b)));
+            // Most of them may be on a wall, and few in front of it: a half then begins behind the wall, or at it.
+            let middle = coordinate(members[members.len() / 2]);
+            let begins = [
+                members.partition_point(|&index| coordinate(index) < middle),
+                members.partition_point(|&index| coordinate(index) <= middle),
+            ];
+            let begin = begins.into_iter().find(|begin| (LEAF..=members.len() - LEAF).contains(begin))?;
+            Some((axis, coordinate(members[begin]), begin))
+        })
     }
 
     /// The visibility of each cell of directions from a group, weighted by the cosine and blurred; empty where nothing is visible or a
