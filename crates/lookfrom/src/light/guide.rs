@@ -21,7 +21,7 @@ use steps::Steps;
 pub(crate) use learn::{GuidePoint, Query};
 
 /// Cells along each side of the square of directions.
-const SIDE: usize = 64;
+const SIDE: usize = 32;
 
 /// Classes of normals: six main directions, and none.
 const CLASSES: usize = 7;
@@ -48,7 +48,7 @@ enum Node {
 #[derive(Clone, Debug)]
 pub(crate) struct Histogram {
     columns: Steps,
-    rows: Vec<Steps>,
+    rows: [Steps; SIDE],
 }
 
 /// A cell of the square, and the probabilities that its density is made of.
@@ -79,21 +79,20 @@ impl Guide {
 impl Histogram {
     /// By the weights of cells, row by row; `None` if none is positive.
     fn new(weights: &[f32]) -> Option<Self> {
-        let mut rows = Vec::new();
-        let columns = (0..SIDE).map(|column| {
-            let of_column = (0..SIDE).map(|row| weights[row * SIDE + column]);
-            rows.extend(Steps::new(of_column.clone()));
-            of_column.sum()
+        let mut rows = [Steps::NONE; SIDE];
+        let columns = std::array::from_fn(|column| {
+            let of_column = std::array::from_fn(|row| weights[row * SIDE + column]);
+            rows[column] = Steps::new(of_column).unwrap_or(Steps::NONE);
+            of_column.iter().sum()
         });
-        let columns = Steps::new(columns)?;
-        Some(Self { columns, rows })
+        Some(Self { columns: Steps::new(columns)?, rows })
     }
 
     /// A unit direction for `u` in [0, 1)².
     #[inline]
     pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let (index, column, s) = self.columns.choose(u[0]);
-        let (_, row, t) = self.rows[index].choose(u[1]);
+        let (column, s) = self.columns.choose(u[0]);
+        let (row, t) = self.rows[column].choose(u[1]);
         let square =
             [(column, s), (row, t)].map(|(cell, rest)| (cell as f32 + rest) / SIDE as f32 * 2.0 - 1.0);
         Direction::of_square(square).unit()
@@ -110,9 +109,10 @@ impl Histogram {
     pub(super) fn cell(&self, wi: Vec3) -> Option<GuideCell> {
         let direction = Direction::of_unit(wi);
         let place = direction.square().map(|x| (((x + 1.0) * (0.5 * SIDE as f32)) as usize).min(SIDE - 1));
-        let (index, of_column) = self.columns.find(place[0])?;
-        let (_, of_row) = self.rows[index].find(place[1])?;
-        Some(GuideCell { place, probabilities: [of_column, of_row], length: direction.length() })
+        let [column, row] = place;
+        let probabilities = [self.columns.probability(column), self.rows[column].probability(row)];
+        let is_sampled = probabilities.iter().all(|probability| *probability > 0.0);
+        is_sampled.then(|| GuideCell { place, probabilities, length: direction.length() })
     }
 }
 

@@ -20,7 +20,7 @@ use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
 /// Number of samples whose paths visit points.
-const SAMPLES: u32 = 4096;
+const SAMPLES: u32 = 8192;
 
 /// Number of samples, and of rays, that are traced together.
 const TOGETHER: usize = 512;

@@ -14,14 +14,14 @@ use crate::shading::texture::{SpectralMode, Textures};
 const GROUP: usize = 512;
 
 /// The least number of points of a leaf.
-const LEAF: usize = 12;
+const LEAF: usize = 24;
 
 /// Rays into each cell of directions: from a group, and from a leaf.
-const RAYS_OF_GROUP: u32 = 2;
-const RAYS_OF_LEAF: u32 = 4;
+const RAYS_OF_GROUP: u32 = 8;
+const RAYS_OF_LEAF: u32 = 8;
 
 /// The weight of a group's visibility in that of its leaves, in rays.
-const PRIOR: f32 = 0.5;
+const PRIOR: f32 = 0.1;
 
 /// Rays of a group into directions that would be sampled without a guide, and the share of them that find the
 /// environment from which on a guide would not help.
@@ -40,7 +40,7 @@ const LEAST_GUIDED: f32 = 0.02;
 const BRIGHTEST: f64 = 0.01;
 
 /// Directions along each side of a cell by which its brightness is known.
-const PARTS: usize = 4;
+const PARTS: usize = 8;
 
 /// A point that paths visit.
 #[derive(Clone, Copy, Debug)]
@@ -190,22 +190,17 @@ impl Learner<'_> {
         if sharp.iter().all(|seen| *seen == 0.0) {
             return Vec::new();
         }
-        (0..SIDE * SIDE)
-            .map(|cell| {
-                let around = |at: usize| at.saturating_sub(1)..(at + 2).min(SIDE);
-                let rows = around(cell / SIDE).map(|row| &sharp[row * SIDE..][around(cell % SIDE)]);
-                rows.flatten().sum::<f32>() / 9.0
-            })
-            .collect()
+        blurred(&sharp)
     }
 
-    /// The histogram of a leaf.
+    /// The histogram of a leaf, blurred: an opening is seen in other directions from its other points.
     fn histogram(&mut self, members: &[u32], of_group: &[f32]) -> Option<Histogram> {
         if of_group.is_empty() || self.sees_unguided(members, RAYS_OF_BRIGHT_LEAF) > BRIGHT {
             return None;
         }
         let mut weights: Vec<f32> = of_group.iter().map(|prior| PRIOR * prior).collect();
         self.add_visibility(members, RAYS_OF_LEAF, |cell| of_group[cell] > 0.0, &mut weights);
+        let mut weights = blurred(&weights);
         weights.iter_mut().zip(&self.light).for_each(|(weight, light)| *weight *= light);
         Histogram::new(&weights)
     }
@@ -277,6 +272,20 @@ impl GuidePoint {
         let cos = self.facing.dot(wi);
         if self.transmits { cos.abs() } else { cos.max(0.0) }
     }
+}
+
+/// Cells of directions, each with a part of its neighbours: a quarter of those beside it along each side.
+fn blurred(cells: &[f32]) -> Vec<f32> {
+    let along = |cells: &[f32], step: usize| -> Vec<f32> {
+        let place = |cell: usize| cell / step % SIDE;
+        let part = |cell: usize| {
+            let before = if place(cell) > 0 { cells[cell - step] } else { 0.0 };
+            let after = if place(cell) + 1 < SIDE { cells[cell + step] } else { 0.0 };
+            0.25 * (before + after) + 0.5 * cells[cell]
+        };
+        (0..SIDE * SIDE).map(part).collect()
+    };
+    along(&along(cells, 1), SIDE)
 }
 
 /// The light of an environment from each cell of directions, in any unit.

@@ -1,54 +1,64 @@
-//! Discrete distributions of few of many cells, in fixed point.
+//! Discrete distributions over the cells of a row, in fixed point.
 
-/// Units of probability: 2¹⁶, so that f32 holds every sum, and numbers of 24 bits choose cells with exactly their probabilities.
-const UNITS: f32 = 65_536.0;
+use super::SIDE;
 
-/// Cells with positive probabilities, in their order.
-#[derive(Clone, Debug, PartialEq)]
+/// Units of probability: 2¹⁵, so that numbers of 24 bits choose cells with exactly their probabilities.
+const UNITS: f32 = 32_768.0;
+
+/// The probabilities of the cells, of which some may be 0. In one line of the cache: tables of a guide are many, and are read at
+/// random.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
 pub(super) struct Steps {
-    cells: Vec<u32>,
-    /// The sums of the probabilities up to and with each cell; the last is 1.
-    ends: Vec<f32>,
+    /// The sums of the probabilities before each cell, in units.
+    begins: [u16; SIDE],
 }
 
 impl Steps {
-    /// By the weight of each cell, in proportion up to 2⁻¹⁶, which is the least probability of a positive weight; `None` if there
-    /// is none. Negative weights and those that are not finite count as zero. At most 2¹⁵ cells.
-    pub(super) fn new(weights: impl Iterator<Item = f32>) -> Option<Self> {
-        let usable = (0..).zip(weights).filter(|(_, weight)| *weight > 0.0 && weight.is_finite());
-        let (cells, weights): (Vec<u32>, Vec<f64>) =
-            usable.map(|(cell, weight)| (cell, f64::from(weight))).unzip();
-        // Each has one unit; the others are shared out, and rounding moves ends and not the last one.
-        let (total, free) = (weights.iter().sum::<f64>(), f64::from(UNITS) - cells.len() as f64);
-        let mut sum = 0.0;
-        let ends = (1..).zip(&weights).map(|(count, weight)| {
+    /// No cell: nothing may be chosen.
+    pub(super) const NONE: Self = Self { begins: [0; SIDE] };
+
+    /// By the weight of each cell, in proportion up to 2⁻¹⁵, which is the least probability of a positive weight; `None` if there
+    /// is none. Negative weights and those that are not finite count as zero.
+    pub(super) fn new(weights: [f32; SIDE]) -> Option<Self> {
+        let is_usable = |weight: &f32| *weight > 0.0 && weight.is_finite();
+        let usable = weights.map(|weight| if is_usable(&weight) { f64::from(weight) } else { 0.0 });
+        let last = usable.iter().rposition(|weight| *weight > 0.0)?;
+        // Each has one unit, the others are shared out.
+        let count = usable.iter().filter(|weight| **weight > 0.0).count();
+        let (total, free) = (usable.iter().sum::<f64>(), f64::from(UNITS) - count as f64);
+        let mut begins = [UNITS as u16; SIDE];
+        let (mut sum, mut before) = (0.0, 0.0);
+        for (begin, weight) in begins.iter_mut().zip(usable).take(last + 1) {
+            *begin = ((sum / total * free).floor() + before) as u16;
             sum += weight;
-            let shared = if count == weights.len() { free } else { (sum / total * free).floor() };
-            ((shared + count as f64) as f32) / UNITS
-        });
-        let ends: Vec<f32> = ends.collect();
-        (!cells.is_empty()).then_some(Self { cells, ends })
+            before += f64::from(u8::from(weight > 0.0));
+        }
+        Some(Self { begins })
     }
 
-    /// The chosen step, its cell and the position in it (0 … 1), for `u` in [0, 1).
+    /// The chosen cell, and the position in it (0 … 1), for `u` in [0, 1).
     #[inline]
-    pub(super) fn choose(&self, u: f32) -> (usize, usize, f32) {
-        let index = self.ends.partition_point(|end| *end <= u).min(self.ends.len() - 1);
-        let begin = self.begin(index);
-        let rest = (u - begin) / (self.ends[index] - begin);
-        (index, self.cells[index] as usize, rest)
+    pub(super) fn choose(&self, u: f32) -> (usize, f32) {
+        let at = u * UNITS;
+        let unit = at as u16;
+        let count: u16 = self.begins.iter().map(|begin| u16::from(*begin <= unit)).sum();
+        let cell = usize::from(count.saturating_sub(1));
+        let [begin, end] = self.ends(cell);
+        (cell, (at - begin) / (end - begin))
     }
 
-    /// The step of a cell and its probability.
+    /// The probability of a cell.
     #[inline]
-    pub(super) fn find(&self, cell: usize) -> Option<(usize, f32)> {
-        let index = self.cells.binary_search(&(cell as u32)).ok()?;
-        Some((index, self.ends[index] - self.begin(index)))
+    pub(super) fn probability(&self, cell: usize) -> f32 {
+        let [begin, end] = self.ends(cell);
+        (end - begin) / UNITS
     }
 
+    /// Where a cell begins and ends, in units.
     #[inline]
-    fn begin(&self, index: usize) -> f32 {
-        if index == 0 { 0.0 } else { self.ends[index - 1] }
+    fn ends(&self, cell: usize) -> [f32; 2] {
+        [f32::from(self.begins[cell]), self.begins.get(cell + 1).map_or(UNITS, |end| f32::from(*end))]
     }
 }
 
@@ -58,26 +68,36 @@ mod tests {
 
     #[test]
     fn probabilities_are_those_of_weights_and_of_choices() {
-        let weights = [0.0, 3.0, 0.0, 1.0, 1e-20, f32::NAN, 4.0, -1.0];
-        let steps = Steps::new(weights.into_iter()).unwrap();
-        let probability = |cell| steps.find(cell).map(|(_, probability)| probability);
-        assert_eq!([0, 2, 5, 7].map(probability), [None; 4]);
-        for (cell, expected) in [(1, 0.375), (3, 0.125), (4, 1.0 / UNITS), (6, 0.5)] {
-            assert!((probability(cell).unwrap() - expected).abs() < 4.0 / UNITS, "{cell}");
+        let mut weights = [0.0; SIDE];
+        weights[..8].copy_from_slice(&[0.0, 3.0, 0.0, 1.0, 1e-20, f32::NAN, 4.0, -1.0]);
+        for last in [0.0, 8.0] {
+            weights[SIDE - 1] = last;
+            let steps = Steps::new(weights).unwrap();
+            let total = 8.0 + last;
+            for cell in [0, 2, 5, 7, 8, SIDE - 2] {
+                assert_eq!(steps.probability(cell), 0.0, "{cell}");
+            }
+            let expected = [(1, 3.0 / total), (3, 1.0 / total), (4, 1.0 / UNITS), (6, 4.0 / total)];
+            for (cell, expected) in expected.into_iter().chain([(SIDE - 1, last / total)]) {
+                assert!((steps.probability(cell) - expected).abs() < 4.0 / UNITS, "{cell}");
+            }
+            let mut counts = [0_u32; SIDE];
+            for k in 0..1 << 20 {
+                let (cell, rest) = steps.choose(k as f32 / (1 << 20) as f32);
+                assert!((0.0..1.0).contains(&rest));
+                counts[cell] += 1;
+            }
+            for (cell, count) in counts.into_iter().enumerate() {
+                assert_eq!(count as f32 / (1 << 20) as f32, steps.probability(cell), "{cell}");
+            }
         }
-        let mut counts = [0_u32; 8];
-        for k in 0..1 << 20 {
-            let (_, cell, rest) = steps.choose(k as f32 / (1 << 20) as f32);
-            assert!((0.0..1.0).contains(&rest));
-            counts[cell] += 1;
-        }
-        for (cell, count) in counts.into_iter().enumerate() {
-            assert_eq!(count as f32 / (1 << 20) as f32, probability(cell).unwrap_or(0.0), "{cell}");
-        }
+        let (cell, rest) = Steps::new([1.0; SIDE]).unwrap().choose(1.0 - 0.5_f32.powi(24));
+        assert!(cell == SIDE - 1 && rest < 1.0, "{rest}");
     }
 
     #[test]
     fn no_weight_is_no_choice() {
-        assert_eq!(Steps::new([0.0, -1.0].into_iter()), None);
+        assert_eq!(Steps::new([0.0; SIDE]), None);
+        assert_eq!(Steps::new([-1.0; SIDE]), None);
     }
 }

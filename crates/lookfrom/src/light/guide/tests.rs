@@ -1,5 +1,7 @@
 //! Guides of places whose visibility is known.
 
+use std::f32::consts::PI;
+
 use glam::Vec3;
 use lookfrom_scene::material::Color;
 use lookfrom_scene::settings::ColorMode;
@@ -50,18 +52,40 @@ fn learn(points: &[GuidePoint], is_lit: impl Fn(Vec3, Vec3) -> bool) -> Option<G
 
 #[test]
 fn most_directions_lead_through_the_window() {
-    let guide = learn(&floor(), is_lit).expect("a window");
-    let (mut lit, mut unguided) = (0, 0);
+    expect_light_through_the_window(&learn(&floor(), is_lit).expect("a window"));
+}
+
+#[test]
+fn points_in_a_plane_are_parted_where_a_few_others_are_far_from_it() {
+    let mut points = floor();
+    for (k, point) in (0..).zip(&mut points).step_by(20) {
+        point.point.y = 0.01 * k as f32;
+    }
+    expect_light_through_the_window(&learn(&points, is_lit).expect("a window"));
+}
+
+fn expect_light_through_the_window(guide: &Guide) {
+    let (mut lit, mut unguided) = (0_u64, 0_u64);
+    // The mean of the light, which is the part of the cosine's directions that are lit, and the second moment of one sample.
+    let (mut mean, mut square) = (0.0, 0.0);
     const N: u64 = 20_000;
     for k in 0..N {
         let p = Vec3::new(4.0 * number(k, 3) - 2.0, 0.0, 4.0 * number(k, 4) - 2.0);
         let u = [number(k, 5), number(k, 6)];
         let histogram = guide.histogram(p, Vec3::Y).expect("light everywhere");
-        lit += u32::from(is_lit(p, histogram.sample(u)));
-        unguided += u32::from(is_lit(p, warp::cosine_hemisphere(u, Vec3::Y)));
+        let wi = histogram.sample(u);
+        if is_lit(p, wi) {
+            let value = f64::from(wi.y / (PI * histogram.pdf(wi)));
+            (lit, mean, square) = (lit + 1, mean + value / N as f64, square + value * value / N as f64);
+        }
+        unguided += u64::from(is_lit(p, warp::cosine_hemisphere(u, Vec3::Y)));
     }
     assert!(unguided < 600, "{unguided}");
-    assert!(lit > 10 * unguided && u64::from(lit) > N / 2, "{lit}, {unguided} without a guide");
+    assert!(lit > 25 * unguided && lit > N / 3, "{lit}, {unguided} without a guide");
+    let expected = unguided as f64 / N as f64;
+    assert!((mean / expected - 1.0).abs() < 0.2, "{mean} {expected}");
+    let gain = (expected - mean * mean) / (square - mean * mean);
+    assert!(gain > 20.0, "the variance of a sample by the cosine over that by the guide: {gain}");
     assert!(guide.histogram(Vec3::ZERO, -Vec3::Y).is_none(), "no point has such a normal");
 }
 
