@@ -8,7 +8,7 @@ use std::path::Path;
 use lookfrom::render::Renderer;
 use lookfrom_scene::image::compare::{Sampled, compare};
 use lookfrom_scene::image::read_exr;
-use lookfrom_scene::settings::Layers;
+use lookfrom_scene::settings::{Layers, RenderSettings};
 use lookfrom_scene::spectrum::space::apply;
 use lookfrom_scene::{Disk, LoadContext, load};
 
@@ -47,22 +47,20 @@ const SCENES: &[(&str, &str, u64, u32, f64)] = &[
 /// The mean of [`PICTURES`] pictures of a scene with other random numbers each, and its variance as it is measured from how
 /// they differ. (The variance of a picture's samples would be too large, since they are stratified.)
 fn picture(path: &Path, samples: u32) -> Sampled {
-    let mut width = 0;
-    let mut matrix = None;
-    let mut pictures = Vec::new();
-    for seed in 0..PICTURES {
-        let mut context = LoadContext::new(&Disk);
-        let mut scene = load::scene(path, &mut context).unwrap_or_else(|error| panic!("{error}"));
-        (scene.render.samples, scene.render.seed) = (samples, u64::from(seed));
-        let renderer =
-            Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let mut context = LoadContext::new(&Disk);
+    let scene = load::scene(path, &mut context).unwrap_or_else(|error| panic!("{error}"));
+    let renderer = Renderer::of_scene(scene, &mut context.warnings).unwrap_or_else(|error| panic!("{error}"));
+    let films = (0..PICTURES).map(|seed| {
+        let settings = RenderSettings { samples, seed: u64::from(seed), ..renderer.settings().clone() };
+        let renderer = renderer.with_settings(settings).unwrap_or_else(|error| panic!("{error}"));
         let film = renderer.render(None, &()).expect("a picture").film;
         assert_eq!(film.dropped(), 0, "samples that are not finite, the first at {:?}", film.first_dropped());
-        width = film.width() as usize;
-        matrix = Some(*renderer.sensor().variance_from_rgb());
-        pictures.push(film.picture().pixels);
-    }
-    let matrix = matrix.expect("a picture");
+        film
+    });
+    let films: Vec<_> = films.collect();
+    let width = films[0].width() as usize;
+    let pictures: Vec<_> = films.iter().map(|film| film.picture().pixels).collect();
+    let matrix = *renderer.sensor().variance_from_rgb();
     let count = f64::from(PICTURES);
     let pixel = |index: usize| -> ([f32; 3], [f64; 3]) {
         let colors = || pictures.iter().map(|picture| picture[index].map(f64::from));

@@ -9,6 +9,7 @@ use super::microfacet::TrowbridgeReitz;
 use super::whitted::WhittedBsdf;
 use super::*;
 use crate::core::hash;
+use crate::core::parallel;
 use crate::core::statistics::{chi_square_deviate, corrected_bound};
 use lookfrom_scene::material::{self as written, Distribution, Masking};
 use std::f32::consts::PI;
@@ -277,8 +278,9 @@ fn cell(w: Vec3) -> usize {
 fn samples_are_as_dense_as_they_say() {
     let subjects = with_density();
     let bound = corrected_bound(subjects.len() * views().len());
-    let mut faults = Vec::new();
-    for (subject, (name, bsdf)) in subjects.iter().enumerate() {
+    let faults = parallel::collect(subjects.len(), |subject| {
+        let (name, bsdf) = &subjects[subject];
+        let mut faults = Vec::new();
         // BSDFs of many lobes are costly: fewer samples.
         let is_costly =
             ["principled", "openpbr", "disney", "conserving"].iter().any(|kind| name.starts_with(kind));
@@ -326,7 +328,9 @@ fn samples_are_as_dense_as_they_say() {
                 faults.push(format!("{what}: more light out than in: {integral}"));
             }
         }
-    }
+        faults
+    })
+    .concat();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
