@@ -104,7 +104,7 @@ impl Discrete {
 const MOST_COMPARED: usize = 16;
 
 /// The weight, or 0 if it is not a positive finite number.
-fn usable(weight: f32) -> f64 {
+pub(crate) fn usable(weight: f32) -> f64 {
     if weight.is_finite() && weight > 0.0 { f64::from(weight) } else { 0.0 }
 }
 

@@ -16,9 +16,8 @@ const GROUP: usize = 512;
 /// The least number of points of a leaf.
 const LEAF: usize = 24;
 
-/// Rays into each cell of directions: from a group, and from a leaf.
-const RAYS_OF_GROUP: u32 = 8;
-const RAYS_OF_LEAF: u32 = 8;
+/// Rays into each cell of directions, from a group and from a leaf.
+const RAYS: u32 = 8;
 
 /// The weight of a group's visibility in that of its leaves, in rays.
 const PRIOR: f32 = 0.1;
@@ -186,7 +185,7 @@ impl Learner<'_> {
             return Vec::new();
         }
         let mut sharp = vec![0.0; SIDE * SIDE];
-        self.add_visibility(members, RAYS_OF_GROUP, |_| true, &mut sharp);
+        self.add_visibility(members, |_| true, &mut sharp);
         if sharp.iter().all(|seen| *seen == 0.0) {
             return Vec::new();
         }
@@ -199,23 +198,17 @@ impl Learner<'_> {
             return None;
         }
         let mut weights: Vec<f32> = of_group.iter().map(|prior| PRIOR * prior).collect();
-        self.add_visibility(members, RAYS_OF_LEAF, |cell| of_group[cell] > 0.0, &mut weights);
+        self.add_visibility(members, |cell| of_group[cell] > 0.0, &mut weights);
         let mut weights = blurred(&weights);
         weights.iter_mut().zip(&self.light).for_each(|(weight, light)| *weight *= light);
         Histogram::new(&weights)
     }
 
     /// Adds to cells of directions how much of the environment rays see, times the cosine.
-    fn add_visibility(
-        &mut self,
-        members: &[u32],
-        rays: u32,
-        is_tested: impl Fn(usize) -> bool,
-        cells: &mut [f32],
-    ) {
+    fn add_visibility(&mut self, members: &[u32], is_tested: impl Fn(usize) -> bool, cells: &mut [f32]) {
         let (mut queries, mut weights) = (Vec::new(), Vec::new());
         for cell in (0..SIDE * SIDE).filter(|cell| is_tested(*cell)) {
-            for _ in 0..rays {
+            for _ in 0..RAYS {
                 let (index, [s, t]) = self.any(members);
                 let place = [(cell % SIDE) as f32 + s, (cell / SIDE) as f32 + t];
                 let wi = Direction::of_square(place.map(|x| x / SIDE as f32 * 2.0 - 1.0)).unit();

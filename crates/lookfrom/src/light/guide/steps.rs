@@ -1,6 +1,7 @@
 //! Discrete distributions over the cells of a row, in fixed point.
 
 use super::SIDE;
+use crate::core::distribution::usable;
 
 /// Units of probability: 2¹⁵, so that numbers of 24 bits choose cells with exactly their probabilities.
 const UNITS: f32 = 32_768.0;
@@ -21,15 +22,14 @@ impl Steps {
     /// By the weight of each cell, in proportion up to 2⁻¹⁵, which is the least probability of a positive weight; `None` if there
     /// is none. Negative weights and those that are not finite count as zero.
     pub(super) fn new(weights: [f32; SIDE]) -> Option<Self> {
-        let is_usable = |weight: &f32| *weight > 0.0 && weight.is_finite();
-        let usable = weights.map(|weight| if is_usable(&weight) { f64::from(weight) } else { 0.0 });
-        let last = usable.iter().rposition(|weight| *weight > 0.0)?;
+        let weights = weights.map(usable);
+        let last = weights.iter().rposition(|weight| *weight > 0.0)?;
         // Each has one unit, the others are shared out.
-        let count = usable.iter().filter(|weight| **weight > 0.0).count();
-        let (total, free) = (usable.iter().sum::<f64>(), f64::from(UNITS) - count as f64);
+        let count = weights.iter().filter(|weight| **weight > 0.0).count();
+        let (total, free) = (weights.iter().sum::<f64>(), f64::from(UNITS) - count as f64);
         let mut begins = [UNITS as u16; SIDE];
         let (mut sum, mut before) = (0.0, 0.0);
-        for (begin, weight) in begins.iter_mut().zip(usable).take(last + 1) {
+        for (begin, weight) in begins.iter_mut().zip(weights).take(last + 1) {
             *begin = ((sum / total * free).floor() + before) as u16;
             sum += weight;
             before += f64::from(u8::from(weight > 0.0));
@@ -43,7 +43,8 @@ impl Steps {
         let at = u * UNITS;
         let unit = at as u16;
         let count: u16 = self.begins.iter().map(|begin| u16::from(*begin <= unit)).sum();
-        let cell = usize::from(count.saturating_sub(1));
+        // The first one begins at 0.
+        let cell = usize::from(count) - 1;
         let [begin, end] = self.ends(cell);
         (cell, (at - begin) / (end - begin))
     }
@@ -55,7 +56,7 @@ impl Steps {
         (end - begin) / UNITS
     }
 
-    /// Where a cell begins and ends, in units.
+    /// The cumulative probabilities before and after a cell, in units.
     #[inline]
     fn ends(&self, cell: usize) -> [f32; 2] {
         [f32::from(self.begins[cell]), self.begins.get(cell + 1).map_or(UNITS, |end| f32::from(*end))]
