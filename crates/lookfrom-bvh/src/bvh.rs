@@ -19,7 +19,7 @@ mod moving;
 
 pub(crate) use instance::Instance;
 pub use moving::moment;
-pub(crate) use moving::{Moment, Moving};
+pub(crate) use moving::{Moment, Moving, Part};
 
 /// A bounding volume hierarchy (BVH) for tracing rays. Made by a [`Builder`](crate::Builder); immutable, and shared
 /// between threads.

@@ -35,7 +35,7 @@ use crate::{batch, single};
 #[derive(Clone, Copy, Debug)]
 #[must_use = "a query does nothing until it traces a ray"]
 pub struct Query<'a, O = ()> {
-    settings: Settings<'a>,
+    pub(crate) settings: Settings<'a>,
     observer: O,
 }
 
@@ -197,7 +197,7 @@ impl<'a, O> Query<'a, O> {
         self
     }
 
-    /// The time of all rays, 0 … 1, for what moves ([`Builder::moving_triangles`](crate::Builder::moving_triangles),
+    /// The time of all rays and points, 0 … 1, for what moves ([`Builder::moving_triangles`](crate::Builder::moving_triangles),
     /// [`Builder::moving_instance`](crate::Builder::moving_instance)); 0 without it.
     ///
     /// ```
@@ -216,7 +216,7 @@ impl<'a, O> Query<'a, O> {
         self
     }
 
-    /// The time of each ray, in the order of the rays; those beyond the end have that of [`Self::time`].
+    /// The time of each ray or point, in their order; those beyond the end have that of [`Self::time`].
     ///
     /// ```
     /// use lookfrom_bvh::{Affine, Builder, Hit, Ray, Sphere};

@@ -4,11 +4,9 @@
 //! rays whose numbers are f32 the results agree with single precision, but are finer: hits at equal t in f32 are
 //! distinguished.
 
-use std::borrow::Cow;
-
 use crate::aabb::Aabb;
 use crate::batch::for_each;
-use crate::bvh::{Bvh, Instance, Moment, Moving};
+use crate::bvh::{Bvh, Instance, Part};
 use crate::conservative::TriangleBlock;
 use crate::exact::ExactRay;
 use crate::item::Leaf;
@@ -88,36 +86,6 @@ fn traverse(
         let (time, commit) = (settings.time_of(0), &mut commit);
         let mut traversal = Traversal { outer: bvh, ray, time, end: ray.t_max, visibility, observer, commit };
         traversal.tree(bvh, &exact, NONE);
-    }
-}
-
-/// A tree, or its moving part at a moment.
-#[derive(Clone, Copy)]
-enum Part<'t> {
-    Standing(&'t Bvh),
-    Moving(&'t Moving, Moment),
-}
-
-impl<'t> Part<'t> {
-    fn node(self, number: usize) -> Cow<'t, Node> {
-        match self {
-            Self::Standing(bvh) => Cow::Borrowed(&bvh.nodes[number]),
-            Self::Moving(moving, moment) => Cow::Owned(moving.node(number, moment)),
-        }
-    }
-
-    fn block(self, number: usize) -> Cow<'t, TriangleBlock> {
-        match self {
-            Self::Standing(bvh) => Cow::Borrowed(&bvh.triangles[number]),
-            Self::Moving(moving, moment) => Cow::Owned(moving.block(number, moment)),
-        }
-    }
-
-    fn leaf(self, number: usize) -> Leaf {
-        match self {
-            Self::Standing(bvh) => bvh.leaves[number],
-            Self::Moving(moving, _) => moving.leaves[number],
-        }
     }
 }
 

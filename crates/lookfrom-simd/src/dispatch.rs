@@ -32,18 +32,48 @@ pub trait Kernel {
 /// (packets of rays against triangles). SSE4.2 is not used, since it has no advantage over SSE2 here. On x86-64 there is
 /// no scalar level.
 #[inline(always)]
+#[cfg(target_arch = "x86_64")]
 pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    match run_wide(level, kernel) {
-        Ok(output) => output,
-        Err(kernel) => run_narrow(level, kernel),
+    if let Some(simd) = level.as_avx512() {
+        return simd.vectorize(
+            #[inline(always)]
+            move || kernel.run(simd),
+        );
     }
+    if let Some(simd) = level.as_avx2() {
+        return simd.vectorize(
+            #[inline(always)]
+            move || kernel.run(simd),
+        );
+    }
+    kernel.run(level.as_sse2().expect("x86-64 has SSE2"))
 }
 
-/// As [`dispatch`], for large kernels, which are not compiled for SSE2: eight lanes in its sixteen registers of four would
-/// be most of their code, for machines before 2013. `None` at that level; callers go one by one there.
+/// Runs a kernel with the instructions of a level: see [`Kernel`].
 #[inline(always)]
+#[cfg(not(target_arch = "x86_64"))]
+pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
+    fearless_simd::dispatch!(level, simd => kernel.run(simd))
+}
+
+/// As [`dispatch`], for large kernels, which are compiled once for x86-64: for AVX2, also where there is AVX-512. Eight lanes in the
+/// sixteen registers of SSE2 would be most of their code, for machines before 2013; with the registers of AVX-512 they are hardly
+/// faster (docs/timings.md). `None` at SSE2; callers go one by one there.
+#[inline(always)]
+#[cfg(target_arch = "x86_64")]
 pub fn dispatch_wide<K: Kernel>(level: Level, kernel: K) -> Option<K::Output> {
-    run_wide(level, kernel).ok()
+    let simd = level.as_avx2()?;
+    Some(simd.vectorize(
+        #[inline(always)]
+        move || kernel.run(simd),
+    ))
+}
+
+/// As [`dispatch`]: what is compiled less often for x86-64 has one level on other machines.
+#[inline(always)]
+#[cfg(not(target_arch = "x86_64"))]
+pub fn dispatch_wide<K: Kernel>(level: Level, kernel: K) -> Option<K::Output> {
+    Some(dispatch(level, kernel))
 }
 
 /// Whether [`dispatch_wide`] runs kernels at a level.
@@ -56,41 +86,4 @@ pub fn is_wide(level: Level) -> bool {
 #[cfg(not(target_arch = "x86_64"))]
 pub fn is_wide(_: Level) -> bool {
     true
-}
-
-/// Runs a kernel at all levels but SSE2, where it is given back.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn run_wide<K: Kernel>(level: Level, kernel: K) -> Result<K::Output, K> {
-    if let Some(simd) = level.as_avx512() {
-        return Ok(simd.vectorize(
-            #[inline(always)]
-            move || kernel.run(simd),
-        ));
-    }
-    if let Some(simd) = level.as_avx2() {
-        return Ok(simd.vectorize(
-            #[inline(always)]
-            move || kernel.run(simd),
-        ));
-    }
-    Err(kernel)
-}
-
-/// Runs a kernel at every level.
-#[cfg(not(target_arch = "x86_64"))]
-#[inline(always)]
-fn run_wide<K: Kernel>(level: Level, kernel: K) -> Result<K::Output, K> {
-    Ok(fearless_simd::dispatch!(level, simd => kernel.run(simd)))
-}
-
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn run_narrow<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    kernel.run(level.as_sse2().expect("x86-64 has SSE2"))
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-fn run_narrow<K: Kernel>(_: Level, _: K) -> K::Output {
-    unreachable!("all levels are wide")
 }

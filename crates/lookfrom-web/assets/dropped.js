@@ -4,7 +4,9 @@ import { unzip } from "./zip.js";
 
 /** @typedef {import("./worker-transport.js").File} File */
 
-const SCENES = [/\.toml$/i, /\.pbrt$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl|hair)$/i, /\.n?vdb$/i];
+// By rank; the extensions are those of crates/lookfrom-scene/src/format.rs.
+const SCENES = [/\.toml$/i, /\.pbrt(\.gz)?$/i, /\.xml$/i, /\.(glb|gltf)$/i, /\.(obj|ply|stl|hair)(\.gz)?$/i, /\.n?vdb$/i];
+const XML = /\.xml$/i;
 const PICTURE = /\.(exr|hdr|pfm|png|jpe?g|webp|gif|bmp|tga|tiff?)$/i;
 
 /** Whether a file is a picture. @param {string} path */
@@ -13,13 +15,16 @@ export const isPicture = (path) => PICTURE.test(path);
 /** How deep a file is in folders. @param {string} path */
 const depth = (path) => path.split("/").length;
 
+/** Whether a file may be a scene: much is written in XML, and Mitsuba's scenes begin with an element of that name. @param {File} file */
+const mayBeScene = ({ path, bytes }) => !XML.test(path) || new TextDecoder().decode(bytes.subarray(0, 1 << 16)).includes("<scene");
+
 /**
- * The scene among files: own format before pbrt's before models before volumes, the least deep first.
+ * The scene among files: own format before pbrt's before Mitsuba's before models before volumes, the least deep first.
  * @param {File[]} files
  */
 export function sceneOf(files) {
     for (const kind of SCENES) {
-        const found = files.filter(({ path }) => kind.test(path)).sort((a, b) => depth(a.path) - depth(b.path) || (a.path < b.path ? -1 : 1));
+        const found = files.filter((file) => kind.test(file.path) && mayBeScene(file)).sort((a, b) => depth(a.path) - depth(b.path) || (a.path < b.path ? -1 : 1));
         if (found.length > 0) return found[0].path;
     }
     return null;

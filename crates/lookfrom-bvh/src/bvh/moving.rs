@@ -5,6 +5,8 @@
 //! Stich, Nawaz, Keller (2011), "MSBVH: An Efficient Acceleration Data Structure for Ray Traced Motion Blur". What stands
 //! still is in the tree that has this part, and costs what it costs without it.
 
+use std::borrow::Cow;
+
 use super::{Bvh, Instance};
 use crate::aabb::Aabb;
 use crate::affine::Affine;
@@ -42,6 +44,39 @@ pub(crate) struct Moment {
     earlier: usize,
     /// 0 at the earlier time, 1 at the next.
     pub(crate) fraction: f32,
+}
+
+/// A tree, or its moving part at a moment.
+#[derive(Clone, Copy)]
+pub(crate) enum Part<'t> {
+    Standing(&'t Bvh),
+    Moving(&'t Moving, Moment),
+}
+
+impl<'t> Part<'t> {
+    /// A node.
+    pub(crate) fn node(self, number: usize) -> Cow<'t, Node> {
+        match self {
+            Self::Standing(bvh) => Cow::Borrowed(&bvh.nodes[number]),
+            Self::Moving(moving, moment) => Cow::Owned(moving.node(number, moment)),
+        }
+    }
+
+    /// A block of triangles.
+    pub(crate) fn block(self, number: usize) -> Cow<'t, TriangleBlock> {
+        match self {
+            Self::Standing(bvh) => Cow::Borrowed(&bvh.triangles[number]),
+            Self::Moving(moving, moment) => Cow::Owned(moving.block(number, moment)),
+        }
+    }
+
+    /// What a leaf holds.
+    pub(crate) fn leaf(self, number: usize) -> Leaf {
+        match self {
+            Self::Standing(bvh) => bvh.leaves[number],
+            Self::Moving(moving, _) => moving.leaves[number],
+        }
+    }
 }
 
 impl Moving {

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use lookfrom_bvh::{
-    Affine, BuildError, Builder, Bvh, Hit, HitF64, OriginPrimitive, Ray, RayF64, Sphere, Triangles,
+    Affine, BuildError, Builder, Bvh, ClosestPoint, Hit, HitF64, OriginPrimitive, Ray, RayF64, Sphere,
+    Triangles,
 };
 
 use crate::testing::Random;
@@ -193,6 +194,35 @@ fn each_ray_has_its_own_time() {
 }
 
 #[test]
+fn the_nearest_point_is_that_of_its_time() {
+    let mut random = Random::new(23);
+    let mut found_on_moving = 0;
+    for round in 0..24 {
+        let scene = Scene::new(&mut random, 2 + round % 4);
+        let whole = scene.whole();
+        let points: Vec<[f32; 3]> = scene.rays(&mut random, 100).iter().map(|ray| ray.origin).collect();
+        let time_of = |index, random: &mut Random| if index < 2 { index as f32 } else { random.unit() };
+        let times: Vec<f32> = (0..points.len()).map(|index| time_of(index, &mut random)).collect();
+        let max = if round % 3 == 0 { scene.ball.radius } else { f32::INFINITY };
+        let (mut nearest, mut near) = (vec![None; points.len()], vec![false; points.len()]);
+        whole.query().times(&times).closest_points(&points, max, &mut nearest);
+        whole.query().times(&times).are_near(&points, max, &mut near);
+        for (((&point, &time), nearest), near) in points.iter().zip(&times).zip(nearest).zip(near) {
+            let expected = scene.at(time).closest_point(point, max);
+            assert_eq!(nearest, expected, "{point:?} at {time}");
+            assert_eq!(whole.query().time(time).closest_point(point, max), expected);
+            assert_eq!((near, whole.query().time(time).is_near(point, max)), (expected.is_some(), near));
+            if time == 0.0 {
+                assert_eq!((whole.closest_point(point, max), whole.is_near(point, max)), (expected, near));
+            }
+            let moves = |found: &ClosestPoint| found.geometry == 1 || [0, 2, 3].contains(&found.instance);
+            found_on_moving += usize::from(expected.is_some_and(|found| moves(&found)));
+        }
+    }
+    assert!(found_on_moving > 500, "{found_on_moving}");
+}
+
+#[test]
 fn masks_hide_what_moves() {
     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let up = positions.map(|[x, y, z]| [x, y, z + 1.0]);
@@ -203,6 +233,9 @@ fn masks_hide_what_moves() {
     let ray = Ray::new([0.25, 0.25, -1.0], [0.0, 0.0, 1.0]);
     assert!(bvh.query().time(0.5).mask(0b10).occluded(&ray));
     assert!(!bvh.query().time(0.5).mask(0b01).occluded(&ray));
+    let nearest = bvh.query().time(0.5).mask(0b10).closest_point([0.25; 3], 1.0);
+    assert_eq!(nearest.map(|nearest| nearest.position), Some([0.25, 0.25, 0.5]));
+    assert_eq!(bvh.query().time(0.5).mask(0b01).closest_point([0.25; 3], 1.0), None);
     assert_eq!((bvh.bounds().min[2], bvh.statistics().left_out), (bvh.bounds().min[2].min(0.0), 0));
     assert!(bvh.bounds().max[2] >= 1.0);
 }
