@@ -33,6 +33,7 @@ pub mod image;
 pub mod inputs;
 pub mod json;
 pub mod lens;
+mod level_set;
 pub mod light;
 pub mod load;
 pub mod material;

@@ -21,7 +21,7 @@ use crate::scene::{MaterialId, Scene, SourceFormat};
 use crate::shape::{Part, Shape};
 use crate::source::Source;
 use crate::warning::Warning;
-use crate::{duplicates, model, shutter, studio, toml};
+use crate::{duplicates, level_set, model, shutter, studio, toml};
 
 /// The reflectance of models whose file has no materials.
 const CLAY: f32 = 0.8;
@@ -31,7 +31,7 @@ pub const PIPE: &str = "-";
 
 /// Reads a scene in our own format (`.toml`), of pbrt-v4 (`.pbrt`) or Mitsuba 3 (`.xml`), a glTF file (`.gltf`, `.glb`), or a model file, whose
 /// parts are placed as in the file and have a diffuse grey material "default" if the file gives them none. A file of volumes (`.vdb`, `.nvdb`) is
-/// white smoke of its densities.
+/// white smoke of its densities, or the surfaces of its level sets.
 /// [`LoadContext::import`] selects the camera of a file. From a [`PIPE`] or another pipe, what no other reader knows is our own format.
 ///
 /// # Errors
@@ -88,6 +88,7 @@ fn whole(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
         Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => scene_of_model(&source, context),
+        Some(Format::Vdb) if level_set::is_model(&source.bytes, path)? => scene_of_model(&source, context),
         Some(Format::Vdb) => smoke::scene(&source, context),
         None if is_stream(path, context) => toml::from_bytes(&source.bytes, path, context),
         None => Err(unknown_format(path)),
@@ -157,15 +158,11 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         Some(Format::Gltf) => gltf::model(source.bytes, path, context, scene),
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
-        Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair) => {
+        Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair | Format::Vdb) => {
             Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
         }
         Some(Format::Pbrt) => Err(of_scene("pbrt")),
         Some(Format::Mitsuba) => Err(of_scene("Mitsuba")),
-        Some(Format::Vdb) => {
-            let error = Error::new(ErrorKind::Unsupported, &Location::file(path), "a volume is no model");
-            Err(error.hint("name it as the `file` of the `density` of a medium, in [media.NAME]"))
-        }
         Some(Format::Toml) | None => Err(unknown_format(path)),
     }
 }

@@ -21,7 +21,7 @@ use crate::format::Format;
 use crate::scene::Scene;
 use crate::shape::{Mesh, Part};
 use crate::source::Source;
-use crate::{hair, obj, ply, stl, subdivision};
+use crate::{hair, level_set, obj, ply, stl, subdivision};
 
 /// Bytes that a byte of a model becomes, at most, while the model is parsed.
 pub(crate) const PARSED: u64 = 5;
@@ -48,10 +48,11 @@ pub(crate) fn of_source(
         Some(Format::Ply) => ply::from_bytes,
         Some(Format::Stl) => stl::from_bytes,
         Some(Format::Hair) => hair::from_bytes,
+        Some(Format::Vdb) => level_set::from_bytes,
         _ => {
             let message = "neither its name nor its content is that of a model";
             return Err(Error::new(ErrorKind::Unsupported, &file, message)
-                .hint("models are OBJ, PLY, STL or HAIR files"));
+                .hint("models are OBJ, PLY, STL or HAIR files, and level sets of VDB files"));
         }
     };
     let _parsing = context.budget.reserve(bytes.len() as u64 * PARSED, "the parsed model", &file)?;

@@ -1,7 +1,7 @@
 //! Reader for NanoVDB files (Museth 2021, "NanoVDB: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And
 //! Simulation").
 //!
-//! Files of segments with grids of version 32 of the format, of `float` or quantised (`Fp4`, `Fp8`, `Fp16`, `FpN`), that are fog volumes or of no
+//! Files of segments with grids of version 32 of the format, of `float` or quantised (`Fp4`, `Fp8`, `Fp16`, `FpN`), that are fog volumes, level sets or of no
 //! class. Offsets are those of `PNanoVDB.h`. Checksums and statistics are not read.
 
 mod directory;
@@ -10,12 +10,12 @@ mod leaf;
 mod tree;
 
 use self::directory::Entry;
-use self::header::Header;
+use self::header::{Header, class_name};
 use self::tree::Tree;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::volume::bytes::Bytes;
-use crate::volume::{Volume, cells};
+use crate::volume::{GridClass, Volume, cells};
 
 /// The content of a file.
 pub(crate) struct NanoVdb<'a> {
@@ -37,11 +37,16 @@ impl<'a> NanoVdb<'a> {
     ///
     /// # Errors
     /// As [`vdb::read`](crate::vdb::read).
-    pub(crate) fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
+    pub(crate) fn volume(
+        &self,
+        name: &str,
+        class: GridClass,
+        context: &mut LoadContext<'_>,
+    ) -> Result<Option<Volume>> {
         let Some(entry) = self.entries.iter().find(|entry| entry.name == name) else { return Ok(None) };
         let unpacked = entry.unpacked(self.at, &context.budget)?;
         let bytes = Bytes::new(&unpacked, self.at, " of the grid");
-        let header = Header::new(bytes)?;
+        let header = Header::new(bytes, class)?;
         let Tree { nodes, leaves, kind, .. } = Tree::new(bytes, header.kind)?;
         let (grid, first) = cells::grid(&nodes, |leaf| Ok(kind.values(leaves[leaf])), context, self.at)?;
         Ok(Some(Volume { grid, first, world_from_index: header.world_from_index, bounds: nodes.bounds }))
@@ -50,5 +55,11 @@ impl<'a> NanoVdb<'a> {
     /// The names of the grids.
     pub(crate) fn names(&self) -> Vec<&str> {
         self.entries.iter().map(|entry| &*entry.name).collect()
+    }
+
+    /// The names of the grids of a class.
+    pub(crate) fn names_of(&self, class: GridClass) -> Vec<&str> {
+        let is_of = |entry: &&Entry<'_>| GridClass::of_name(&class_name(entry.class)) == Some(class);
+        self.entries.iter().filter(is_of).map(|entry| &*entry.name).collect()
     }
 }

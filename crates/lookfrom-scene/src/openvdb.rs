@@ -1,7 +1,7 @@
 //! Reader for OpenVDB's files (Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology").
 //!
 //! Files with the versions 219 to 226 of the format (OpenVDB 1 to 13), of which one grid is read: a tree of `float` or `double`, also stored as
-//! `half`, that is a fog volume or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
+//! `half`, that is a fog volume, a level set or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
 //! `readTopology` and `readBuffers` of `tree/`. Statistics are not read: bounds are those of the active values.
 
 mod cursor;
@@ -22,7 +22,7 @@ use self::values::Packing;
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::volume::bytes::Bytes;
-use crate::volume::{Volume, cells, check_class};
+use crate::volume::{GridClass, Volume, cells};
 
 /// The first bytes of a file.
 pub(crate) const MAGIC: &[u8] = b" BDV\0\0\0\0";
@@ -38,6 +38,8 @@ pub(crate) struct OpenVdb<'a> {
 struct Prelude<'a> {
     packing: Packing,
     world_from_index: DMat4,
+    /// The name of its class, and where that stands.
+    class: (String, u64),
     /// At the tree.
     cursor: Cursor<'a>,
 }
@@ -56,7 +58,12 @@ impl<'a> OpenVdb<'a> {
     ///
     /// # Errors
     /// As [`vdb::read`](crate::vdb::read).
-    pub(crate) fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
+    pub(crate) fn volume(
+        &self,
+        name: &str,
+        expected: GridClass,
+        context: &mut LoadContext<'_>,
+    ) -> Result<Option<Volume>> {
         let named = |entry: &&Descriptor| entry.name() == name;
         let entries = &self.directory.entries;
         let entry = entries.iter().find(named);
@@ -64,7 +71,8 @@ impl<'a> OpenVdb<'a> {
             return Ok(None);
         };
         let mut precision = Precision::of(&entry.tree, self.bytes, entry.grid)?;
-        let Prelude { mut packing, world_from_index, mut cursor } = self.prelude(entry)?;
+        let Prelude { mut packing, world_from_index, class, mut cursor } = self.prelude(entry)?;
+        expected.check(&class.0, self.bytes, class.1)?;
         if let Some(parent) = &entry.parent {
             // Its tree is that of another grid.
             let parent = entries.iter().find(|entry| entry.unique == *parent).ok_or_else(|| {
@@ -86,6 +94,14 @@ impl<'a> OpenVdb<'a> {
         self.directory.entries.iter().map(Descriptor::name).collect()
     }
 
+    /// The names of the grids of a class, as far as they can be read.
+    pub(crate) fn names_of(&self, class: GridClass) -> Vec<&str> {
+        let is_of = |entry: &&Descriptor| {
+            self.prelude(entry).is_ok_and(|prelude| GridClass::of_name(&prelude.class.0) == Some(class))
+        };
+        self.directory.entries.iter().filter(is_of).map(Descriptor::name).collect()
+    }
+
     /// Reads what stands before a tree.
     fn prelude(&self, entry: &Descriptor) -> Result<Prelude<'a>> {
         let mut cursor = Cursor::new(self.bytes, entry.grid);
@@ -93,11 +109,14 @@ impl<'a> OpenVdb<'a> {
             Some(packing) => packing,
             None => Packing::read(&mut cursor)?,
         };
-        cursor.metadata(|name, at, value| match name {
-            b"class" => check_class(&String::from_utf8_lossy(value), self.bytes, at),
-            _ => Ok(()),
+        let mut class = ("unknown".to_owned(), entry.grid);
+        cursor.metadata(|name, at, value| {
+            if name == b"class" {
+                class = (String::from_utf8_lossy(value).into_owned(), at);
+            }
+            Ok(())
         })?;
         let world_from_index = map::read(&mut cursor)?;
-        Ok(Prelude { packing, world_from_index, cursor })
+        Ok(Prelude { packing, world_from_index, class, cursor })
     }
 }

@@ -7,9 +7,9 @@ use crate::files::LoadContext;
 use crate::nanovdb::NanoVdb;
 use crate::openvdb::{self, OpenVdb};
 use crate::suggest;
-use crate::volume::Volume;
+use crate::volume::{GridClass, Volume};
 
-/// Reads the first grid with this name.
+/// Reads the first grid with this name: a fog volume, or one of no class.
 ///
 /// # Errors
 /// `Io`; `Syntax` for what is no such file; `Invalid` if it has no such grid, or values that are not finite; `Unsupported` for grids of
@@ -18,7 +18,7 @@ pub fn read(path: &Path, name: &str, context: &mut LoadContext<'_>) -> Result<Vo
     let bytes = context.read(path)?;
     let at = Location::file(path);
     let file = VdbFile::new(&bytes, &at)?;
-    file.volume(name, context)?.ok_or_else(|| file.without(name))
+    file.volume(name, GridClass::Fog, context)?.ok_or_else(|| file.without(name))
 }
 
 /// Whether a content begins as a file of volumes.
@@ -38,6 +38,9 @@ enum VdbFormat<'a> {
 }
 
 impl<'a> VdbFile<'a> {
+    /// The name of the grid of densities, by custom.
+    pub const DENSITY: &'static str = "density";
+
     /// The content of a file, of which the directory is read; `at` is for messages.
     ///
     /// # Errors
@@ -50,14 +53,19 @@ impl<'a> VdbFile<'a> {
         Ok(Self { at, format })
     }
 
-    /// The first grid with this name, if there is one.
+    /// The first grid with this name, if there is one, which has to be of a class.
     ///
     /// # Errors
     /// As [`read`].
-    pub fn volume(&self, name: &str, context: &mut LoadContext<'_>) -> Result<Option<Volume>> {
+    pub fn volume(
+        &self,
+        name: &str,
+        class: GridClass,
+        context: &mut LoadContext<'_>,
+    ) -> Result<Option<Volume>> {
         match &self.format {
-            VdbFormat::Nano(file) => file.volume(name, context),
-            VdbFormat::Open(file) => file.volume(name, context),
+            VdbFormat::Nano(file) => file.volume(name, class, context),
+            VdbFormat::Open(file) => file.volume(name, class, context),
         }
     }
 
@@ -66,6 +74,14 @@ impl<'a> VdbFile<'a> {
         match &self.format {
             VdbFormat::Nano(file) => file.names(),
             VdbFormat::Open(file) => file.names(),
+        }
+    }
+
+    /// The names of the grids of a class.
+    pub fn names_of(&self, class: GridClass) -> Vec<&str> {
+        match &self.format {
+            VdbFormat::Nano(file) => file.names_of(class),
+            VdbFormat::Open(file) => file.names_of(class),
         }
     }
 

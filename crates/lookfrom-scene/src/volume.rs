@@ -4,6 +4,7 @@ pub(crate) mod blosc;
 pub(crate) mod bytes;
 pub(crate) mod cells;
 pub(crate) mod nodes;
+pub(crate) mod surface;
 pub(crate) mod zip;
 
 use std::sync::Arc;
@@ -48,15 +49,38 @@ impl Volume {
     }
 }
 
-/// # Errors
-/// `Unsupported` if a class, told at a position, is neither that of fog volumes nor none.
-pub(crate) fn check_class(class: &str, bytes: Bytes<'_>, at: u64) -> Result<()> {
-    if matches!(class, "unknown" | "fog volume") {
-        return Ok(());
+/// What the numbers of a grid are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GridClass {
+    /// Densities, or anything else that fills space: of fog volumes, and of grids without a class.
+    Fog,
+    /// Distances to a surface, negative inside.
+    LevelSet,
+}
+
+impl GridClass {
+    /// By the name that a class has in files.
+    pub(crate) fn of_name(name: &str) -> Option<Self> {
+        match name {
+            "unknown" | "fog volume" => Some(Self::Fog),
+            "level set" => Some(Self::LevelSet),
+            _ => None,
+        }
     }
-    let message = format!("a grid of the class {class:?}, expected a fog volume");
-    let error = bytes.error(at, ErrorKind::Unsupported, message);
-    Err(error.hint("densities are grids of the class \"fog volume\""))
+
+    /// # Errors
+    /// `Unsupported` if another class has this name, which stands at a position.
+    pub(crate) fn check(self, name: &str, bytes: Bytes<'_>, at: u64) -> Result<()> {
+        if Self::of_name(name) == Some(self) {
+            return Ok(());
+        }
+        let (expected, hint) = match self {
+            Self::Fog => ("a fog volume", "densities are grids of the class \"fog volume\""),
+            Self::LevelSet => ("a level set", "distances are grids of the class \"level set\""),
+        };
+        let message = format!("a grid of the class {name:?}, expected {expected}");
+        Err(bytes.error(at, ErrorKind::Unsupported, message).hint(hint))
+    }
 }
 
 /// # Errors

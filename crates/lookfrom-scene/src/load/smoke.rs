@@ -14,12 +14,10 @@ use crate::scene::{MaterialId, MediumId, MeshId, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 use crate::source::Source;
 use crate::vdb::VdbFile;
-use crate::volume::Volume;
+use crate::volume::{GridClass, Volume};
 use crate::warning::Warning;
 use crate::{composite, studio};
 
-/// The name of the grid of densities, by custom.
-const DENSITY: &str = "density";
 /// The optical thickness of a cube of the mean density with the volume of all that is not empty.
 const THICKNESS: f64 = 30.0;
 /// The part of the light that smoke scatters, of what does not pass it.
@@ -45,18 +43,18 @@ pub(super) fn scene(source: &Source<'_>, context: &mut LoadContext<'_>) -> Resul
 
 /// The grid that is shown: the densities, or else the first that can be.
 fn shown<'a>(file: &'a VdbFile<'_>, context: &mut LoadContext<'_>) -> Result<(&'a str, Volume)> {
-    if let Some(volume) = file.volume(DENSITY, context)? {
-        return Ok((DENSITY, volume));
+    if let Some(volume) = file.volume(VdbFile::DENSITY, GridClass::Fog, context)? {
+        return Ok((VdbFile::DENSITY, volume));
     }
     let mut first = None;
     for name in file.names() {
-        match file.volume(name, context) {
+        match file.volume(name, GridClass::Fog, context) {
             Ok(Some(volume)) => return Ok((name, volume)),
             Ok(None) => {}
             Err(error) => first = first.or(Some(error)),
         }
     }
-    Err(first.unwrap_or_else(|| file.without(DENSITY)))
+    Err(first.unwrap_or_else(|| file.without(VdbFile::DENSITY)))
 }
 
 fn of_volume(name: &str, volume: Volume, at: &Location) -> Scene {

@@ -17,10 +17,14 @@ const RAW: &[u8] = b"NanoVDB1";
 const SEGMENT: u64 = 16;
 /// Bytes of what a segment tells of a grid, before its name.
 const METADATA: u64 = 176;
+/// Where its class stands there.
+const CLASS: u64 = 36;
 
 /// A grid of a file.
 pub(super) struct Entry<'a> {
     pub(super) name: String,
+    /// The number of its class.
+    pub(super) class: u32,
     codec: u16,
     /// Bytes when it is unpacked.
     size: u64,
@@ -45,12 +49,12 @@ pub(super) fn entries(bytes: Bytes<'_>) -> Result<Vec<Entry<'_>>> {
             let length = u64::from(bytes.u32(at + 136)?);
             let name = bytes.slice(at + METADATA, length, "the name of a grid")?;
             let name = name.split(|&byte| byte == 0).next().unwrap_or_default();
-            grids.push((String::from_utf8_lossy(name).into_owned(), size, stored));
+            grids.push((String::from_utf8_lossy(name).into_owned(), bytes.u32(at + CLASS)?, size, stored));
             at += METADATA + length;
         }
-        for (name, size, length) in grids {
+        for (name, class, size, length) in grids {
             let stored = bytes.part(at, length, &format!("the grid {name:?}"))?;
-            entries.push(Entry { name, codec, size, stored });
+            entries.push(Entry { name, class, codec, size, stored });
             at += length;
         }
         if count == 0 {

@@ -5,7 +5,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::leaf::Kind;
 use crate::error::{ErrorKind, Result};
 use crate::volume::bytes::Bytes;
-use crate::volume::{check_class, check_map};
+use crate::volume::{GridClass, check_map};
 
 /// Bytes of the header; the tree follows.
 pub(super) const HEADER: u64 = 672;
@@ -52,7 +52,7 @@ pub(super) struct Header {
 impl Header {
     /// # Errors
     /// `Syntax` for what is no header, `Unsupported` for other versions, types and classes, `Invalid` for a map without an inverse.
-    pub(super) fn new(bytes: Bytes<'_>) -> Result<Self> {
+    pub(super) fn new(bytes: Bytes<'_>, expected: GridClass) -> Result<Self> {
         bytes.slice(0, HEADER, "the header of a grid")?;
         if !MAGICS.contains(&bytes.slice(0, 8, "a number")?) {
             let message = "expected a grid, which begins with `NanoVDB0` or `NanoVDB1`";
@@ -61,8 +61,7 @@ impl Header {
         check_version(bytes, 16)?;
         let unsupported = |at, message: String| bytes.error(at, ErrorKind::Unsupported, message);
         let [class, kind] = [bytes.u32(CLASS)?, bytes.u32(TYPE)?];
-        let class = CLASSES.get(class as usize).map_or_else(|| class.to_string(), ToString::to_string);
-        check_class(&class, bytes, CLASS)?;
+        expected.check(&class_name(class), bytes, CLASS)?;
         let kind = Kind::of(kind).ok_or_else(|| {
             let name = TYPES.get(kind as usize).map_or_else(|| kind.to_string(), |name| format!("{name:?}"));
             let message = format!("a grid of the type {name}, expected float, Fp4, Fp8, Fp16 or FpN");
@@ -70,6 +69,11 @@ impl Header {
         })?;
         Ok(Self { kind, world_from_index: map(bytes)? })
     }
+}
+
+/// The name of a class.
+pub(super) fn class_name(class: u32) -> String {
+    CLASSES.get(class as usize).map_or_else(|| class.to_string(), ToString::to_string)
 }
 
 /// The affine map from index space to the world.

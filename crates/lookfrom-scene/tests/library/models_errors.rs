@@ -23,7 +23,7 @@ fn files_that_are_no_models() {
     assert_eq!(said("a.obj", ""), "a.obj: the file is empty");
     assert_eq!(
         said("a.xyz", "nothing known"),
-        "a.xyz: neither its name nor its content is that of a model\n  help: models are OBJ, PLY, STL or HAIR files"
+        "a.xyz: neither its name nor its content is that of a model\n  help: models are OBJ, PLY, STL or HAIR files, and level sets of VDB files"
     );
     assert_eq!(
         said("a.obj", "<html>\n<body>\n"),

@@ -1,6 +1,7 @@
 //! OpenVDB files: what is read, and what is said of broken ones.
 
 mod broken;
+mod level_sets;
 mod writer;
 
 use std::path::{Path, PathBuf};

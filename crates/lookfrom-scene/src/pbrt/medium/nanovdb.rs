@@ -11,7 +11,7 @@ use crate::error::{ErrorKind, Location, Result};
 use crate::grid::Placed;
 use crate::medium::{Density, Medium, Temperature, Variation};
 use crate::vdb::VdbFile;
-use crate::volume::{Volume, placement};
+use crate::volume::{GridClass, Volume, placement};
 
 impl Reader<'_, '_> {
     /// Variation of a medium, in index space of the densities; `None` if its file is missing.
@@ -31,7 +31,8 @@ impl Reader<'_, '_> {
         };
         let at = Location::file(&path);
         let file = VdbFile::new(&bytes, &at).map_err(|error| p.place.blame(error))?;
-        let density = file.volume(name, self.context).map_err(|error| p.place.blame(error))?;
+        let density =
+            file.volume(name, GridClass::Fog, self.context).map_err(|error| p.place.blame(error))?;
         let density = density.ok_or_else(|| file.without(name))?;
         let mut bounds = density.bounds.map(IVec3::as_vec3);
         let mut temperature = None;
@@ -60,7 +61,9 @@ impl Reader<'_, '_> {
         density: &Volume,
     ) -> Result<Option<(Temperature, [Vec3; 2])>> {
         let name = p.string("temperaturename")?.unwrap_or("temperature");
-        let Some(volume) = file.volume(name, self.context).map_err(|error| p.place.blame(error))? else {
+        let Some(volume) =
+            file.volume(name, GridClass::Fog, self.context).map_err(|error| p.place.blame(error))?
+        else {
             if p.has("temperaturename") {
                 let message = format!("{}: the medium does not emit", file.without(name).message);
                 self.context.warn(&p.place.location(), message);

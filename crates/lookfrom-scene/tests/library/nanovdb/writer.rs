@@ -123,12 +123,13 @@ pub(crate) fn file(codec: u16, grids: &[Sketch]) -> Vec<u8> {
     file.extend((32_u32 << 21).to_le_bytes());
     file.extend((grids.len() as u16).to_le_bytes());
     file.extend(codec.to_le_bytes());
-    let grids: Vec<_> = grids.iter().map(|grid| (grid.name, grid.bytes())).collect();
+    let grids: Vec<_> = grids.iter().map(|grid| (grid, grid.bytes())).collect();
     let stored: Vec<Vec<u8>> = grids.iter().map(|(_, bytes)| packed(codec, bytes)).collect();
-    for ((name, bytes), stored) in grids.iter().zip(&stored) {
+    for ((Sketch { name, class, .. }, bytes), stored) in grids.iter().zip(&stored) {
         let mut metadata = vec![0; 176];
         metadata[..8].copy_from_slice(&(bytes.len() as u64).to_le_bytes());
         metadata[8..16].copy_from_slice(&(stored.len() as u64).to_le_bytes());
+        metadata[36..40].copy_from_slice(&class.to_le_bytes());
         metadata[136..140].copy_from_slice(&(name.len() as u32 + 1).to_le_bytes());
         file.extend(metadata);
         file.extend(name.as_bytes());

@@ -135,7 +135,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "composite scene text volume",
             "builder chain count duplicates model nanovdb openvdb shutter",
             "boolean hair ies npy stl subdivision tessellation validate vdb",
-            "obj ply",
+            "level_set obj ply",
             "mitsuba pbrt studio",
             "gltf",
             "format",
@@ -152,7 +152,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             ("a measured material has its tables", "material > measured"),
             (
                 "`model` has the parsers of numbers and words for all readers of text, and chooses among formats of models",
-                "spectrum > model, model > format, model > hair, model > obj, model > ply, model > source, model > stl, model > subdivision",
+                "spectrum > model, model > format, model > hair, model > level_set, model > obj, model > ply, model > source, model > stl, model > subdivision",
             ),
             (
                 "models in a scene, and their animations, are read as those of the command line",
