@@ -123,6 +123,14 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         self.values[self.place(cell)]
     }
 
+    /// Whether two cells are in bricks that were filled with one value together, or in the same brick; `false` outside of the grid.
+    pub(crate) fn share_block(&self, cells: [[i32; 3]; 2]) -> bool {
+        let cells = cells.map(|cell| cell.map(|coordinate| coordinate as u32));
+        let is_inside = |cell: &[u32; 3]| (0..3).all(|axis| cell[axis] < self.size[axis]);
+        let [a, b] = cells.map(|cell| is_inside(&cell).then(|| self.bricks[brick(self.count, cell)]));
+        a.is_some() && a == b
+    }
+
     /// The values of eight neighbouring cells, x fastest, of which the first has the least coordinates.
     #[inline(always)]
     pub fn corners(&self, first: [i32; 3]) -> [T; 8] {

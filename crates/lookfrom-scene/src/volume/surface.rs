@@ -103,11 +103,16 @@ fn for_crossings(grid: &Grid<f32>, mut of: impl FnMut(Crossing)) {
                     true => from[axis] = high[axis],
                     false => to[axis] = low[axis],
                 }
+                let step = if leaves { along } else { -along };
+                // A file may fill millions of bricks at once.
+                if low != high && grid.share_block([from, from + step].map(|cell| cell.to_array())) {
+                    continue;
+                }
                 for z in from.z..=to.z {
                     for y in from.y..=to.y {
                         for x in from.x..=to.x {
                             let inside = IVec3::new(x, y, z);
-                            let neighbor = if leaves { inside + along } else { inside - along };
+                            let neighbor = inside + step;
                             if !(grid.value(neighbor.to_array()) < 0.0) {
                                 of(Crossing { first: inside.min(neighbor), axis, leaves });
                             }

@@ -104,6 +104,22 @@ fn surfaces_at_the_bounds_are_closed() {
 }
 
 #[test]
+fn tiles_have_surfaces_where_others_begin() {
+    // A block of two tiles of 128³ cells, in bounds that are wider on all sides.
+    let mut draft = Draft { class: "level set", background: 1.0, ..Draft::new("block") };
+    draft.tiles[1].insert([0; 3], (-1.0, true));
+    draft.tiles[1].insert([128, 0, 0], (-1.0, false));
+    draft.tiles[2].insert([-8; 3], (1.0, true));
+    draft.tiles[2].insert([256, 128, 128], (1.0, true));
+    let (scene, _) = scene_of(file(&[draft]));
+    let mesh = &scene.expect("a model").meshes[0];
+    assert_eq!(mesh.triangles.len(), 2 * (2 * 128 * 128 + 4 * 256 * 128));
+    // Along its edges a quarter of a cell is cut off, at its corners a little more.
+    let (volume, expected) = (inside(mesh), 256.0 * 128.0 * 128.0 - 0.25 * 4.0 * (256.0 + 128.0 + 128.0));
+    assert!((volume - expected).abs() < 4.0, "{volume} {expected}");
+}
+
+#[test]
 fn level_sets_are_models_and_densities_are_not() {
     let ball = |name| level_set(name, |p| p.length() - 9.0);
     let mut smoke = Draft::new("density");
