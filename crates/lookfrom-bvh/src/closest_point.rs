@@ -41,7 +41,7 @@ pub struct ClosestPoint {
     pub primitive: u32,
     /// Number of the geometry in its tree.
     pub geometry: u32,
-    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
+    /// Number of the instance; [`NONE`](crate::NONE) where the geometry is not in an instance.
     pub instance: u32,
 }
 
@@ -67,7 +67,7 @@ pub struct ClosestPointF64 {
     pub primitive: u32,
     /// Number of the geometry in its tree.
     pub geometry: u32,
-    /// Number of the instance; [`NONE`] where the geometry is not in an instance.
+    /// Number of the instance; [`NONE`](crate::NONE) where the geometry is not in an instance.
     pub instance: u32,
 }
 
