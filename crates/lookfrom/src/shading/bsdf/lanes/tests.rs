@@ -156,7 +156,7 @@ fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
         return;
     }
     let (mut samples, mut values) = (0, 0);
-    for round in 0..4000 {
+    for round in 0..8000 {
         let index = |lane: usize| 8 * round + lane as u64;
         let bsdfs: [Bsdf; LANES] = std::array::from_fn(|lane| bsdf(index(lane)));
         let rows: [&B; LANES] = std::array::from_fn(|lane| B::of(&bsdfs[lane]).unwrap());
