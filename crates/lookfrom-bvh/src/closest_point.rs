@@ -11,7 +11,6 @@ use search::search;
 
 use crate::batch::for_each;
 use crate::bvh::Bvh;
-use crate::query::Query;
 use crate::settings::Settings;
 use crate::unrounded::{InTree, Unrounded};
 use crate::vector::wide;
@@ -97,7 +96,7 @@ impl Bvh {
     /// Distances are right to rounding in f32, and to about 10⁻¹⁵ of the triangle's or sphere's size. Any maps of
     /// instances are supported. Procedural shapes are ignored, because they do not define their surfaces. `None`
     /// where nothing is near enough, for a point that is NaN or beyond 2¹⁰⁰, and where `max_distance` is NaN or
-    /// negative. What moves is where it is at time 0; [`Query::closest_point`] has a time, and masks.
+    /// negative. What moves is where it is at time 0; [`Query::closest_point`](crate::Query::closest_point) has a time, and masks.
     ///
     /// ```
     /// use lookfrom_bvh::{Builder, Triangles};
@@ -112,7 +111,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
-        self.query().closest_point(point, max_distance)
+        closest_point(&Settings::new(self), point, max_distance)
     }
 
     /// [`Self::closest_point`] in double precision, on shapes as they were before they were rounded for the tree; those that move, at
@@ -172,7 +171,7 @@ impl Bvh {
         max_distance: f32,
         nearest: &mut [Option<ClosestPoint>],
     ) {
-        self.query().closest_points(points, max_distance, nearest);
+        for_each(points, nearest, |_, &point, nearest| *nearest = self.closest_point(point, max_distance));
     }
 
     /// True if [`Self::closest_point`] would find a point: stops at the first primitive that is near enough.
@@ -186,7 +185,7 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn is_near(&self, point: [f32; 3], max_distance: f32) -> bool {
-        self.query().is_near(point, max_distance)
+        is_near(&Settings::new(self), point, max_distance)
     }
 
     /// [`Self::is_near`] for each point, on several threads where there are many. The two slices should have equal
@@ -202,96 +201,20 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn are_near(&self, points: &[[f32; 3]], max_distance: f32, near: &mut [bool]) {
-        self.query().are_near(points, max_distance, near);
+        for_each(points, near, |_, &point, near| *near = self.is_near(point, max_distance));
     }
 }
 
-/// Closest points, of what the query's mask selects, at its times. Faces and origin primitives do not matter, and observers are not
-/// told.
-impl<O> Query<'_, O> {
-    /// [`Bvh::closest_point`].
-    ///
-    /// ```
-    /// use lookfrom_bvh::{Affine, Builder, Sphere};
-    /// let mut ball = Builder::new();
-    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
-    /// let mut builder = Builder::new();
-    /// builder.moving_instance(ball.build()?.into(), &[Affine::IDENTITY, up]);
-    /// let bvh = builder.build()?;
-    /// let nearest = bvh.query().time(0.5).closest_point([0.0, 0.0, 6.0], f32::INFINITY).unwrap();
-    /// assert_eq!((nearest.position, nearest.distance), ([0.0, 0.0, 3.0], 3.0));
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
-        closest_point(&self.settings, point, max_distance)
-    }
-
-    /// [`Bvh::closest_points`].
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Sphere};
-    /// # let mut builder = Builder::new();
-    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// builder.geometry_mask(ball, 0b10);
-    /// let bvh = builder.build()?;
-    /// let mut nearest = [None];
-    /// bvh.query().mask(0b01).closest_points(&[[3.0, 0.0, 0.0]], f32::INFINITY, &mut nearest);
-    /// assert!(nearest[0].is_none());
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn closest_points(
-        &self,
-        points: &[[f32; 3]],
-        max_distance: f32,
-        nearest: &mut [Option<ClosestPoint>],
-    ) {
-        let settings = self.settings;
-        for_each(points, nearest, |number, &point, nearest| {
-            *nearest = closest_point(&settings.from(number), point, max_distance);
-        });
-    }
-
-    /// [`Bvh::is_near`].
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Sphere};
-    /// # let mut builder = Builder::new();
-    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// builder.geometry_mask(ball, 0b10);
-    /// let bvh = builder.build()?;
-    /// let is_near = |mask| bvh.query().mask(mask).is_near([3.0, 0.0, 0.0], 2.0);
-    /// assert!(is_near(0b11) && !is_near(0b01));
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn is_near(&self, point: [f32; 3], max_distance: f32) -> bool {
-        is_near(&self.settings, point, max_distance)
-    }
-
-    /// [`Bvh::are_near`].
-    ///
-    /// ```
-    /// # use lookfrom_bvh::{Builder, Sphere};
-    /// # let mut builder = Builder::new();
-    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
-    /// builder.geometry_mask(ball, 0b10);
-    /// let mut near = [true];
-    /// builder.build()?.query().mask(0b01).are_near(&[[3.0, 0.0, 0.0]], 2.0, &mut near);
-    /// assert!(!near[0]);
-    /// # Ok::<(), lookfrom_bvh::BuildError>(())
-    /// ```
-    pub fn are_near(&self, points: &[[f32; 3]], max_distance: f32, near: &mut [bool]) {
-        let settings = self.settings;
-        for_each(points, near, |number, &point, near| {
-            *near = is_near(&settings.from(number), point, max_distance);
-        });
-    }
-}
-
-fn closest_point(settings: &Settings<'_>, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
+/// [`Bvh::closest_point`] of what a query sees, at the time of its first ray.
+pub(crate) fn closest_point(
+    settings: &Settings<'_>,
+    point: [f32; 3],
+    max_distance: f32,
+) -> Option<ClosestPoint> {
     search(settings, InTree, wide(point), max_distance.into(), false).map(Into::into)
 }
 
-fn is_near(settings: &Settings<'_>, point: [f32; 3], max_distance: f32) -> bool {
+/// [`Bvh::is_near`], as [`closest_point`].
+pub(crate) fn is_near(settings: &Settings<'_>, point: [f32; 3], max_distance: f32) -> bool {
     search(settings, InTree, wide(point), max_distance.into(), true).is_some()
 }

@@ -1,6 +1,8 @@
 //! Queries of a tree: the basic ones as its methods, all others by a builder.
 
+use crate::batch::for_each;
 use crate::bvh::Bvh;
+use crate::closest_point::{self, ClosestPoint};
 use crate::faces::Faces;
 use crate::observer::Observer;
 use crate::origin_primitive::OriginPrimitive;
@@ -35,7 +37,7 @@ use crate::{batch, single};
 #[derive(Clone, Copy, Debug)]
 #[must_use = "a query does nothing until it traces a ray"]
 pub struct Query<'a, O = ()> {
-    pub(crate) settings: Settings<'a>,
+    settings: Settings<'a>,
     observer: O,
 }
 
@@ -387,5 +389,87 @@ impl<O: Observer> Query<'_, O> {
         } else {
             R::occluded_many(&self.settings, rays, occluded);
         }
+    }
+}
+
+/// Closest points, of what the query's mask selects, at its times. Faces and origin primitives do not matter, and observers are not
+/// told.
+impl<O> Query<'_, O> {
+    /// [`Bvh::closest_point`].
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Sphere};
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// let mut builder = Builder::new();
+    /// builder.moving_instance(ball.build()?.into(), &[Affine::IDENTITY, up]);
+    /// let bvh = builder.build()?;
+    /// let nearest = bvh.query().time(0.5).closest_point([0.0, 0.0, 6.0], f32::INFINITY).unwrap();
+    /// assert_eq!((nearest.position, nearest.distance), ([0.0, 0.0, 3.0], 3.0));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
+        closest_point::closest_point(&self.settings, point, max_distance)
+    }
+
+    /// [`Bvh::closest_points`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Sphere};
+    /// # let mut builder = Builder::new();
+    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// builder.geometry_mask(ball, 0b10);
+    /// let bvh = builder.build()?;
+    /// let mut nearest = [None];
+    /// bvh.query().mask(0b01).closest_points(&[[3.0, 0.0, 0.0]], f32::INFINITY, &mut nearest);
+    /// assert!(nearest[0].is_none());
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn closest_points(
+        &self,
+        points: &[[f32; 3]],
+        max_distance: f32,
+        nearest: &mut [Option<ClosestPoint>],
+    ) {
+        let settings = self.settings;
+        for_each(points, nearest, |number, &point, nearest| {
+            *nearest = closest_point::closest_point(&settings.from(number), point, max_distance);
+        });
+    }
+
+    /// [`Bvh::is_near`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Sphere};
+    /// # let mut builder = Builder::new();
+    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// builder.geometry_mask(ball, 0b10);
+    /// let bvh = builder.build()?;
+    /// let is_near = |mask| bvh.query().mask(mask).is_near([3.0, 0.0, 0.0], 2.0);
+    /// assert!(is_near(0b11) && !is_near(0b01));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn is_near(&self, point: [f32; 3], max_distance: f32) -> bool {
+        closest_point::is_near(&self.settings, point, max_distance)
+    }
+
+    /// [`Bvh::are_near`].
+    ///
+    /// ```
+    /// # use lookfrom_bvh::{Builder, Sphere};
+    /// # let mut builder = Builder::new();
+    /// let ball = builder.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// builder.geometry_mask(ball, 0b10);
+    /// let mut near = [true];
+    /// builder.build()?.query().mask(0b01).are_near(&[[3.0, 0.0, 0.0]], 2.0, &mut near);
+    /// assert!(!near[0]);
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn are_near(&self, points: &[[f32; 3]], max_distance: f32, near: &mut [bool]) {
+        let settings = self.settings;
+        for_each(points, near, |number, &point, near| {
+            *near = closest_point::is_near(&settings.from(number), point, max_distance);
+        });
     }
 }

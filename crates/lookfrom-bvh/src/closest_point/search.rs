@@ -160,11 +160,11 @@ impl<S: Shapes> Search<'_, S> {
                     }
                     Leaf::Procedurals { .. } => {}
                     Leaf::Instances { first, count } => {
-                        let is_shown = |place: &u32| {
-                            self.settings.mask.is_none_or(|mask| outer.masks.shows_instance(*place, mask))
-                        };
-                        let shown: Vec<u32> = (first..first + count).filter(is_shown).collect();
-                        shown.into_iter().for_each(|place| self.enter(distance, place));
+                        for place in first..first + count {
+                            if self.settings.mask.is_none_or(|mask| outer.masks.shows_instance(place, mask)) {
+                                self.enter(distance, place);
+                            }
+                        }
                     }
                 },
             }
