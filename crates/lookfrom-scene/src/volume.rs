@@ -49,7 +49,7 @@ impl Volume {
     }
 }
 
-/// What the numbers of a grid are.
+/// The class of a grid (OpenVDB's `GridClass`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GridClass {
     /// Densities, or anything else that fills space: of fog volumes, and of grids without a class.

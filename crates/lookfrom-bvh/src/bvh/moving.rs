@@ -70,7 +70,7 @@ impl<'t> Part<'t> {
         }
     }
 
-    /// What a leaf holds.
+    /// A leaf: spheres, procedural shapes or instances.
     pub(crate) fn leaf(self, number: usize) -> Leaf {
         match self {
             Self::Standing(bvh) => bvh.leaves[number],

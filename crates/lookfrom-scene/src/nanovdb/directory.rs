@@ -17,7 +17,7 @@ const RAW: &[u8] = b"NanoVDB1";
 const SEGMENT: u64 = 16;
 /// Bytes of what a segment tells of a grid, before its name.
 const METADATA: u64 = 176;
-/// Where its class stands there.
+/// Offset of the class in it (`FileMetaData::gridClass`).
 const CLASS: u64 = 36;
 
 /// A grid of a file.
