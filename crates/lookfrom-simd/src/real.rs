@@ -137,6 +137,11 @@ pub trait Real:
     fn to_integer(self) -> Self::Bits;
     /// The entries of a table at each index.
     fn lookup(index: Self::Bits, at: impl Fn(usize) -> f32) -> Self;
+    /// A function of the numbers in each lane, one lane after the other; it is told which.
+    fn by_lane<const N: usize, const M: usize>(
+        numbers: [Self; N],
+        f: impl Fn(usize, [f32; N]) -> [f32; M],
+    ) -> [Self; M];
     /// A function of each number, one by one.
     fn map(self, f: impl Fn(f32) -> f32) -> Self;
     /// A function of each pair of numbers, one by one.
@@ -265,6 +270,13 @@ impl Real for f32 {
     #[inline(always)]
     fn lookup(index: u32, at: impl Fn(usize) -> f32) -> Self {
         at(index as usize)
+    }
+    #[inline(always)]
+    fn by_lane<const N: usize, const M: usize>(
+        numbers: [Self; N],
+        f: impl Fn(usize, [f32; N]) -> [f32; M],
+    ) -> [Self; M] {
+        f(0, numbers)
     }
     #[inline(always)]
     fn map(self, f: impl Fn(f32) -> f32) -> Self {
@@ -424,6 +436,36 @@ impl<S: Simd> Real for f32x8<S> {
             *number = at(index as usize);
         }
         Self::load_array(index.simd, all)
+    }
+    #[inline(always)]
+    fn by_lane<const N: usize, const M: usize>(
+        numbers: [Self; N],
+        f: impl Fn(usize, [f32; N]) -> [f32; M],
+    ) -> [Self; M] {
+        const { assert!(N > 0) };
+        let mut columns = [[0.0; 8]; N];
+        let mut k = 0;
+        while k < N {
+            columns[k] = numbers[k].into();
+            k += 1;
+        }
+        let mut results = [[0.0; 8]; M];
+        let mut lane = 0;
+        while lane < 8 {
+            let mut row = [0.0; N];
+            for (number, column) in row.iter_mut().zip(&columns) {
+                *number = column[lane];
+            }
+            for (column, result) in results.iter_mut().zip(f(lane, row)) {
+                column[lane] = result;
+            }
+            lane += 1;
+        }
+        let mut all = [numbers[0]; M];
+        for (all, column) in all.iter_mut().zip(results) {
+            *all = Self::load_array(numbers[0].simd, column);
+        }
+        all
     }
     #[inline(always)]
     fn map(self, f: impl Fn(f32) -> f32) -> Self {

@@ -76,8 +76,8 @@ impl Environment {
             numbers.push(("G", vec![f64::from(histogram.pdf(wi))]));
             numbers.push(("D", vec![f64::from(unguided)]));
             Derivation::new(
-                "pdf = w G + (1 − w) D, D the density without the guide; G = P(column) P(row) · 64² / 4 · l³, 0 where the guide has \
-                 seen nothing; l = |q|, q = wi / (|x| + |y| + |z|); column = ⌊32 (q_x + 1)⌋, row = ⌊32 (q_y + 1)⌋, where q_z < 0 with \
+                "pdf = w G + (1 − w) D, D the density without the guide; G = P(column) P(row) · 32² / 4 · l³, 0 where the guide has \
+                 seen nothing; l = |q|, q = wi / (|x| + |y| + |z|); column = ⌊16 (q_x + 1)⌋, row = ⌊16 (q_y + 1)⌋, where q_z < 0 with \
                  (1 − |q_y|, 1 − |q_x|) and the signs of q",
                 numbers,
             )

@@ -121,6 +121,8 @@ macro_rules! bsdf_classes {
                 OpenPbr(OpenPbrSurface),
                 /// A fibre of hair.
                 Hair(Hair),
+                /// A measured material.
+                Measured(Measured),
             }
             one_by_one {
                 /// Lambertian reflection and transmission.
@@ -129,8 +131,6 @@ macro_rules! bsdf_classes {
                 ThinDielectric(ThinDielectric),
                 /// Disney's principled surface.
                 Disney(Disney),
-                /// A measured material.
-                Measured(Measured),
                 /// Whitted's model.
                 Whitted(WhittedBsdf),
                 /// The boundary of a medium in which light diffuses.

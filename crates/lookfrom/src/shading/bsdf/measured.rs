@@ -7,281 +7,290 @@
 
 mod half_angle;
 mod interpolant;
+mod tables;
 
 use std::f32::consts::{FRAC_2_PI, PI};
-use std::fmt;
-use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
-use lookfrom_scene::measured as written;
-use lookfrom_scene::measured::Tables;
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
-use self::half_angle::HalfAngleValues;
-use self::interpolant::{Between, Interpolant};
-use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, same_side};
+pub use self::tables::MeasuredTables;
+use self::tables::Values;
+use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
+use super::{BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, same_side};
 use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
+use crate::core::lanes::{LANES, by_lane, gather_four};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
-/// The tables of a measured material, compiled.
-pub struct MeasuredTables {
-    is_isotropic: bool,
-    /// The density of visible normals.
-    vndf: Interpolant<2>,
-    /// The density of the numbers that choose one.
-    luminance: Interpolant<2>,
-    values: Values,
-    digest: String,
-}
-
-/// From directions to `f`.
-enum Values {
-    Adaptive(Box<Reflectances>),
-    HalfAngle(HalfAngleValues),
-}
-
-/// The reflectance s over the numbers that choose a normal, and what makes `f` of it.
-struct Reflectances {
-    ndf: Interpolant<0>,
-    sigma: Interpolant<0>,
-    spectra: Interpolant<3>,
-    /// Reflectances of red, green and blue, as wavelengths 0, 1 and 2 of a table.
-    colors: Interpolant<3>,
-}
-
-impl fmt::Debug for MeasuredTables {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "MeasuredTables({})", self.digest)
-    }
-}
-
-impl MeasuredTables {
-    /// Compiles tables. For each wavelength of RGL's there is the colour, in linear Rec. 709, of what is 1 there and 0 at its neighbours.
-    pub fn new(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> Self {
-        let (is_isotropic, digest) = (written.is_isotropic(), written.digest.clone());
-        match &written.tables {
-            Tables::Adaptive(tables) => {
-                let written::Adaptive { phi, theta, wavelengths, .. } = &**tables;
-                Self {
-                    is_isotropic,
-                    vndf: Interpolant::density(&tables.vndf, [phi, theta]),
-                    luminance: Interpolant::density(&tables.luminance, [phi, theta]),
-                    values: Values::Adaptive(Box::new(Reflectances {
-                        ndf: Interpolant::plain(&tables.ndf, []),
-                        sigma: Interpolant::plain(&tables.sigma, []),
-                        spectra: Interpolant::plain(&tables.spectra, [phi, theta, wavelengths]),
-                        colors: Interpolant::plain(
-                            &colors(tables, of_wavelengths),
-                            [phi, theta, &[0.0, 1.0, 2.0]],
-                        ),
-                    })),
-                    digest,
-                }
-            }
-            Tables::HalfAngle(tables) => {
-                let values = HalfAngleValues::new(tables);
-                let [vndf, luminance] = values.densities();
-                Self { is_isotropic, vndf, luminance, values: Values::HalfAngle(values), digest }
-            }
-        }
-    }
-
-    /// The compiled tables of a file, which are kept as long as the process, once for each content: BSDFs are copied, and refer to them.
-    /// As [`Self::new`].
-    pub fn kept(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> &'static Self {
-        static KEPT: Mutex<Vec<&'static MeasuredTables>> = Mutex::new(Vec::new());
-        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-        match kept.iter().find(|tables| tables.digest == written.digest) {
-            Some(tables) => tables,
-            None => {
-                let tables: &'static Self = Box::leak(Box::new(Self::new(written, of_wavelengths)));
-                kept.push(tables);
-                tables
-            }
-        }
-    }
-
-    /// The fraction of light from all around that is reflected straight up, in linear Rec. 709.
-    pub(crate) fn albedo(&'static self) -> [f32; 3] {
-        const COUNT: u32 = 256;
-        let bsdf = Measured::new(self, None);
-        let numbers =
-            |index: u32| [(index as f32 + 0.5) / COUNT as f32, index.reverse_bits() as f32 * 2_f32.powi(-32)];
-        let mut sum = Spectrum::BLACK;
-        for sample in (0..COUNT)
-            .filter_map(|index| bsdf.sample(Vec3::Z, 0.0, numbers(index), Mode::Radiance, Lobes::ALL))
-            .filter(|sample| sample.pdf > 0.0)
-        {
-            sum += sample.f * (sample.wi.z.abs() / sample.pdf / COUNT as f32);
-        }
-        sum.rgb()
-    }
-}
-
-/// Spectra as colours, in place of three wavelengths.
-fn colors(written: &written::Adaptive, of_wavelengths: &[[f32; 3]]) -> written::Table {
-    let area = written.spectra.area();
-    let count = written.wavelengths.len();
-    let mut values = Vec::with_capacity(written.spectra.values.len() / count * 3);
-    for tables in written.spectra.values.chunks(area * count) {
-        for channel in 0..3 {
-            values.extend((0..area).map(|place| {
-                let terms = of_wavelengths.iter().enumerate();
-                terms.map(|(k, color)| color[channel] * tables[k * area + place]).sum::<f32>().max(0.0)
-            }));
-        }
-    }
-    written::Table { size: written.spectra.size, values }
-}
-
-/// A measured material, for the colours or wavelengths of a sample.
+/// A measured material, for the colours or wavelengths of a sample; `T` has tables for each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured {
-    tables: &'static MeasuredTables,
-    /// The wavelengths of the lanes in nm; `None` for red, green and blue.
-    wavelengths: Option<[f32; 4]>,
+pub struct Measured<R = f32, T = [&'static MeasuredTables; 1]> {
+    tables: T,
+    /// 1 where the tables are of an isotropic material, else 0.
+    is_isotropic: R,
+    /// 1 where the tables are those of the paper, else 0.
+    is_adaptive: R,
+    /// The wavelengths of the lanes of spectra in nm; `None` for red, green and blue.
+    wavelengths: Option<[R; 4]>,
 }
 
 impl PartialEq for Measured {
     fn eq(&self, other: &Self) -> bool {
-        std::ptr::eq(self.tables, other.tables) && self.wavelengths == other.wavelengths
+        std::ptr::eq(self.tables[0], other.tables[0]) && self.wavelengths == other.wavelengths
     }
 }
 
-/// An outgoing direction of tables: of a material seen from outside.
-struct Seen {
-    phi: f32,
-    theta: f32,
-    by_direction: [Between<2>; 2],
+/// A measured material seen from an outgoing direction.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenMeasured<R: Real> {
+    /// Mirrored through the point to the outside, where it is inside.
+    wo: Vector<R>,
+    is_inside: R::Mask,
+    theta: R,
+    phi: R,
+}
+
+/// Directions on the outside, by the numbers that choose their half vector, and its place.
+struct Reflected<R> {
+    wi: Vector<R>,
+    u: [R; 2],
+    normal: [R; 2],
 }
 
 impl Measured {
     /// By its tables, for the wavelengths of a sample in nm; without them, for red, green and blue.
     pub fn new(tables: &'static MeasuredTables, wavelengths: Option<[f32; 4]>) -> Self {
-        Self { tables, wavelengths }
+        let is_adaptive = matches!(tables.values, Values::Adaptive(_));
+        let [is_isotropic, is_adaptive] = [tables.is_isotropic, is_adaptive].map(f32::from);
+        Self { tables: [tables], is_isotropic, is_adaptive, wavelengths }
     }
 
-    fn seen(&self, wo: Vec3) -> Seen {
+    /// The same for other wavelengths.
+    #[cfg(test)]
+    pub(super) fn at(self, wavelengths: Option<[f32; 4]>) -> Self {
+        Self { wavelengths, ..self }
+    }
+}
+
+impl<R: Real, T: AsRef<[&'static MeasuredTables]>> Measured<R, T> {
+    #[inline(always)]
+    fn seen_from(&self, wo: Vector<R>) -> SeenMeasured<R> {
+        let is_inside = wo.z.lt(wo.z.like(0.0));
+        let wo = wo.negate_where(is_inside);
         let (theta, phi) = angles(wo);
-        let by_direction =
-            [self.tables.vndf.between([phi, theta]), self.tables.luminance.between([phi, theta])];
-        Seen { phi, theta, by_direction }
+        SeenMeasured { wo, is_inside, theta, phi }
+    }
+
+    /// The angle by which normals are turned in tables: those of isotropic materials are all seen from φ = 0.
+    #[inline(always)]
+    fn turn(&self, seen: &SeenMeasured<R>) -> R {
+        let zero = seen.phi.like(0.0);
+        R::select(self.is_isotropic.gt(zero), seen.phi, zero)
     }
 
     /// The place of a normal in tables that are seen from a direction.
-    fn place_of_normal(&self, seen: &Seen, wm: Vec3) -> [f32; 2] {
+    #[inline(always)]
+    fn place_of_normal(&self, seen: &SeenMeasured<R>, wm: Vector<R>) -> [R; 2] {
         let (theta, phi) = angles(wm);
-        let [x, y] = place(theta, if self.tables.is_isotropic { phi - seen.phi } else { phi });
-        [x, y - y.floor()]
+        let [x, y] = place(theta, phi - self.turn(seen));
+        [x, y - Float::floor(y)]
     }
 
-    /// `f` for directions on the outside, by the numbers that choose their half vector, and its place.
-    fn value(&self, seen: &Seen, u: [f32; 2], normal: [f32; 2], [wo, wi]: [Vec3; 2]) -> Spectrum {
-        match &self.tables.values {
-            Values::Adaptive(values) => values.value(seen, u, normal, wi, self.wavelengths),
-            Values::HalfAngle(values) => values.value(wo, wi, self.wavelengths),
+    /// `f` in the lanes of a mask; any numbers in others.
+    #[inline(always)]
+    fn value(&self, seen: &SeenMeasured<R>, reflected: &Reflected<R>, mask: R::Mask) -> Spectrum<R> {
+        let Reflected { wi, u, normal } = *reflected;
+        let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
+        let is_adaptive = self.is_adaptive.gt(zero);
+        let of_wo = place(seen.theta, seen.phi);
+        let halves = match is_adaptive.all() {
+            true => [zero; 3],
+            false => half_angle::place(seen.wo, wi),
+        };
+        let wavelengths = self.wavelengths.unwrap_or([zero; 4]);
+        let is_spectral = self.wavelengths.is_some();
+        let is_wanted = R::select(mask, one, zero);
+        let numbers = [
+            [seen.phi, seen.theta, u[0], u[1]],
+            [normal[0], normal[1], of_wo[0], of_wo[1]],
+            [halves[0], halves[1], halves[2], is_wanted],
+            wavelengths,
+        ];
+        let [a, b, c, d, ndf, sigma] = R::by_lane(
+            flat(numbers),
+            #[inline(always)]
+            |lane, [phi, theta, u, v, x, y, s, t, h, d, difference, is_wanted, nm @ ..]| {
+                if is_wanted == 0.0 {
+                    return [0.0; 6];
+                }
+                let wavelengths = is_spectral.then_some(nm);
+                match &self.tables.as_ref()[lane].values {
+                    Values::Adaptive(values) => {
+                        let Spectrum([a, b, c, d]) = values.reflectances([phi, theta], [u, v], wavelengths);
+                        let [ndf, sigma] = values.facets([x, y], [s, t]);
+                        [a, b, c, d, ndf, sigma]
+                    }
+                    Values::HalfAngle(values) => {
+                        let Spectrum([a, b, c, e]) = values.value([h, d, difference], wavelengths);
+                        [a, b, c, e, 0.0, 0.0]
+                    }
+                }
+            },
+        );
+        let f = Spectrum([a, b, c, d]);
+        let sigma = Float::max(sigma, zero.like(f32::MIN_POSITIVE));
+        let factor = ndf / (sigma * 4.0 * Float::abs(wi.z));
+        Spectrum::select(is_adaptive, f * factor, f)
+    }
+
+    /// The BSDF and the density. Not inlined, since it is needed several times.
+    #[inline(never)]
+    fn scattered(&self, seen: &SeenMeasured<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+        wi.z.at_level(
+            #[inline(always)]
+            || {
+                let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
+                let wi = wi.negate_where(seen.is_inside);
+                let (wm, exists) = (seen.wo + wi).try_normalize();
+                let is_lit = exists & same_side(seen.wo, wi);
+                if !is_lit.any() {
+                    return (Spectrum::splat(zero), zero);
+                }
+                let normal = self.place_of_normal(seen, wm);
+                let is_wanted = R::select(is_lit, one, zero);
+                let [u, v, density] = R::by_lane(
+                    [seen.phi, seen.theta, normal[0], normal[1], is_wanted],
+                    #[inline(always)]
+                    |lane, [phi, theta, x, y, is_wanted]| match is_wanted == 0.0 {
+                        true => [0.0; 3],
+                        false => self.tables.as_ref()[lane].invert([phi, theta], [x, y]),
+                    },
+                );
+                let f = self.value(seen, &Reflected { wi, u: [u, v], normal }, is_lit);
+                let pdf = density / jacobian(seen.wo, wm, normal);
+                (Spectrum::select(is_lit, f, Spectrum::splat(zero)), R::select(is_lit, pdf, zero))
+            },
+        )
+    }
+
+    #[inline(always)]
+    fn sampled(&self, seen: &SeenMeasured<R>, u: [R; 2]) -> DirectionSample<R> {
+        let (zero, one) = (u[0].like(0.0), u[0].like(1.0));
+        let [x, y, u, v, density] = R::by_lane(
+            [seen.phi, seen.theta, u[0], u[1]],
+            #[inline(always)]
+            |lane, [phi, theta, u, v]| self.tables.as_ref()[lane].sample([phi, theta], [u, v]),
+        );
+
+        // The normal, and what it reflects.
+        let normal = [x, y];
+        let wm = normal_at(normal, self.turn(seen));
+        let wi = wm * (seen.wo.dot(wm) * 2.0) - seen.wo;
+        let is_valid = density.gt(zero) & same_side(seen.wo, wi);
+        let no = is_valid.like(false);
+        DirectionSample {
+            f: self.value(seen, &Reflected { wi, u: [u, v], normal }, is_valid),
+            wi: wi.normalize().negate_where(seen.is_inside),
+            pdf: density / jacobian(seen.wo, wm, normal),
+            eta: one,
+            is_specular: no,
+            is_diffuse: no,
+            is_transmission: no,
+            is_valid,
         }
     }
 }
 
-impl Reflectances {
-    fn value(
-        &self,
-        seen: &Seen,
-        u: [f32; 2],
-        normal: [f32; 2],
-        wi: Vec3,
-        wavelengths: Option<[f32; 4]>,
-    ) -> Spectrum {
-        let reflected = match wavelengths {
-            Some(wavelengths) => {
-                let at = |nm| self.spectra.value(u, &self.spectra.between([seen.phi, seen.theta, nm]));
-                Spectrum(wavelengths.map(|nm| at(nm).max(0.0)))
-            }
-            None => {
-                let at = |channel: f32| {
-                    self.colors.value(u, &self.colors.between([seen.phi, seen.theta, channel]))
-                };
-                Spectrum::from_rgb([0.0, 1.0, 2.0].map(at))
-            }
-        };
-        let sigma = self.sigma.value(place(seen.theta, seen.phi), &self.sigma.between([]));
-        let ndf = self.ndf.value(normal, &self.ndf.between([]));
-        reflected * (ndf / (4.0 * sigma.max(f32::MIN_POSITIVE) * wi.z.abs()))
-    }
+/// Rows of four numbers, one after the other.
+#[inline(always)]
+fn flat<R: Copy>([[a, b, c, d], [e, f, g, h], [i, j, k, l], [m, n, o, p]]: [[R; 4]; 4]) -> [R; 16] {
+    [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
 }
 
 /// The sine of a direction's angle to the normal.
-fn across(w: Vec3) -> f32 {
-    (w.x * w.x + w.y * w.y).sqrt()
+#[inline(always)]
+fn across<R: Real>(w: Vector<R>) -> R {
+    Float::sqrt(w.x * w.x + w.y * w.y)
 }
 
 /// The angles θ to the normal and φ around it, −π … π.
-fn angles(w: Vec3) -> (f32, f32) {
-    let turns = |y, x| angle_in_turns::<f32>(y, x) * (2.0 * PI);
-    (turns(across(w), w.z), turns(w.y, w.x))
+#[inline(always)]
+fn angles<R: Real>(w: Vector<R>) -> (R, R) {
+    (angle_in_turns(across(w), w.z) * (2.0 * PI), angle_in_turns(w.y, w.x) * (2.0 * PI))
 }
 
 /// The place of a direction in tables.
-fn place(theta: f32, phi: f32) -> [f32; 2] {
-    [(theta * FRAC_2_PI).max(0.0).sqrt(), phi / (2.0 * PI) + 0.5]
+#[inline(always)]
+fn place<R: Real>(theta: R, phi: R) -> [R; 2] {
+    [Float::sqrt(Float::max(theta * FRAC_2_PI, theta.like(0.0))), phi / (2.0 * PI) + 0.5]
 }
 
 /// The direction of a place in tables, turned by φ.
-fn normal_at([x, y]: [f32; 2], phi: f32) -> Vec3 {
+#[inline(always)]
+fn normal_at<R: Real>([x, y]: [R; 2], phi: R) -> Vector<R> {
     let (sin_phi, cos_phi) = sin_cos_of_turns(y - 0.5 + phi / (2.0 * PI));
-    let (sin, cos) = sin_cos_of_turns(0.25 * x * x);
-    Vec3::new(sin * cos_phi, sin * sin_phi, cos)
+    let (sin, cos) = sin_cos_of_turns(x * 0.25 * x);
+    Vector { x: sin * cos_phi, y: sin * sin_phi, z: cos }
 }
 
 /// What one density of normals in tables is over solid angle of incident directions.
-fn jacobian(wo: Vec3, wm: Vec3, [x, _]: [f32; 2]) -> f32 {
-    4.0 * wo.dot(wm) * (2.0 * PI * PI * x * across(wm)).max(1e-6)
+#[inline(always)]
+fn jacobian<R: Real>(wo: Vector<R>, wm: Vector<R>, [x, _]: [R; 2]) -> R {
+    let area = x * (2.0 * PI * PI) * across(wm);
+    wo.dot(wm) * 4.0 * Float::max(area, area.like(1e-6))
 }
 
-/// Both directions on the outside, and their half vector; `None` where light does not go.
-fn on_the_outside(wo: Vec3, wi: Vec3) -> Option<(Vec3, Vec3, Vec3)> {
-    if !same_side(wo, wi) {
-        return None;
+impl<R: Real, T: AsRef<[&'static MeasuredTables]>> LaneBsdf<R> for Measured<R, T> {
+    type Prepared = SeenMeasured<R>;
+
+    #[inline(always)]
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_lobe: false, ..ClassTraits::PLAIN }
     }
-    let (wo, wi) = if wo.z < 0.0 { (-wo, -wi) } else { (wo, wi) };
-    let wm = (wo + wi).try_normalize()?;
-    Some((wo, wi, wm))
+
+    #[inline(always)]
+    fn prepare(&self, wo: Vector<R>) -> SeenMeasured<R> {
+        self.seen_from(wo)
+    }
+
+    #[inline(always)]
+    fn f(&self, seen: &SeenMeasured<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.scattered(seen, wi).0
+    }
+
+    #[inline(always)]
+    fn pdf(&self, seen: &SeenMeasured<R>, wi: Vector<R>) -> R {
+        self.scattered(seen, wi).1
+    }
+
+    #[inline(always)]
+    fn f_and_pdf(&self, seen: &SeenMeasured<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+        self.scattered(seen, wi)
+    }
+
+    #[inline(always)]
+    fn sample(&self, seen: &SeenMeasured<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sampled(seen, u)
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        self.is_adaptive.lt(self.is_adaptive).like(true)
+    }
 }
 
 impl ScatteringFunction for Measured {
     fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        let Some((wo, wi, wm)) = on_the_outside(wo, wi) else { return Spectrum::BLACK };
-        let seen = self.seen(wo);
-        let normal = self.place_of_normal(&seen, wm);
-        let (u, _) = self.tables.vndf.invert(normal, &seen.by_direction[0]);
-        self.value(&seen, u, normal, [wo, wi])
+        self.scattered(&self.seen_from(wo.into()), wi.into()).0
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        let Some((wo, _, wm)) = on_the_outside(wo, wi) else { return 0.0 };
-        let seen = self.seen(wo);
-        let normal = self.place_of_normal(&seen, wm);
-        let (u, of_normal) = self.tables.vndf.invert(normal, &seen.by_direction[0]);
-        of_normal * self.tables.luminance.pdf(u, &seen.by_direction[1]) / jacobian(wo, wm, normal)
+        self.scattered(&self.seen_from(wo.into()), wi.into()).1
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        let is_inside = wo.z < 0.0;
-        let wo = if is_inside { -wo } else { wo };
-        let seen = self.seen(wo);
-        let (u, of_luminance) = self.tables.luminance.sample(u, &seen.by_direction[1])?;
-        let (normal, of_normal) = self.tables.vndf.sample(u, &seen.by_direction[0])?;
-
-        // The normal, and what it reflects.
-        let wm = normal_at(normal, if self.tables.is_isotropic { seen.phi } else { 0.0 });
-        let wi = wm * (2.0 * wo.dot(wm)) - wo;
-        if !same_side(wo, wi) {
-            return None;
-        }
-        let pdf = of_luminance * of_normal / jacobian(wo, wm, normal);
-        let f = self.value(&seen, u, normal, [wo, wi]);
-        let wi = wi.normalize();
-        Some(BsdfSample::new(if is_inside { -wi } else { wi }, f, pdf, self.lobes()))
+        self.sampled(&self.seen_from(wo.into()), u).scalar(LaneBsdf::traits(self))
     }
 
     fn lobes(&self) -> Lobes {
@@ -293,5 +302,24 @@ impl ScatteringFunction for Measured {
             vec![("wavelengths", super::Parameter::Numbers(wavelengths.to_vec()))]
         });
         Description { kind: "measured", does: "reflects light as a material was measured", numbers: lanes }
+    }
+}
+
+impl RowBsdf for Measured {
+    type Lanes<S: Simd> = Measured<f32x8<S>, [&'static MeasuredTables; LANES]>;
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        // All paths of a picture are of colours, or all of wavelengths.
+        let wavelengths = rows[0].wavelengths.map(
+            #[inline(always)]
+            |_| gather_four(simd, &by_lane!(lane => rows[lane].wavelengths.unwrap_or_default())),
+        );
+        Measured {
+            tables: by_lane!(lane => rows[lane].tables[0]),
+            is_isotropic: f32x8::load_array(simd, by_lane!(lane => rows[lane].is_isotropic)),
+            is_adaptive: f32x8::load_array(simd, by_lane!(lane => rows[lane].is_adaptive)),
+            wavelengths,
+        }
     }
 }

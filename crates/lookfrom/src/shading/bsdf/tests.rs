@@ -80,7 +80,7 @@ fn hair(h: f32, betas: [f32; 2]) -> Bsdf {
 }
 
 /// A material of tables made here, seen from so many azimuths: facets of several slopes, most of them flat.
-fn measured(azimuths: usize) -> Bsdf {
+pub(super) fn measured(azimuths: usize) -> Bsdf {
     use lookfrom_scene::measured::{Adaptive, Measured, Table, Tables};
     let theta = vec![0.0, 0.7, 1.5];
     let phi: Vec<f32> =
@@ -123,7 +123,7 @@ fn measured(azimuths: usize) -> Bsdf {
 }
 
 /// A material by half vectors: gloss with a colour on a matte ground, without light beside its horizon.
-fn merl() -> Bsdf {
+pub(super) fn merl() -> Bsdf {
     use lookfrom_scene::measured::{HalfAngle, Measured, Tables};
     let counts = [12, 9, 10];
     let value = |cell: usize| {

@@ -8,6 +8,7 @@ use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
+use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
@@ -33,6 +34,7 @@ impl Material {
             MaterialKind::OpenPbr(look) => (!look.is_solid).then_some(BsdfClass::OpenPbr),
             MaterialKind::Plastic(_) => Some(BsdfClass::Plastic),
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
+            MaterialKind::Measured(_) => Some(BsdfClass::Measured),
             _ => None,
         }
     }
@@ -172,6 +174,14 @@ impl MaterialRow for Hair {
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
         let MaterialKind::Hair(hair) = kind else { return None };
         Some(evaluator.hair(hair))
+    }
+}
+
+impl MaterialRow for Measured {
+    #[inline]
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+        let MaterialKind::Measured(tables) = kind else { return None };
+        Some(evaluator.measured(tables))
     }
 }
 

@@ -8,12 +8,13 @@ use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
+use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::{Interface, Plastic};
 use crate::shading::bsdf::principled::film::ThinFilm;
 use crate::shading::bsdf::principled::open_pbr::OpenPbr;
 use crate::shading::bsdf::principled::{Gltf, Principled};
-use crate::shading::bsdf::tests::of_any_kind;
+use crate::shading::bsdf::tests::{measured, merl, of_any_kind};
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
@@ -302,6 +303,19 @@ fn plastic_in_lanes() {
             plastic.regularize();
         }
         Bsdf::Plastic(plastic)
+    });
+}
+
+#[test]
+fn measured_materials_in_lanes() {
+    let kinds = [measured(1), measured(5), merl()];
+    compare::<Measured>(|index| {
+        // Of one kind in some rounds; eight are in one mode.
+        let round = index / 8;
+        let kind = if round.is_multiple_of(3) { round / 3 } else { hash::pair(192, index) >> 20 };
+        let Bsdf::Measured(measured) = kinds[kind as usize % kinds.len()] else { panic!("another class") };
+        let lambda = std::array::from_fn(|k| 340.0 + 400.0 * unit(193 + k as u64, index));
+        Bsdf::Measured(measured.at(round.is_multiple_of(2).then_some(lambda)))
     });
 }
 

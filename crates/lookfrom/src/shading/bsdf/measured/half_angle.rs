@@ -3,8 +3,8 @@
 //! A distribution of normals is the eigenvector of what comes back to where light comes from (Dupuy et al. 2015, "Extracting
 //! Microfacet-based BRDF Parameters from Arbitrary Materials with Power Iterations"): there `f = D(ω) / (4 σ(ω) cos θ)` but for a factor.
 
-use glam::Vec3;
 use lookfrom_scene::measured::{HalfAngle, Table};
+use lookfrom_simd::{Float, Real};
 
 use super::interpolant::Interpolant;
 use super::{across, jacobian, normal_at};
@@ -12,6 +12,7 @@ use crate::core::color::Unbounded;
 use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
 use crate::core::math::luminance;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
 /// Numbers of angles θ, from 0 to a quarter turn, for which there are densities.
 const ANGLES: usize = 16;
@@ -39,36 +40,16 @@ impl HalfAngleValues {
         Self { counts: written.counts, values: written.values.clone() }
     }
 
-    /// `f` for directions on the outside, linear between the middles of cells.
-    pub(super) fn value(&self, wo: Vec3, wi: Vec3, wavelengths: Option<[f32; 4]>) -> Spectrum {
-        let rgb = self.color(wo, wi);
+    /// `f` at a [`place`] of two directions, for wavelengths or for red, green and blue.
+    pub(super) fn value(&self, place: [f32; 3], wavelengths: Option<[f32; 4]>) -> Spectrum {
+        let rgb = self.between(place);
         match wavelengths {
             Some(wavelengths) => Unbounded::from_rgb(rgb).at(&wavelengths),
             None => Spectrum::from_rgb(rgb),
         }
     }
 
-    fn color(&self, wo: Vec3, wi: Vec3) -> [f32; 3] {
-        let wm = (wo + wi).normalize_or_zero();
-
-        // Light in a frame of the half vector, whose x points away from the normal.
-        let (sin_h, cos_h) = (across(wm), wm.z);
-        let (cos_phi, sin_phi) = if sin_h > 0.0 { (wm.x / sin_h, wm.y / sin_h) } else { (1.0, 0.0) };
-        let along = cos_phi * wi.x + sin_phi * wi.y;
-        let d = Vec3::new(
-            cos_h * along - sin_h * wi.z,
-            cos_phi * wi.y - sin_phi * wi.x,
-            sin_h * along + cos_h * wi.z,
-        );
-
-        // Quarter turns of θ_h and θ_d, half turns of φ_d.
-        let theta_h = 4.0 * angle_in_turns::<f32>(sin_h, cos_h);
-        let theta_d = 4.0 * angle_in_turns::<f32>(across(d), d.z);
-        let phi = 2.0 * angle_in_turns::<f32>(d.y, d.x);
-        self.between([theta_h.max(0.0).sqrt(), theta_d, phi - phi.floor()])
-    }
-
-    /// The value at a place of the unit cube. The last coordinate is periodic.
+    /// The value at a place of the unit cube, linear between the middles of cells. The last coordinate is periodic.
     fn between(&self, place: [f32; 3]) -> [f32; 3] {
         let mut cells = [[0; 2]; 3];
         let mut shares = [0.0; 3];
@@ -95,8 +76,8 @@ impl HalfAngleValues {
         sum
     }
 
-    fn luminance(&self, wo: Vec3, wi: Vec3) -> f32 {
-        luminance(self.color(wo, wi))
+    fn luminance(&self, wo: Vector<f32>, wi: Vector<f32>) -> f32 {
+        luminance(self.between(place(wo, wi)))
     }
 
     /// The densities of visible normals, and of the numbers that choose one by the luminance of what they reflect.
@@ -104,7 +85,7 @@ impl HalfAngleValues {
         let distribution = self.normals();
         let theta: Vec<f32> =
             (0..ANGLES).map(|k| std::f32::consts::FRAC_PI_2 * (k as f32 + 0.25) / ANGLES as f32).collect();
-        let outgoing: Vec<Vec3> = theta.iter().map(|&theta| direction(theta)).collect();
+        let outgoing: Vec<Vector<f32>> = theta.iter().map(|&theta| direction(theta)).collect();
 
         // D(ω_m) (ω_o · ω_m), and the solid angles of places.
         let [columns, rows] = NORMALS;
@@ -137,7 +118,7 @@ impl HalfAngleValues {
                     .map(|k| (k as f32 / (NUMBERS - 1) as f32).clamp(1e-3, 1.0 - 1e-3));
                 let reflected = vndf.sample(u, &between).map_or(0.0, |(normal, density)| {
                     let wm = normal_at(normal, 0.0);
-                    let wi = wm * (2.0 * wo.dot(wm)) - wo;
+                    let wi = wm * (wo.dot(wm) * 2.0) - wo;
                     let is_seen = wi.z > 0.0 && wo.dot(wm) > 0.0;
                     let weight = wi.z * jacobian(wo, wm, normal) / density;
                     if is_seen { self.luminance(wo, wi) * weight } else { 0.0 }
@@ -157,12 +138,12 @@ impl HalfAngleValues {
             let x = k as f32 / (count - 1) as f32;
             std::f32::consts::FRAC_PI_2 * x * x
         };
-        let directions: Vec<Vec3> = (0..count).map(|k| direction(theta_of(k))).collect();
+        let directions: Vec<Vector<f32>> = (0..count).map(|k| direction(theta_of(k))).collect();
         let back: Vec<f32> = directions.iter().map(|&w| self.luminance(w, w) * w.z.max(0.0)).collect();
 
         // ∫ max(0, ω · ω_m) dφ, times the solid angle of a column of normals.
         const AROUND: usize = 64;
-        let seen = |w: Vec3, k: usize| {
+        let seen = |w: Vector<f32>, k: usize| {
             let wm = directions[k];
             let turn = (0..AROUND).map(|step| sin_cos_of_turns((step as f32 + 0.5) / AROUND as f32).1);
             let sum: f32 = turn.map(|cos| (w.x * wm.x * cos + w.z * wm.z).max(0.0)).sum();
@@ -189,10 +170,36 @@ impl HalfAngleValues {
     }
 }
 
+/// The place of two directions on the outside in the unit cube of tables.
+#[inline(always)]
+pub(super) fn place<R: Real>(wo: Vector<R>, wi: Vector<R>) -> [R; 3] {
+    let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
+    let (wm, exists) = (wo + wi).try_normalize();
+    let wm = Vector::select(exists, wm, Vector::splat(zero, [0.0; 3]));
+
+    // Light in a frame of the half vector, whose x points away from the normal.
+    let (sin_h, cos_h) = (across(wm), wm.z);
+    let is_turned = sin_h.gt(zero);
+    let cos_phi = R::select(is_turned, wm.x / sin_h, one);
+    let sin_phi = R::select(is_turned, wm.y / sin_h, zero);
+    let along = cos_phi * wi.x + sin_phi * wi.y;
+    let d = Vector {
+        x: cos_h * along - sin_h * wi.z,
+        y: cos_phi * wi.y - sin_phi * wi.x,
+        z: sin_h * along + cos_h * wi.z,
+    };
+
+    // Quarter turns of θ_h and θ_d, half turns of φ_d.
+    let theta_h = angle_in_turns(sin_h, cos_h) * 4.0;
+    let theta_d = angle_in_turns(across(d), d.z) * 4.0;
+    let phi = angle_in_turns(d.y, d.x) * 2.0;
+    [Float::sqrt(Float::max(theta_h, zero)), theta_d, phi - Float::floor(phi)]
+}
+
 /// The direction at an angle to the normal, above the x axis.
-fn direction(theta: f32) -> Vec3 {
+fn direction(theta: f32) -> Vector<f32> {
     let (sin, cos) = sin_cos_of_turns(theta / (2.0 * std::f32::consts::PI));
-    Vec3::new(sin, 0.0, cos)
+    Vector { x: sin, y: 0.0, z: cos }
 }
 
 /// Raises the numbers of a table to a share of their weighted mean; without any they become 1.

@@ -23,30 +23,40 @@ struct Cumulative {
     of_rows: Vec<f32>,
 }
 
-/// The tables beside the values of parameters, with their weights.
+/// The most tables that are beside the values of parameters, of which there are three at most.
+const CORNERS: usize = 8;
+
+/// The tables beside the values of parameters, with their weights, which are not 0.
 pub(super) struct Between<const N: usize> {
-    first: usize,
-    /// For each parameter the number of tables to the next of its values, and the weight of that.
-    steps: [(usize, f32); N],
+    tables: [(usize, f32); CORNERS],
+    count: usize,
 }
 
 impl<const N: usize> Between<N> {
-    /// The sum of the numbers that a place has in the tables, by their weights. `apart` is the distance of tables.
+    /// The tables from one on; `steps` are for each parameter the number of tables to the next of its values, and the weight of that.
     #[inline]
-    fn sum(&self, of: &[f32], place: usize, apart: usize) -> f32 {
-        let mut sum = 0.0;
+    fn new(first: usize, steps: [(usize, f32); N]) -> Self {
+        const { assert!(1 << N <= CORNERS) };
+        let mut between = Self { tables: [(0, 0.0); CORNERS], count: 0 };
         for corner in 0..1_usize << N {
-            let (mut table, mut weight) = (self.first, 1.0);
-            for (k, &(step, above)) in self.steps.iter().enumerate() {
+            let (mut table, mut weight) = (first, 1.0);
+            for (k, &(step, above)) in steps.iter().enumerate() {
                 let is_above = corner >> k & 1 == 1;
                 table += if is_above { step } else { 0 };
                 weight *= if is_above { above } else { 1.0 - above };
             }
             if weight != 0.0 {
-                sum += weight * of[table * apart + place];
+                between.tables[between.count] = (table, weight);
+                between.count += 1;
             }
         }
-        sum
+        between
+    }
+
+    /// The sum of the numbers that a place has in the tables, by their weights. `apart` is the distance of tables.
+    #[inline]
+    fn sum(&self, of: &[f32], place: usize, apart: usize) -> f32 {
+        self.tables[..self.count].iter().map(|&(table, weight)| weight * of[table * apart + place]).sum()
     }
 }
 
@@ -94,19 +104,19 @@ impl<const N: usize> Interpolant<N> {
 
     /// The tables beside parameters.
     pub(super) fn between(&self, parameters: [f32; N]) -> Between<N> {
-        let mut between = Between { first: 0, steps: [(0, 0.0); N] };
+        let (mut first, mut steps) = (0, [(0, 0.0); N]);
         let mut apart = 1;
         for k in (0..N).rev() {
             let (known, wanted) = (&self.parameters[k], parameters[k]);
             if known.len() > 1 {
                 let index = known.partition_point(|&value| value <= wanted).clamp(1, known.len() - 1) - 1;
                 let share = (wanted - known[index]) / (known[index + 1] - known[index]);
-                between.first += apart * index;
-                between.steps[k] = (apart, share.clamp(0.0, 1.0));
+                first += apart * index;
+                steps[k] = (apart, share.clamp(0.0, 1.0));
             }
             apart *= known.len();
         }
-        between
+        Between::new(first, steps)
     }
 
     /// Number of numbers in a table.

@@ -2,6 +2,8 @@
 
 use std::f32::consts::PI;
 
+use glam::Vec3;
+
 use super::*;
 use crate::shading::bsdf::measured::{Measured, MeasuredTables};
 use crate::shading::bsdf::{Lobes, Mode, ScatteringFunction};
@@ -49,7 +51,7 @@ fn directions_have_the_values_of_the_formula() {
         let (wo, wi) = (above(4 * index), above(4 * index + 2));
         let wm = (wo + wi).normalize();
         let expected = gloss(0.3, f64::from(wm.z), f64::from(wm.dot(wi))) as f32;
-        let [r, g, b] = tables.color(wo, wi);
+        let [r, g, b] = tables.between(place(wo.into(), wi.into()));
         // Half a degree beside 90 is the most that a line between two cells is off the curve.
         assert!((r - expected).abs() < 0.01 * expected + 1e-4, "{wo} {wi}: {r}, expected {expected}");
         assert!((g - 0.5 * r).abs() < 1e-6 * r && (b - 0.25 * r).abs() < 1e-6 * r);
@@ -62,7 +64,7 @@ fn densities_follow_the_tables() {
     for alpha in [0.05, 0.2, 0.6] {
         let tables = MeasuredTables::kept(&filled(alpha), &[]);
         let bsdf = Measured::new(tables, None);
-        for wo in [Vec3::Z, direction(0.7), direction(1.2)] {
+        for wo in [Vec3::Z, direction(0.7).into(), direction(1.2).into()] {
             let weights: Vec<f32> = (0..4000)
                 .map(|index| {
                     let u = [number(7 + 2 * index), number(8 + 2 * index)];
