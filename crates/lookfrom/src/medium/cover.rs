@@ -5,6 +5,7 @@
 
 use glam::Vec3;
 
+use super::grid::Lookup;
 use super::majorants::Approach;
 use super::{Coefficients, Medium, Way};
 use crate::core::lanes::LANES;
@@ -55,7 +56,7 @@ impl Medium {
             let Approach { t, majorant, .. } = approach;
             approach.left = STEP;
             let point = (origin + direction * t).into();
-            let here = varying.at(One, point, &even, 0.0, (textures, &[&mode; LANES]));
+            let here = varying.at(One, point, Lookup::Interpolated, &even, 0.0, (textures, &[&mode; LANES]));
             let before = parts.last().map_or(0.0, |[_, part]| *part);
             depth += STEP * extinction(&here) / majorant;
             let part = -libm::expm1f(-depth);

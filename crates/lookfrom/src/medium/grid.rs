@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use lookfrom_scene::grid::{Grid, Placed};
-use lookfrom_simd::{Float, Real};
+use lookfrom_simd::{Bits, Float, Real};
 
 use crate::core::color::{Sigmoid, Unbounded};
-use crate::core::lanes::width::Width;
-use crate::core::lanes::{Columns, store};
+use crate::core::hash;
+use crate::core::lanes::width::{Bits64, Width};
+use crate::core::lanes::{Columns, LANES, store};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
@@ -20,6 +21,33 @@ pub(super) struct PlacedGrid<T> {
     /// Coordinates of cells, whose centres are whole, are those in medium space times a scale plus an offset.
     scale: Vec3,
     offset: Vec3,
+}
+
+/// How a value between the centres of cells is found.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lookup<W: Width> {
+    /// Trilinear between eight centres.
+    Interpolated,
+    /// That of one of the eight, chosen by these random bits with its trilinear weight, for estimates that are linear in it: they have the
+    /// same mean (stochastic filtering, Hofmann & Evans 2021).
+    OneCell(Bits64<W>),
+}
+
+/// What distinguishes the random bits that choose cells from others of the same state.
+const CHOICE: u64 = 0x6365_6c6c;
+
+/// The same for a second choice.
+const ANOTHER: u64 = 0x7365_636f_6e64;
+
+impl<W: Width> Lookup<W> {
+    /// The same by a choice that does not depend on this one.
+    #[inline(always)]
+    pub(super) fn another(self) -> Self {
+        match self {
+            Self::Interpolated => self,
+            Self::OneCell(bits) => Self::OneCell(bits ^ bits.like(ANOTHER)),
+        }
+    }
 }
 
 /// A point between eight centres of cells.
@@ -59,6 +87,16 @@ impl<T: Copy + Default + PartialEq> PlacedGrid<T> {
         Between { first, fraction: cells - first }
     }
 
+    /// The values of cells that random bits choose, as [`Lookup::OneCell`].
+    #[inline(always)]
+    pub(super) fn chosen<W: Width>(&self, width: W, points: Vector<W::Real>, bits: Bits64<W>) -> [T; LANES] {
+        let cells = store(self.between(points).one(bits));
+        width.by_lane(
+            #[inline(always)]
+            |lane| self.grid.value(cell(&cells, lane)),
+        )
+    }
+
     /// The value at a point of medium space: trilinear between centres, zero outside of the grid.
     #[inline]
     pub(super) fn at<V: Copy + Add<Output = V> + Mul<f32, Output = V>>(
@@ -75,7 +113,15 @@ impl<T: Copy + Default + PartialEq> PlacedGrid<T> {
 impl PlacedGrid<f32> {
     /// The values at points of medium space.
     #[inline(always)]
-    pub(super) fn numbers_at<W: Width>(&self, width: W, points: Vector<W::Real>) -> W::Real {
+    pub(super) fn numbers_at<W: Width>(
+        &self,
+        width: W,
+        points: Vector<W::Real>,
+        lookup: Lookup<W>,
+    ) -> W::Real {
+        if let Lookup::OneCell(bits) = lookup {
+            return width.load_f32(&self.chosen(width, points, bits));
+        }
         let between = self.between(points);
         let first = store(between.first);
         let corners = width.by_lane(
@@ -93,8 +139,17 @@ impl PlacedGrid<Unbounded> {
         &self,
         width: W,
         points: Vector<W::Real>,
+        lookup: Lookup<W>,
         lambda: &Spectrum<W::Real>,
     ) -> Spectrum<W::Real> {
+        if let Lookup::OneCell(bits) = lookup {
+            let values = self.chosen(width, points, bits);
+            let Spectrum([a, b, c, scale]) = width.spectra_of(
+                #[inline(always)]
+                |lane| coefficients(values[lane]),
+            );
+            return Sigmoid([a, b, c]).at(&lambda.0) * scale;
+        }
         let between = self.between(points);
         let first = store(between.first);
         let places = width.by_lane(
@@ -106,15 +161,18 @@ impl PlacedGrid<Unbounded> {
         for (corner, weight) in between.weights().into_iter().enumerate() {
             let Spectrum([a, b, c, scale]) = width.spectra_of(
                 #[inline(always)]
-                |lane| {
-                    let Unbounded { scale, sigmoid: Sigmoid([a, b, c]) } = values[places[lane][corner]];
-                    Spectrum([a, b, c, scale])
-                },
+                |lane| coefficients(values[places[lane][corner]]),
             );
             spectra += Sigmoid([a, b, c]).at(&lambda.0) * (scale * weight);
         }
         spectra
     }
+}
+
+/// The coefficients of a spectrum, and its scale.
+#[inline(always)]
+fn coefficients(Unbounded { scale, sigmoid: Sigmoid([a, b, c]) }: Unbounded) -> Spectrum {
+    Spectrum([a, b, c, scale])
 }
 
 /// The cell of a lane.
@@ -125,6 +183,18 @@ fn cell(columns: &Columns<3>, lane: usize) -> [i32; 3] {
 }
 
 impl<R: Real> Between<R> {
+    /// The centre that random bits choose with its weight.
+    #[inline(always)]
+    fn one(&self, bits: R::Bits64) -> Vector<R> {
+        let bits = hash::mix(bits ^ bits.like(CHOICE));
+        let Self { first, fraction } = *self;
+        Vector {
+            x: one_of_two(first.x, fraction.x, bits),
+            y: one_of_two(first.y, fraction.y, bits >> 21),
+            z: one_of_two(first.z, fraction.z, bits >> 42),
+        }
+    }
+
     /// The weights of the eight centres, x fastest.
     #[inline(always)]
     fn weights(&self) -> [R; 8] {
@@ -147,8 +217,38 @@ impl<R: Real> Between<R> {
     }
 }
 
+/// A coordinate or the next one, by the lower 21 of some random bits.
+#[inline(always)]
+fn one_of_two<R: Real>(first: R, fraction: R, bits: R::Bits64) -> R {
+    let u = R::from_integer(R::low_half(bits & bits.like(0x1f_ffff))) * (1.0 / 2_097_152.0);
+    R::select(u.lt(fraction), first + 1.0, first)
+}
+
 /// The value between two, at t from 0 to 1.
 #[inline(always)]
 fn mix<R: Real, V: Add<Output = V> + Mul<R, Output = V>>(a: V, b: V, t: R) -> V {
     a * (-t + 1.0) + b * t
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::core::lanes::width::One;
+
+    #[test]
+    fn cells_are_chosen_by_their_trilinear_weights() {
+        let number = |place: u64| (hash::mix(place + 1) >> 40) as f32 / 16_777_216.0;
+        let values: Vec<f32> = (0..60).map(number).collect();
+        let grid = Arc::new(Grid::from_values([3, 4, 5], &values).expect("a grid"));
+        let placed = PlacedGrid::new(&Placed { grid, bounds: [Vec3::ZERO, Vec3::new(3.0, 4.0, 5.0)] });
+        for place in 0..20 {
+            let point = Vec3::from_array([60, 61, 62].map(|axis| 3.0 * number(3 * place + axis)));
+            let expected = placed.numbers_at(One, point.into(), Lookup::Interpolated);
+            const COUNT: u64 = 40_000;
+            let chosen = |bits: u64| f64::from(placed.numbers_at(One, point.into(), Lookup::OneCell(bits)));
+            let sum: f64 = (0..COUNT).map(|k| chosen(hash::mix(k))).sum();
+            // Five standard errors of values whose spread is at most a half.
+            assert!((sum / COUNT as f64 - f64::from(expected)).abs() < 0.0125, "{point}: {expected}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The density of a medium that varies, along a ray: for the inspector, whose collisions are points of it.
 
+use super::grid::Lookup;
 use super::{Coefficients, Medium, Way};
 use crate::core::lanes::LANES;
 use crate::core::lanes::width::One;
@@ -41,7 +42,7 @@ impl Medium {
                 bound = walk.advance(&varying.majorants, direction.into(), true);
             }
             let point = (origin + direction * t).into();
-            let here = varying.at(One, point, &even, 0.0, (textures, &[mode; LANES]));
+            let here = varying.at(One, point, Lookup::Interpolated, &even, 0.0, (textures, &[mode; LANES]));
             profile.extinction.push(here.extinction());
             profile.majorant.push((bound * even.most()).min(Coefficients::MOST));
         }

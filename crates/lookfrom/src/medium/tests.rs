@@ -7,6 +7,7 @@ use lookfrom_scene::grid::{Grid, Placed};
 use lookfrom_scene::material::Color;
 use lookfrom_scene::medium::{Density, Medium as Written, Variation};
 
+use super::grid::Lookup;
 use super::*;
 use crate::core::hash;
 use crate::core::lanes::LANES;
@@ -51,7 +52,14 @@ fn transmittance(medium: &Medium, textures: &Textures) -> Spectrum {
         let point = varying.point(WAY.origin + WAY.direction * ((step as f32 + 0.5) * width));
         // Outside of its box there is nothing of it.
         if (-1.0..1.0).contains(&point.x) && (-1.0..1.0).contains(&point.y) && (0.0..3.0).contains(&point.z) {
-            let here = varying.at(One, point.into(), &even, 0.0, (textures, &[&SpectralMode::Rgb; LANES]));
+            let here = varying.at(
+                One,
+                point.into(),
+                Lookup::Interpolated,
+                &even,
+                0.0,
+                (textures, &[&SpectralMode::Rgb; LANES]),
+            );
             depth = std::array::from_fn(|k| depth[k] + f64::from(here.extinction().0[k] * width));
         }
     }

@@ -6,7 +6,7 @@ use lookfrom_simd::{Float, Real};
 
 use super::Coefficients;
 use super::cloud::Cloud;
-use super::grid::PlacedGrid;
+use super::grid::{Lookup, PlacedGrid};
 use super::majorants::Majorants;
 use crate::core::color::{Unbounded, Wavelengths, blackbody, blackbody_rgb};
 use crate::core::lanes::width::Width;
@@ -106,35 +106,40 @@ impl Varying {
     }
 
     /// The coefficients at points of medium space, from those where the density is 1; `emission_scale` multiplies what emits in the
-    /// place of their emission.
+    /// place of their emission, which has no meaning where that is 0. Grids are looked up as `lookup` says: of emission, whose product with
+    /// absorption is what counts, by a choice of its own.
     #[inline(always)]
     pub(super) fn at<W: Width>(
         &self,
         width: W,
         points: Vector<W::Real>,
+        lookup: Lookup<W>,
         even: &Coefficients<W::Real>,
         emission_scale: f32,
         (textures, modes): (&Textures, &[&SpectralMode; LANES]),
     ) -> Coefficients<W::Real> {
         let mut here = *even;
-        let emission_scale = points.x.like(emission_scale);
         match &self.density {
             Density::Colors { absorption, scattering, emission } => {
                 if let Some(colors) = absorption {
-                    here.absorption *= colors.at(width, points, modes);
+                    here.absorption *= colors.at(width, points, lookup, modes);
                 }
                 if let Some(colors) = scattering {
-                    here.scattering *= colors.at(width, points, modes);
+                    here.scattering *= colors.at(width, points, lookup, modes);
                 }
-                if let Some(colors) = emission {
-                    here.emission = colors.at(width, points, modes) * emission_scale;
+                if let Some(colors) = emission.as_ref().filter(|_| emission_scale != 0.0) {
+                    let emission = colors.at(width, points, lookup.another(), modes);
+                    here.emission = emission * points.x.like(emission_scale);
                 }
             }
             one => {
-                let density = one.numbers(width, points, textures);
+                let density = one.numbers(width, points, lookup, textures);
                 here.absorption = here.absorption * density;
                 here.scattering = here.scattering * density;
             }
+        }
+        if emission_scale == 0.0 {
+            return here.at_most(Coefficients::MOST);
         }
         if let Some(temperature) = &self.temperature {
             let columns = store(points);
@@ -142,24 +147,27 @@ impl Varying {
                 #[inline(always)]
                 |lane| temperature.emission(Vec3::from_array(row(&columns, lane)), modes[lane]),
             );
-            here.emission = emission * emission_scale;
+            here.emission = emission * points.x.like(emission_scale);
         }
         if let Some(scale) = &self.emission_scale {
-            here.emission = here.emission * scale.numbers_at(width, points);
+            here.emission = here.emission * scale.numbers_at(width, points, Lookup::Interpolated);
         }
-        let most = points.x.like(Coefficients::MOST);
-        let [absorption, scattering] = [at_most(here.absorption, most), at_most(here.scattering, most)];
-        Coefficients { absorption, scattering, ..here }
+        here.at_most(Coefficients::MOST)
     }
 }
 
-/// A spectrum no greater than a bound in any lane.
-#[inline(always)]
-fn at_most<R: Real>(spectrum: Spectrum<R>, most: R) -> Spectrum<R> {
-    spectrum.map(
-        #[inline(always)]
-        |lane| Float::min(lane, most),
-    )
+impl<R: Real> Coefficients<R> {
+    /// Absorption and scattering no greater than a bound in any lane.
+    #[inline(always)]
+    fn at_most(self, most: f32) -> Self {
+        let bounded = |spectrum: Spectrum<R>| {
+            spectrum.map(
+                #[inline(always)]
+                |lane| Float::min(lane, lane.like(most)),
+            )
+        };
+        Self { absorption: bounded(self.absorption), scattering: bounded(self.scattering), ..self }
+    }
 }
 
 impl Density {
@@ -198,9 +206,15 @@ impl Density {
 
     /// The numbers at points of medium space; of colours there are none.
     #[inline(always)]
-    fn numbers<W: Width>(&self, width: W, points: Vector<W::Real>, textures: &Textures) -> W::Real {
+    fn numbers<W: Width>(
+        &self,
+        width: W,
+        points: Vector<W::Real>,
+        lookup: Lookup<W>,
+        textures: &Textures,
+    ) -> W::Real {
         match self {
-            Self::Grid(grid) => grid.numbers_at(width, points),
+            Self::Grid(grid) => grid.numbers_at(width, points, lookup),
             Self::Cloud(cloud) => cloud.at(points),
             Self::Texture { of, most, world_from_medium } => {
                 let columns = store(points);
@@ -244,6 +258,7 @@ impl Colors {
         &self,
         width: W,
         points: Vector<W::Real>,
+        lookup: Lookup<W>,
         modes: &[&SpectralMode; LANES],
     ) -> Spectrum<W::Real> {
         match &self.uplifted {
@@ -255,7 +270,7 @@ impl Colors {
                         None => Spectrum::BLACK,
                     },
                 );
-                let values = uplifted.spectra_at(width, points, &lambda);
+                let values = uplifted.spectra_at(width, points, lookup, &lambda);
                 if self.spectrum_type != SpectrumType::Illuminant {
                     return values;
                 }
@@ -267,6 +282,13 @@ impl Colors {
                     },
                 );
                 values * daylight
+            }
+            _ if let Lookup::OneCell(bits) = lookup => {
+                let values = self.rgb.chosen(width, points, bits);
+                width.spectra_of(
+                    #[inline(always)]
+                    |lane| spectrum_of(values[lane], self.spectrum_type, modes[lane]),
+                )
             }
             _ => {
                 let columns = store(points);

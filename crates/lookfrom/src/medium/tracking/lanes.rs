@@ -8,6 +8,7 @@ use crate::core::hash;
 use crate::core::lanes::width::{Bits64, Lanes, Width};
 use crate::core::lanes::{Columns, LANES, load, load_spectrum, row, set_row, store_spectrum};
 use crate::core::spectrum::Spectrum;
+use crate::medium::grid::Lookup;
 use crate::medium::majorants::{Approach, StoredWalk};
 use crate::medium::{Coefficients, Medium, Varying};
 use crate::shading::texture::{SpectralMode, Textures};
@@ -161,9 +162,16 @@ impl<'a> Tracker<'a, '_> {
         let [u, choice, roulette] = three(width, random);
         let point = origin + direction * t;
         let even = under_way.even.load(width);
-        let emission_scale = self.medium.emission.as_ref().map_or(0.0, |emission| emission.scale);
-        let coefficients =
-            self.varying.at(width, point, &even, emission_scale, (self.textures, &under_way.modes));
+        let emission_scale =
+            self.medium.emission.as_ref().filter(|_| self.emits).map_or(0.0, |emission| emission.scale);
+        let coefficients = self.varying.at(
+            width,
+            point,
+            Lookup::OneCell(random),
+            &even,
+            emission_scale,
+            (self.textures, &under_way.modes),
+        );
         let beta = load_spectrum(width, &under_way.throughput);
         let collisions = self.collided((collide, t, majorant), coefficients, beta, choice);
 
