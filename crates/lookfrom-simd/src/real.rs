@@ -1,8 +1,8 @@
 //! One numeric source for every width: a trait of numbers that `f32` is, and eight of them side by side are.
 //!
 //! Code that is generic over [`Real`] is written once. At `f32` it is the reference that tests compare with, and what is asked
-//! one at a time; at [`f32x8`](fearless_simd::f32x8) it is what pictures are made with. Both give the same bits, lane by lane, since every operation
-//! here is one of IEEE 754's, or is defined by comparison and selection.
+//! one at a time; at [`f32x8`](fearless_simd::f32x8) it is what pictures are made with. Both give the same bits, lane by lane,
+//! since every operation here is one of IEEE 754's, or is defined by comparison and selection.
 //!
 //! `if` becomes [`Float::select`], `Option` becomes a value beside a [`Mask`]. Functions are `#[inline(always)]`, so that they
 //! are compiled for the level of their caller.

@@ -108,19 +108,16 @@ impl<R: Real, T: AsRef<[&'static MeasuredTables]>> Measured<R, T> {
             true => [zero; 3],
             false => half_angle::place(seen.wo, wi),
         };
-        let wavelengths = self.wavelengths.unwrap_or([zero; 4]);
+        let [nm0, nm1, nm2, nm3] = self.wavelengths.unwrap_or([zero; 4]);
         let is_spectral = self.wavelengths.is_some();
         let is_wanted = R::select(mask, one, zero);
-        let numbers = [
-            [seen.phi, seen.theta, u[0], u[1]],
-            [normal[0], normal[1], of_wo[0], of_wo[1]],
-            [halves[0], halves[1], halves[2], is_wanted],
-            wavelengths,
-        ];
         let [a, b, c, d, ndf, sigma] = R::by_lane(
-            flat(numbers),
+            [
+                is_wanted, seen.phi, seen.theta, u[0], u[1], normal[0], normal[1], of_wo[0], of_wo[1],
+                halves[0], halves[1], halves[2], nm0, nm1, nm2, nm3,
+            ],
             #[inline(always)]
-            |lane, [phi, theta, u, v, x, y, s, t, h, d, difference, is_wanted, nm @ ..]| {
+            |lane, [is_wanted, phi, theta, u, v, x, y, s, t, p, q, r, nm @ ..]| {
                 if is_wanted == 0.0 {
                     return [0.0; 6];
                 }
@@ -132,8 +129,8 @@ impl<R: Real, T: AsRef<[&'static MeasuredTables]>> Measured<R, T> {
                         [a, b, c, d, ndf, sigma]
                     }
                     Values::HalfAngle(values) => {
-                        let Spectrum([a, b, c, e]) = values.value([h, d, difference], wavelengths);
-                        [a, b, c, e, 0.0, 0.0]
+                        let Spectrum([a, b, c, d]) = values.value([p, q, r], wavelengths);
+                        [a, b, c, d, 0.0, 0.0]
                     }
                 }
             },
@@ -200,12 +197,6 @@ impl<R: Real, T: AsRef<[&'static MeasuredTables]>> Measured<R, T> {
             is_valid,
         }
     }
-}
-
-/// Rows of four numbers, one after the other.
-#[inline(always)]
-fn flat<R: Copy>([[a, b, c, d], [e, f, g, h], [i, j, k, l], [m, n, o, p]]: [[R; 4]; 4]) -> [R; 16] {
-    [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p]
 }
 
 /// The sine of a direction's angle to the normal.
