@@ -23,7 +23,7 @@ pub(super) struct PlacedGrid<T> {
     offset: Vec3,
 }
 
-/// How a value between the centres of cells is found.
+/// Filter of a grid's values between the centres of its cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Lookup<W: Width> {
     /// Trilinear between eight centres.
@@ -33,10 +33,10 @@ pub(super) enum Lookup<W: Width> {
     OneCell(Bits64<W>),
 }
 
-/// What distinguishes the random bits that choose cells from others of the same state.
+/// Salt of the random bits that choose cells.
 const CHOICE: u64 = 0x6365_6c6c;
 
-/// The same for a second choice.
+/// Salt of a second, independent choice.
 const ANOTHER: u64 = 0x7365_636f_6e64;
 
 impl<W: Width> Lookup<W> {

@@ -49,8 +49,6 @@ pub struct Plastic<R = f32, T = [&'static Interface; 1]> {
     /// The mean fraction of light from all around that gets through.
     mean_transmission: R,
     interfaces: T,
-    /// 0, 1, 2, … times the length of a table.
-    tables: R,
 }
 
 impl Plastic {
@@ -73,7 +71,6 @@ impl Plastic {
             internal_reflectance: interface.internal_reflectance,
             mean_transmission: interface.mean_transmission,
             interfaces: [interface],
-            tables: 0.0,
         }
     }
 }
@@ -110,19 +107,15 @@ impl<R: Real, T: AsRef<[&'static Interface]>> Plastic<R, T> {
         }
         let place = Float::clamp(cos, 0.0, 1.0) * (COSINES - 1) as f32;
         let first = Float::floor(Float::min(place, cos.like((COSINES - 2) as f32)));
-        let index = (first + self.tables).to_integer();
-        let entry = |side: usize, distance: usize| {
-            R::lookup(
-                index,
-                #[inline(always)]
-                |index| {
-                    let index = index + distance;
-                    self.interfaces.as_ref()[index / COSINES].sides[side][index % COSINES]
-                },
-            )
-        };
         let rough = |side: usize| {
-            let (low, high) = (entry(side, 0), entry(side, 1));
+            let [low, high] = R::by_lane(
+                [first],
+                #[inline(always)]
+                |lane, [first]| {
+                    let (table, first) = (&self.interfaces.as_ref()[lane].sides[side], first as usize);
+                    [table[first], table[first + 1]]
+                },
+            );
             R::select(is_tabulated, low + (high - low) * (place - first), smooth[side])
         };
         [if BOTH { rough(0) } else { zero }, rough(1)]
@@ -340,7 +333,6 @@ impl RowBsdf for Plastic {
             internal_reflectance: of(by_lane!(lane => rows[lane].internal_reflectance)),
             mean_transmission: of(by_lane!(lane => rows[lane].mean_transmission)),
             interfaces: by_lane!(lane => rows[lane].interfaces[0]),
-            tables: of(by_lane!(lane => (lane * COSINES) as f32)),
         }
     }
 }
