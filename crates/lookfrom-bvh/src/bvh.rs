@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::aabb::Aabb;
 use crate::affine::Affine;
+use crate::capsule::CapsuleBlock;
 use crate::conservative::TriangleBlock;
 use crate::item::{Leaf, ProceduralItem};
 use crate::masks::Masks;
@@ -46,7 +47,10 @@ pub struct Bvh {
     pub(crate) leaf_bounds: Vec<Aabb>,
     pub(crate) spheres: Vec<SphereBlock>,
     pub(crate) procedurals: Vec<ProceduralItem>,
-    pub(crate) procedural_shapes: Vec<Arc<dyn Procedural>>,
+    /// The capsules of thin procedural shapes.
+    pub(crate) capsules: Vec<CapsuleBlock>,
+    /// By geometry; `None` for all others.
+    pub(crate) procedural_shapes: Vec<Option<Arc<dyn Procedural>>>,
     /// By id, as the builder numbered them; shared with the builder.
     pub(crate) instances: Arc<Vec<Instance>>,
     pub(crate) masks: Masks,
@@ -70,6 +74,7 @@ impl Default for Bvh {
             leaf_bounds: Vec::new(),
             spheres: Vec::new(),
             procedurals: Vec::new(),
+            capsules: Vec::new(),
             procedural_shapes: Vec::new(),
             instances: Arc::default(),
             masks: Masks::default(),
@@ -161,6 +166,12 @@ impl Bvh {
         self.largest = bounds.min.iter().chain(&bounds.max).fold(0.0, |largest, x| x.abs().max(largest));
     }
 
+    /// The shapes that procedural items are of.
+    #[inline(always)]
+    pub(crate) fn shapes_of(&self, item: &ProceduralItem) -> Option<&dyn Procedural> {
+        self.procedural_shapes[item.geometry as usize].as_deref()
+    }
+
     /// Counts the content, beside which a number of primitives was left out.
     pub(crate) fn count(&self, left_out: usize) -> Statistics {
         Statistics { left_out, ..Statistics::of(&self.nodes, &self.triangles, &self.spheres, &self.leaves) }
@@ -185,6 +196,7 @@ impl Bvh {
             + size_of_val(&*self.leaf_bounds)
             + size_of_val(&*self.spheres)
             + size_of_val(&*self.procedurals)
+            + size_of_val(&*self.capsules)
             + size_of_val(&*self.procedural_shapes)
             + size_of_val(&*self.instances)
             + self.masks.memory()

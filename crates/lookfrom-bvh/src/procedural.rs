@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use crate::aabb::Aabb;
+use crate::capsule::Capsule;
 use crate::ray::Ray;
 
 /// Many shapes of one kind, numbered from 0.
@@ -43,6 +44,13 @@ pub trait Procedural: Send + Sync + Debug {
     /// The bounding box of a shape, which must contain all hits of [`Self::intersect`]. A shape whose box is empty
     /// or not finite is left out. Called once or twice, when the tree is built.
     fn bounds(&self, primitive: u32) -> Aabb;
+
+    /// A capsule that contains all hits of [`Self::intersect`] but for the rounding of t, for all shapes or for none. Up to eight shapes with capsules share a leaf, and
+    /// rays that pass a capsule by are not asked for: much less time and memory for shapes that are long and thin. Called once or
+    /// twice, when the tree is built. `None` unless overridden.
+    fn capsule(&self, _primitive: u32) -> Option<Capsule> {
+        None
+    }
 
     /// The nearest hit with `ray.t_min < t < ray.t_max`; others are ignored. In an instance the ray is in the
     /// object's space, rounded to f32, with the same `t`.

@@ -85,6 +85,7 @@ impl Walk<'_> {
                         self.statistics.spheres += self.spheres[block as usize].count();
                     }
                     Leaf::Procedurals { count, .. } => self.statistics.procedurals += count as usize,
+                    Leaf::Capsules { count, .. } => self.statistics.procedurals += usize::from(count),
                     Leaf::Instances { count, .. } => self.statistics.instances += count as usize,
                 },
             }

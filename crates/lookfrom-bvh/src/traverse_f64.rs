@@ -9,7 +9,7 @@ use crate::batch::for_each;
 use crate::bvh::{Bvh, Instance, Part};
 use crate::conservative::TriangleBlock;
 use crate::exact::ExactRay;
-use crate::item::Leaf;
+use crate::item::{Leaf, ProceduralItem};
 use crate::node::{Child, Content, Node, WIDTH};
 use crate::observer::Observer;
 use crate::ray::{NONE, Ray};
@@ -164,6 +164,24 @@ impl<O: Observer> Traversal<'_, O> {
         }
     }
 
+    fn procedurals(&mut self, bvh: &Bvh, items: &[ProceduralItem], ray: &ExactRay<f64>, instance: u32) {
+        let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
+        for item in items {
+            let ids = (item.geometry, item.primitive);
+            if !self.is_candidate(instance, ids) {
+                continue;
+            }
+            // Query one step beyond the end: a hit at the same t may win the tie.
+            let (t_min, t_max) =
+                (round_down(self.ray.t_min), round_up(self.end.min(self.ray.t_max)).next_up());
+            let asked = Ray { origin, t_min, direction, t_max };
+            let found = bvh.shapes_of(item).and_then(|shapes| shapes.intersect(item.primitive, &asked));
+            if let Some(found) = found {
+                self.report([found.t, found.u, found.v].map(f64::from), ids, instance);
+            }
+        }
+    }
+
     fn leaf(&mut self, part: Part<'_>, ray: &ExactRay<f64>, instance: u32, leaf: usize) {
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
         let bvh = match part {
@@ -192,21 +210,10 @@ impl<O: Observer> Traversal<'_, O> {
                 }
             }
             Leaf::Procedurals { first, count } => {
-                for item in &bvh.procedurals[range(first, count)] {
-                    let ids = (item.geometry, item.primitive);
-                    if !self.is_candidate(instance, ids) {
-                        continue;
-                    }
-                    let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
-                    // Query one step beyond the end: a hit at the same t may win the tie.
-                    let (t_min, t_max) =
-                        (round_down(self.ray.t_min), round_up(self.end.min(self.ray.t_max)).next_up());
-                    let asked = Ray { origin, t_min, direction, t_max };
-                    let shapes = &bvh.procedural_shapes[item.shape as usize];
-                    if let Some(found) = shapes.intersect(item.primitive, &asked) {
-                        self.report([found.t, found.u, found.v].map(f64::from), ids, instance);
-                    }
-                }
+                self.procedurals(bvh, &bvh.procedurals[range(first, count)], ray, instance);
+            }
+            Leaf::Capsules { first, count, .. } => {
+                self.procedurals(bvh, &bvh.procedurals[range(first, count.into())], ray, instance);
             }
             Leaf::Instances { first, count } => {
                 let outer = self.outer;

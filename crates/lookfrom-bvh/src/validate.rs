@@ -61,6 +61,7 @@ fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         leaves: vec![false; bvh.leaves.len()],
         spheres: vec![false; bvh.spheres.len()],
         procedurals: vec![false; bvh.procedurals.len()],
+        capsules: vec![false; bvh.capsules.len()],
         // Those that were left out are not in the tree.
         instances: bvh.instances.iter().map(|instance| !instance.bounds().is_valid()).collect(),
         ids: Vec::new(),
@@ -76,6 +77,7 @@ fn validate(bvh: &Bvh) -> Result<Statistics, Invalid> {
         ("leaf", &check.leaves),
         ("block of spheres", &check.spheres),
         ("procedural", &check.procedurals),
+        ("block of capsules", &check.capsules),
         ("instance", &check.instances),
     ] {
         if let Some(missing) = seen.iter().position(|seen| !seen) {
@@ -111,6 +113,7 @@ struct Check<'a> {
     leaves: Vec<bool>,
     spheres: Vec<bool>,
     procedurals: Vec<bool>,
+    capsules: Vec<bool>,
     instances: Vec<bool>,
     /// Geometry and primitive of everything but instances.
     ids: Vec<(u32, u32)>,
@@ -172,13 +175,10 @@ impl Check<'_> {
                     self.ids.push((item.geometry, item.primitive));
                 }
             }
-            Leaf::Procedurals { first, count } => {
-                for item in
-                    &bvh.procedurals[mark(&mut self.procedurals, first as usize, count, "procedural")?]
-                {
-                    inside.unite(&bvh.procedural_shapes[item.shape as usize].bounds(item.primitive));
-                    self.ids.push((item.geometry, item.primitive));
-                }
+            Leaf::Procedurals { first, count } => inside = self.procedurals(first, count)?,
+            Leaf::Capsules { block, first, count } => {
+                mark(&mut self.capsules, block as usize, 1, "block of capsules")?;
+                inside = self.procedurals(first, count.into())?;
             }
             Leaf::Instances { first, count } => {
                 for instance in &bvh.instances[mark(&mut self.instances, first as usize, count, "instance")?]
@@ -186,6 +186,19 @@ impl Check<'_> {
                     inside.unite(&instance.bounds());
                 }
             }
+        }
+        Ok(inside)
+    }
+
+    fn procedurals(&mut self, first: u32, count: u32) -> Result<Aabb, Invalid> {
+        let bvh = self.bvh;
+        let mut inside = Aabb::EMPTY;
+        for item in &bvh.procedurals[mark(&mut self.procedurals, first as usize, count, "procedural")?] {
+            let Some(shapes) = bvh.shapes_of(item) else {
+                return Err(Invalid(format!("geometry {} of an item is not procedural", item.geometry)));
+            };
+            inside.unite(&shapes.bounds(item.primitive));
+            self.ids.push((item.geometry, item.primitive));
         }
         Ok(inside)
     }

@@ -55,7 +55,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let start = Instant::now();
     let world = World::compile(scene, &mut Vec::new())?;
-    println!("build: {:.2} s", start.elapsed().as_secs_f64());
+    let (seconds, bytes) = (start.elapsed().as_secs_f64(), world.bvh().memory());
+    println!("build: {seconds:.2} s, a tree of {} MB: {:?}", bytes / 1_000_000, world.bvh().statistics());
 
     let eye = Vec3::new(0.0, 0.0, 4.0) - world.origin().as_vec3();
     let across = |k: u16| 20_f32.to_radians().tan() * (2.0 * (f32::from(k) + 0.5) / f32::from(SIDE) - 1.0);

@@ -3,7 +3,10 @@
 //! Nodes are written depth first, leaves in a separate list in the same order, so that neighbours in space are
 //! neighbours in memory.
 
+use std::ops::Range;
+
 use crate::bvh::Bvh;
+use crate::capsule::CapsuleBlock;
 use crate::conservative::TriangleBlock;
 use crate::item::{Leaf, ProceduralItem};
 use crate::node::{Child, Node};
@@ -22,23 +25,21 @@ pub(super) fn collapse(
     references: &[Reference],
     primitives: &Primitives<'_>,
 ) -> Bvh {
-    let mut bvh = Bvh::default();
-    // Procedural geometries keep their order; an item refers to its index among them.
-    let mut procedural_place = vec![0; primitives.geometries.len()];
-    for (index, geometry) in primitives.geometries.iter().enumerate() {
-        if let Geometry::Procedural(shapes) = geometry {
-            procedural_place[index] = bvh.procedural_shapes.len() as u32;
-            bvh.procedural_shapes.push(shapes.clone());
-        }
-    }
+    let procedural_shapes = |geometry: &Geometry| match geometry {
+        Geometry::Procedural(shapes) => Some(shapes.clone()),
+        _ => None,
+    };
+    let procedural_shapes = primitives.geometries.iter().map(procedural_shapes).collect();
+    let bvh = Bvh { procedural_shapes, ..Bvh::default() };
     let mut collapse =
-        Collapse { plan, binary, references, primitives, procedural_place, blocks: Vec::new(), bvh };
+        Collapse { plan, binary, references, primitives, blocks: Vec::new(), thin: Vec::new(), bvh };
     if !binary.is_empty() {
         collapse.node(0);
     }
-    let Collapse { blocks, mut bvh, .. } = collapse;
+    let Collapse { blocks, thin, mut bvh, .. } = collapse;
     bvh.triangles =
         parallel::collect(blocks.len(), 1024, |block| triangle_block(&blocks[block], references, primitives));
+    bvh.capsules = parallel::collect(thin.len(), 1024, |leaf| capsule_block(&bvh, thin[leaf].clone()));
     bvh
 }
 
@@ -47,9 +48,10 @@ struct Collapse<'a> {
     binary: &'a [Binary],
     references: &'a [Reference],
     primitives: &'a Primitives<'a>,
-    procedural_place: Vec<u32>,
     /// The leaves of triangles.
     blocks: Vec<Binary>,
+    /// The procedural items of the leaves of thin shapes.
+    thin: Vec<Range<usize>>,
     bvh: Bvh,
 }
 
@@ -67,7 +69,7 @@ impl Collapse<'_> {
         Child::node(number)
     }
 
-    /// Writes the primitives of a leaf; triangles are only recorded, to be written later.
+    /// Writes the primitives of a leaf; triangles and capsules are only recorded, to be written later.
     fn leaf(&mut self, node: &Binary) -> Child {
         let kind = self.references[node.first as usize].kind();
         if kind == Kind::Triangle {
@@ -89,13 +91,17 @@ impl Collapse<'_> {
                 bvh.spheres.push(SphereBlock::new(ids.filter_map(item)));
                 Leaf::Spheres { block: bvh.spheres.len() as u32 - 1 }
             }
-            Kind::Procedural => {
-                let first = bvh.procedurals.len() as u32;
-                for (geometry, primitive) in ids {
-                    let shape = self.procedural_place[geometry as usize];
-                    bvh.procedurals.push(ProceduralItem { shape, geometry, primitive });
+            Kind::Procedural | Kind::Thin => {
+                let first = bvh.procedurals.len();
+                bvh.procedurals
+                    .extend(ids.map(|(geometry, primitive)| ProceduralItem { geometry, primitive }));
+                if kind == Kind::Procedural {
+                    Leaf::Procedurals { first: first as u32, count }
+                } else {
+                    self.thin.push(first..bvh.procedurals.len());
+                    let block = self.thin.len() as u32 - 1;
+                    Leaf::Capsules { block, first: first as u32, count: count as u8 }
                 }
-                Leaf::Procedurals { first, count }
             }
             Kind::Instance | Kind::Triangle => {
                 // Instances keep their order: they are large, and a leaf holds one.
@@ -118,6 +124,15 @@ fn sorted_numbers(node: &Binary, references: &[Reference]) -> ([u32; Kind::MOST_
     }
     numbers.sort_unstable();
     (numbers, references.len())
+}
+
+/// The capsules of a range of procedural items.
+fn capsule_block(bvh: &Bvh, items: Range<usize>) -> CapsuleBlock {
+    let mut capsules = [None; Kind::MOST_IN_A_LEAF];
+    for (capsule, item) in capsules.iter_mut().zip(&bvh.procedurals[items]) {
+        *capsule = bvh.shapes_of(item).and_then(|shapes| shapes.capsule(item.primitive));
+    }
+    CapsuleBlock::new(&capsules)
 }
 
 fn triangle_block(node: &Binary, references: &[Reference], primitives: &Primitives<'_>) -> TriangleBlock {

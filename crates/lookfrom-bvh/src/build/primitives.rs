@@ -31,6 +31,7 @@ impl Geometry {
         match self {
             Self::Triangles(_) | Self::MovingTriangles(_) => Kind::Triangle,
             Self::Spheres(_) => Kind::Sphere,
+            Self::Procedural(shapes) if shapes.count() > 0 && shapes.capsule(0).is_some() => Kind::Thin,
             Self::Procedural(_) => Kind::Procedural,
         }
     }
@@ -90,6 +91,8 @@ pub(super) struct Primitives<'a> {
     part: Part,
     /// The first number of each geometry, and of the instances.
     first: Vec<u32>,
+    /// The kind of each geometry.
+    kinds: Vec<Kind>,
 }
 
 impl<'a> Primitives<'a> {
@@ -108,7 +111,8 @@ impl<'a> Primitives<'a> {
         if primitives >= Child::LIMIT || geometries.len() as u64 >= u64::from(NONE) {
             return Err(BuildError::TooMany { primitives });
         }
-        Ok(Self { geometries, instances, maps, part, first })
+        let kinds = geometries.iter().map(Geometry::kind).collect();
+        Ok(Self { geometries, instances, maps, part, first, kinds })
     }
 
     pub(super) fn count(&self) -> usize {
@@ -161,7 +165,7 @@ impl<'a> Primitives<'a> {
     fn reference(&self, number: u32) -> Reference {
         let (geometry, primitive) = self.ids(number);
         let (usable, kind) = match self.geometries.get(geometry as usize) {
-            Some(geometry) => (geometry.is_usable(primitive), geometry.kind()),
+            Some(shapes) => (shapes.is_usable(primitive), self.kinds[geometry as usize]),
             None => (true, Kind::Instance),
         };
         let bounds = self.bounds(number);
@@ -204,6 +208,8 @@ pub(super) enum Kind {
     Triangle,
     Sphere,
     Procedural,
+    /// A procedural shape in a capsule.
+    Thin,
     Instance,
 }
 
@@ -214,7 +220,7 @@ impl Kind {
     /// Maximum number of primitives in a leaf.
     pub(super) fn leaf_capacity(self) -> usize {
         match self {
-            Self::Triangle | Self::Sphere => Self::MOST_IN_A_LEAF,
+            Self::Triangle | Self::Sphere | Self::Thin => Self::MOST_IN_A_LEAF,
             Self::Procedural | Self::Instance => 1,
         }
     }

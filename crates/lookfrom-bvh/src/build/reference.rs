@@ -14,7 +14,7 @@ use super::primitives::Kind;
 #[repr(C, align(32))]
 pub(super) struct Reference([f32; 8]);
 
-const KINDS: [Kind; 4] = [Kind::Triangle, Kind::Sphere, Kind::Procedural, Kind::Instance];
+const KINDS: [Kind; 5] = [Kind::Triangle, Kind::Sphere, Kind::Procedural, Kind::Thin, Kind::Instance];
 
 impl Reference {
     pub(super) fn new(bounds: &Aabb, number: u32, kind: Kind) -> Self {

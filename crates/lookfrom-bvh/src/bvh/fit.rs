@@ -26,7 +26,7 @@ impl Bvh {
                     Leaf::Spheres { block } => {
                         around(self.spheres[block as usize].items().map(|item| item.shape.bounds()))
                     }
-                    Leaf::Procedurals { .. } => [kept; 2],
+                    Leaf::Procedurals { .. } | Leaf::Capsules { .. } => [kept; 2],
                     Leaf::Instances { first, count } => {
                         let range = first as usize..(first + count) as usize;
                         around(range.map(instance_bounds))

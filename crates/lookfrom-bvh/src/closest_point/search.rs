@@ -158,7 +158,7 @@ impl<S: Shapes> Search<'_, S> {
                             }
                         }
                     }
-                    Leaf::Procedurals { .. } => {}
+                    Leaf::Procedurals { .. } | Leaf::Capsules { .. } => {}
                     Leaf::Instances { first, count } => {
                         for place in first..first + count {
                             if self.settings.mask.is_none_or(|mask| outer.masks.shows_instance(place, mask)) {

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::{TraversalState, trace_any};
 use crate::bvh::Bvh;
+use crate::capsule::CapsuleBlock;
 use crate::collector::Collector;
 use crate::exact::ExactRay;
-use crate::item::Leaf;
+use crate::item::{Leaf, ProceduralItem};
 use crate::observer::Observer;
 use crate::ray::{Hit, NONE, Ray};
 use crate::sphere::{self, SphereBlock, SphereItem};
@@ -27,7 +28,13 @@ pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observ
     let range = |first: u32, count: u32| first as usize..(first + count) as usize;
     match *leaf {
         Leaf::Spheres { block } => spheres(simd, &bvh.spheres[block as usize], (ray, is_usual), state),
-        Leaf::Procedurals { first, count } => procedurals(bvh, range(first, count), ray, state),
+        Leaf::Procedurals { first, count } => {
+            procedurals(bvh, &bvh.procedurals[range(first, count)], LaneMask((1 << count) - 1), ray, state)
+        }
+        Leaf::Capsules { block, first, count } => {
+            let items = &bvh.procedurals[range(first, count.into())];
+            capsules(simd, bvh, (&bvh.capsules[block as usize], items), ray, state)
+        }
         Leaf::Instances { first, count } => instances(simd, bvh, range(first, count), ray, state, stack),
     }
 }
@@ -72,13 +79,34 @@ fn spheres<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     false
 }
 
-fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
+#[inline(always)]
+fn capsules<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    simd: S,
     bvh: &Bvh,
-    range: Range<usize>,
+    (block, items): (&CapsuleBlock, &[ProceduralItem]),
     ray: &ExactRay,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
-    for item in &bvh.procedurals[range] {
+    let range = [ray.t_min, state.collector.end()];
+    let kept = simd.vectorize(
+        #[inline(always)]
+        || block.may_hit(simd, items.len(), ray, range),
+    );
+    // An observer hears of all candidates, as of those in boxes of their own.
+    let tested = if O::LISTENS { LaneMask((1 << items.len()) - 1) } else { kept };
+    tested.0 != 0 && procedurals(bvh, items, tested, ray, state)
+}
+
+/// Tests some of the items of a leaf.
+#[inline(never)]
+fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
+    bvh: &Bvh,
+    items: &[ProceduralItem],
+    tested: LaneMask,
+    ray: &ExactRay,
+    state: &mut TraversalState<C, V, O>,
+) -> bool {
+    for item in tested.map(|place| &items[place]) {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, state.instance);
         state.observer.candidate(instance, geometry, primitive);
         if V::SELECTS && !state.visibility.shows(geometry, primitive) {
@@ -88,9 +116,8 @@ fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
         let t_max = state.collector.end().next_up();
         let [origin, direction] = [ray.origin, ray.direction].map(|x| x.map(|x| x as f32));
         let asked = Ray { origin, t_min: ray.t_min, direction, t_max };
-        let Some(found) = bvh.procedural_shapes[item.shape as usize].intersect(primitive, &asked) else {
-            continue;
-        };
+        let found = bvh.shapes_of(item).and_then(|shapes| shapes.intersect(primitive, &asked));
+        let Some(found) = found else { continue };
         if found.t > ray.t_min
             && state.collector.commit(Hit {
                 t: found.t,

@@ -4,6 +4,7 @@
 
 mod brute_force;
 mod build;
+mod capsules;
 mod closest_point;
 mod counts;
 mod crossings;

@@ -5,8 +5,8 @@
 //! with the conventions of Pharr, Jakob, Humphreys, Physically Based Rendering: u along, v across, the depth is that of
 //! the curve's centre line, and a ray that leaves starts a whole width away.
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
+use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
+use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray};
 use lookfrom_scene::shape::{Profile, Strand};
 
 use super::{MaterialBinding, SurfacePoint};
@@ -27,6 +27,8 @@ pub struct Curves {
     render_from_object: Affine,
     /// Inverse of the linear part.
     object_from_render: Affine,
+    /// An upper bound of the factor by which `render_from_object` lengthens vectors.
+    stretch: f64,
     reverse: bool,
     /// Its attributes.
     pub binding: MaterialBinding,
@@ -45,7 +47,9 @@ impl Curves {
     ) -> Option<Self> {
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
-        Some(Self { strands: strands.to_vec(), render_from_object, object_from_render, reverse, binding })
+        let stretch = stretch(&render_from_object);
+        let strands = strands.to_vec();
+        Some(Self { strands, render_from_object, object_from_render, stretch, reverse, binding })
     }
 
     /// The strand of a primitive, and its range of u.
@@ -66,8 +70,7 @@ impl Curves {
         let (strand, range) = self.segment(primitive as u32);
         range.map(|u| {
             let (point, _) = evaluate(&controls(strand), u);
-            DVec3::from_array(self.render_from_object.vector(point.to_array()))
-                + DVec3::from_array(self.render_from_object.translation)
+            DVec3::from_array(self.render_from_object.point(point.to_array()))
         })
     }
 
@@ -160,14 +163,20 @@ impl Procedural for Curves {
         }
     }
 
+    fn capsule(&self, primitive: u32) -> Option<Capsule> {
+        let (strand, range) = self.segment(primitive);
+        let ends = self.ends(primitive as usize);
+        let radius = self.stretch * distance_from_chord(strand, range);
+        // More than the rounding of the ends and of the ray's way to object space.
+        let greatest = ends[0].abs().max(ends[1].abs()).max_element();
+        let radius = (radius + greatest * f64::from(f32::EPSILON)) as f32;
+        Some(Capsule { ends: ends.map(|end| end.as_vec3().to_array()), radius: radius.next_up() })
+    }
+
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
         let (strand, range) = self.segment(primitive);
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let in_object = self.ray_in_object(origin, direction);
-        match passes_by(strand, range, in_object) {
-            true => None,
-            false => nearest(strand, range, in_object, ray),
-        }
+        nearest(strand, range, self.ray_in_object(origin, direction), ray)
     }
 }
 
@@ -294,31 +303,28 @@ fn ribbon_normal([first, last]: [Vec3; 2], u: f64) -> DVec3 {
     (libm::sin((1.0 - u) * angle) * first + libm::sin(u * angle) * last) / sin
 }
 
-/// Whether a ray's line is farther from a range of a strand than it could meet it: from the straight line between its ends by more than half
-/// the width and the greatest distance of the curve from that line. Nearly all rays that meet a box pass the curve by.
-fn passes_by(strand: &Strand, [from, to]: [f64; 2], (origin, direction): (DVec3, DVec3)) -> bool {
-    let c = controls(strand);
-
+/// The greatest distance of a hit on a range of a strand from the straight line between the range's ends.
+fn distance_from_chord(strand: &Strand, [from, to]: [f64; 2]) -> f64 {
     // A curve's distance from its chord is at most an eighth of the greatest second derivative, 6 times that of the control points.
+    let c = controls(strand);
     let bend = (c[0] - 2.0 * c[1] + c[2]).length_squared().max((c[1] - 2.0 * c[2] + c[3]).length_squared());
     let off = 0.75 * bend.sqrt() * (to - from) * (to - from);
+    0.5 * width_at(strand, from).max(width_at(strand, to)) + off
+}
 
-    // Seen along the ray the chord is the segment between these, turned by a quarter and enlarged by the length of the direction.
-    let [start, end] = [from, to].map(|u| {
-        let v = 1.0 - u;
-        let point =
-            c[0] * (v * v * v) + c[1] * (3.0 * v * v * u) + c[2] * (3.0 * v * u * u) + c[3] * (u * u * u);
-        (point - origin).cross(direction)
-    });
-    let way = end - start;
-    let share = -start.dot(way) / way.length_squared().max(f64::MIN_POSITIVE);
-    let nearest = start + way * share.clamp(0.0, 1.0);
-
-    // All of this is right to a few units of 2⁻⁵² of the greatest number that takes part.
-    let greatest = c.iter().fold(origin.abs(), |most, p| most.max(p.abs())).max_element();
-    let width = width_at(strand, from).max(width_at(strand, to));
-    let reach = 0.5 * width + off + 1e-13 * greatest;
-    nearest.length_squared() > reach * reach * direction.length_squared() * (1.0 + 1e-12)
+/// An upper bound of the factor by which a map lengthens vectors, at most a hundredth too large: the largest eigenvalue λ of A = MᵀM is at
+/// most the trace of A, and λⁿ is that of Aⁿ.
+fn stretch(map: &Affine) -> f64 {
+    let matrix = DMat3::from_cols_array_2d(&map.matrix);
+    let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
+    let (mut power, mut bound, mut exponent) = (matrix * matrix.transpose(), 1.0, 0.5);
+    for _ in 0..7 {
+        let sum = trace(&power);
+        bound *= libm::pow(sum, exponent);
+        let scaled = power * (1.0 / sum);
+        (power, exponent) = (scaled * scaled, 0.5 * exponent);
+    }
+    bound
 }
 
 /// The number of halvings after which a piece is nearly straight.
@@ -377,12 +383,12 @@ mod tests {
         Vec3::new(number(3 * seed), number(3 * seed + 1), number(3 * seed + 2))
     }
 
-    /// Rays that are said to pass a curve by do not hit it: curves and rays of random sizes, straight and bent, rays aimed at them.
+    /// Hits are in the capsules: curves and rays of random sizes, straight and bent, rays aimed at them, maps that turn, shear and mirror.
     #[test]
-    fn what_passes_by_does_not_hit() {
-        let (mut hits, mut passed) = (0, 0);
+    fn hits_are_in_capsules() {
+        let mut hits = 0;
         for index in 0..60_000_u64 {
-            let seed = index * 20;
+            let seed = index * 40;
             let size = 2_f32.powi((hash::mix(seed + 7) % 41) as i32 - 20);
             let bend = 2_f32.powi(-((hash::mix(seed + 8) % 30) as i32));
             let place = vector(seed + 1) * 2_f32.powi((hash::mix(seed + 9) % 21) as i32 - 10);
@@ -391,19 +397,50 @@ mod tests {
                 .map(|u: f32| size * (place + way * u + bend * vector(seed + 3 + (u * 3.0).round() as u64)));
             let width = [0.2, 0.05].map(|width| width * size * (1.01 + number(seed + 10)));
             let strand = Strand { points, width, profile: Profile::Flat };
-            let range = [0.125 * (index % 8) as f64, 0.125 * (index % 8 + 1) as f64];
-            let aim = evaluate(&controls(&strand), 0.5 * (range[0] + range[1])).0.as_vec3();
+            let map = Affine {
+                matrix: [20, 21, 22].map(|row| vector(seed + row).as_dvec3().to_array()),
+                translation: (size * vector(seed + 23)).as_dvec3().to_array(),
+            };
+            let Some(curves) = Curves::new(&[strand], map, false, MaterialBinding::NONE) else { continue };
+
+            let primitive = index as u32 % SEGMENTS;
+            let [from, to] = curves.ends(primitive as usize).map(DVec3::as_vec3);
             let off = 2_f32.powi(-((hash::mix(seed + 11) % 20) as i32)) * size * vector(seed + 12);
             let direction = 2_f32.powi((hash::mix(seed + 13) % 21) as i32 - 10) * vector(seed + 14);
-            let origin = aim + off - direction;
-            let ray = Ray::new(origin.to_array(), direction.to_array());
-            let in_object = (origin.as_dvec3(), direction.as_dvec3());
-            let passes = passes_by(&strand, range, in_object);
-            let hit = nearest(&strand, range, in_object, &ray);
-            assert!(!passes || hit.is_none(), "{index}: {strand:?} {range:?} {ray:?} {hit:?}");
-            hits += u32::from(hit.is_some());
-            passed += u32::from(passes);
+            let ray = Ray::new((from.midpoint(to) + off - direction).to_array(), direction.to_array());
+            let Some(hit) = curves.intersect(primitive, &ray) else { continue };
+            hits += 1;
+
+            // The hit's distance from the segment, but for the rounding of t.
+            let Capsule { ends, radius } = curves.capsule(primitive).unwrap();
+            let [a, b, o, d] =
+                [ends[0], ends[1], ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+            let point = o + f64::from(hit.t) * d;
+            let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            let distance = point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * hit.t) * d.length();
+            assert!(
+                distance <= f64::from(radius),
+                "{index}: {curves:?} {ray:?} {hit:?}: {distance} of {radius}"
+            );
         }
-        assert!(hits > 8_000 && passed > 8_000, "{hits} hits, {passed} pass by");
+        assert!(hits > 8_000, "{hits} hits");
+    }
+
+    #[test]
+    fn the_stretch_of_a_map_is_at_most_a_hundredth_too_large() {
+        for seed in 0..2000 {
+            let scale = f64::powi(2.0, (hash::mix(seed) % 41) as i32 - 20);
+            let matrix = [1, 2, 3].map(|row| (scale * vector(seed * 4 + row).as_dvec3()).to_array());
+            let map = Affine { matrix, ..Affine::IDENTITY };
+            let lengthened = |v: DVec3| DVec3::from_array(map.vector(v.to_array())).length() / v.length();
+            // Some steps of the power iteration, for the true one.
+            let transposed = DMat3::from_cols_array_2d(&matrix);
+            let mut v = DVec3::new(0.6, 0.5, 0.4);
+            for _ in 0..2000 {
+                v = (transposed * DVec3::from_array(map.vector(v.to_array()))).normalize();
+            }
+            let (most, bound) = (lengthened(v), stretch(&map));
+            assert!((1.0 + 1e-12) * bound >= most && bound <= 1.01 * most, "{map:?}: {most} {bound}");
+        }
     }
 }

@@ -105,9 +105,9 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-bvh",
         rungs: &[
             "aabb dispatch error_bounds faces lanes masks observer ray reference testing vector",
-            "affine collector exact nearest origin_primitive procedural ray_f64 unrounded",
-            "ellipsoid origin prepared sphere triangle",
-            "conservative item node",
+            "affine collector exact nearest origin_primitive ray_f64 unrounded",
+            "capsule ellipsoid origin prepared sphere triangle",
+            "conservative item node procedural",
             "common_origin ray8 stack statistics",
             "bvh coherence packet_bounds",
             "build hit_point settings validate",
