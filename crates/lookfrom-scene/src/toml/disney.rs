@@ -20,8 +20,6 @@ pub(super) const KEYS: &[&str] = &[
     "clearcoat_gloss",
     "diff_trans",
     "thin",
-    "normal_map",
-    "bump",
 ];
 
 impl Reader<'_, '_> {

@@ -16,8 +16,6 @@ pub(super) const KEYS: &[&str] = &[
     "roughness",
     "radial_roughness",
     "offset",
-    "normal_map",
-    "bump",
 ];
 
 /// Absorption per radius by a unit of eumelanin and of pheomelanin in Cycles, for red, green and blue: what its `melanin` counts.

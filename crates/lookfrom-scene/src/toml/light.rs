@@ -109,7 +109,7 @@ pub(super) const COMMON: &[&str] = &["type", "name"];
 impl Reader<'_, '_> {
     /// Reads one `[[light]]`.
     pub(super) fn read_light(&mut self, table: &Table<'_>) {
-        let Some(word) = table.kind(KEYS, None, |_| COMMON) else { return };
+        let Some(word) = table.kind(KEYS, None, |_| &[COMMON]) else { return };
         if let Err(error) = self.light(word, table) {
             table.note(error);
         }

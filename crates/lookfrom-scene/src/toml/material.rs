@@ -2,7 +2,7 @@
 
 use super::color::plain_color;
 use super::light::power;
-use super::table::{Kinds, Table};
+use super::table::{Groups, Kinds, Table};
 use super::value::Value;
 use super::{Reader, disney, hair, open_pbr, principled, subsurface};
 use crate::chain;
@@ -11,7 +11,7 @@ use crate::material::{BackFace, BumpGuard, BumpMapping, Color, Material, Materia
 use crate::scene::MaterialId;
 use crate::shape::Emission;
 
-/// The keys of materials, by type, in addition to [`COMMON`].
+/// The keys of materials, by type, in addition to those in [`common`].
 pub(super) const KEYS: Kinds = &[
     (
         "whitted",
@@ -25,82 +25,22 @@ pub(super) const KEYS: Kinds = &[
             "ior",
             "fresnel",
             "absorption",
-            "normal_map",
-            "bump",
         ],
     ),
-    ("diffuse", &["reflectance", "normal_map", "bump"]),
-    ("diffuse_transmission", &["reflectance", "transmittance", "scale", "normal_map", "bump"]),
-    (
-        "conductor",
-        &[
-            "metal",
-            "eta",
-            "k",
-            "reflectance",
-            "roughness",
-            "distribution",
-            "masking",
-            "energy",
-            "normal_map",
-            "bump",
-        ],
-    ),
-    ("dielectric", &["ior", "roughness", "distribution", "masking", "energy", "normal_map", "bump"]),
-    ("thin_dielectric", &["ior", "normal_map", "bump"]),
-    (
-        "coated_diffuse",
-        &[
-            "reflectance",
-            "roughness",
-            "ior",
-            "thickness",
-            "coat_albedo",
-            "g",
-            "coat_depth",
-            "coat_samples",
-            "coat_estimate",
-            "normal_map",
-            "bump",
-        ],
-    ),
-    (
-        "coated_conductor",
-        &[
-            "metal",
-            "eta",
-            "k",
-            "reflectance",
-            "base_roughness",
-            "roughness",
-            "ior",
-            "thickness",
-            "coat_albedo",
-            "g",
-            "coat_depth",
-            "coat_samples",
-            "coat_estimate",
-            "normal_map",
-            "bump",
-        ],
-    ),
+    ("diffuse", &["reflectance"]),
+    ("diffuse_transmission", &["reflectance", "transmittance", "scale"]),
+    ("conductor", &["metal", "eta", "k", "reflectance", "roughness", "distribution", "masking", "energy"]),
+    ("dielectric", &["ior", "roughness", "distribution", "masking", "energy"]),
+    ("thin_dielectric", &["ior"]),
+    ("coated_diffuse", &["reflectance", "roughness", "ior"]),
+    ("coated_conductor", &["metal", "eta", "k", "reflectance", "base_roughness", "roughness", "ior"]),
     (
         "plastic",
-        &[
-            "reflectance",
-            "specular_reflectance",
-            "nonlinear",
-            "ior",
-            "roughness",
-            "distribution",
-            "masking",
-            "normal_map",
-            "bump",
-        ],
+        &["reflectance", "specular_reflectance", "nonlinear", "ior", "roughness", "distribution", "masking"],
     ),
     ("subsurface", subsurface::KEYS),
     ("hair", hair::KEYS),
-    ("measured", &["file", "normal_map", "bump"]),
+    ("measured", &["file"]),
     ("principled", principled::KEYS),
     ("openpbr", open_pbr::KEYS),
     ("disney", disney::KEYS),
@@ -112,6 +52,19 @@ pub(super) const KEYS: Kinds = &[
 /// Keys of all materials.
 pub(super) const COMMON: &[&str] =
     &["type", "medium", "emission", "power", "two_sided", "back_face", "bump_guard"];
+/// Keys of all materials with a surface of their own.
+const BUMPS: &[&str] = &["normal_map", "bump"];
+/// Keys of materials under a coat with light between its interfaces.
+const COAT: &[&str] = &["thickness", "coat_albedo", "g", "coat_depth", "coat_samples", "coat_estimate"];
+
+/// The keys of a type that others have, too.
+pub(super) fn common(kind: &str) -> Groups {
+    match kind {
+        "unlit" | "mix" | "shadow_catcher" | "interface" => &[COMMON],
+        "coated_diffuse" | "coated_conductor" => &[COMMON, COAT, BUMPS],
+        _ => &[COMMON, BUMPS],
+    }
+}
 
 /// Looks from behind.
 pub(super) const BACK_FACES: &[(&str, BackFace)] = &[("black", BackFace::Black)];
@@ -155,7 +108,7 @@ impl Reader<'_, '_> {
     }
 
     fn read_material(&mut self, table: &Table<'_>, id: MaterialId) {
-        let Some(word) = table.kind(KEYS, Some("whitted"), |_| COMMON) else { return };
+        let Some(word) = table.kind(KEYS, Some("whitted"), common) else { return };
         let of = |kind| open_pbr::Read { kind, medium: None, normals: None };
         let read = match word {
             "whitted" => of(MaterialKind::Whitted(self.whitted(table))),

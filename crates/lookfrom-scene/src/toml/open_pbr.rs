@@ -58,8 +58,6 @@ pub(super) const KEYS: &[&str] = &[
     "geometry_coat_normal",
     "geometry_tangent",
     "geometry_coat_tangent",
-    "normal_map",
-    "bump",
 ];
 
 /// The largest asymmetry of a medium: at 1 light would not be scattered.

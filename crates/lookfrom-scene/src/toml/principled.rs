@@ -32,8 +32,6 @@ pub(super) const KEYS: &[&str] = &[
     "iridescence",
     "iridescence_ior",
     "iridescence_thickness",
-    "normal_map",
-    "bump",
 ];
 
 /// The key of an angle that is not in degrees.

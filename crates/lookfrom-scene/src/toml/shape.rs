@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, Vec3};
 
-use super::table::{Kinds, Table};
+use super::table::{Groups, Kinds, Table};
 use super::value::Value;
 use super::{Reader, curve, light, quadric, transform};
 use crate::composite;
@@ -12,7 +12,7 @@ use crate::medium::Sides;
 use crate::scene::MaterialId;
 use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
 
-/// The keys of shapes, by kind, in addition to [`COMMON`] and those of transforms.
+/// The keys of shapes, by kind, in addition to those in [`common`].
 pub(super) const KEYS: Kinds = &[
     ("sphere", &["center", "radius", "z_min", "z_max", "phi_max"]),
     ("triangle", &["vertices", "normals", "uvs"]),
@@ -66,23 +66,10 @@ pub(super) const COMMON: &[&str] = &[
     "reverse_orientation",
     "single_sided",
 ];
-/// The keys of all shapes, and those of transforms.
-const OF_ANY: &[&str] = &[
-    "name",
-    "material",
-    "medium",
-    "sides",
-    "emission",
-    "power",
-    "two_sided",
-    "alpha",
-    "reverse_orientation",
-    "single_sided",
-    "scale",
-    "rotate",
-    "translate",
-    "transform",
-];
+/// The keys of all shapes and of transforms.
+pub(super) const fn common(_kind: &str) -> Groups {
+    &[COMMON, transform::KEYS]
+}
 /// The keys of the media on both sides of a surface.
 pub(super) const SIDES: &[&str] = &["inside", "outside"];
 /// Keys of all shapes that are parts of a solid.
@@ -117,7 +104,7 @@ impl Reader<'_, '_> {
             }
         }
         for table in table.find(ANY).into_iter().flat_map(Value::tables) {
-            let Some(kind) = table.kind(KEYS, None, |_| OF_ANY) else { continue };
+            let Some(kind) = table.kind(KEYS, None, common) else { continue };
             if let Err(error) = self.shape(kind, &table, &mut shapes) {
                 table.note(error);
             }

@@ -16,8 +16,6 @@ pub(super) const KEYS: &[&str] = &[
     "g",
     "ior",
     "roughness",
-    "normal_map",
-    "bump",
 ];
 
 impl Reader<'_, '_> {

@@ -18,6 +18,9 @@ pub(super) const SCENE: &str = "a scene";
 /// Types of an item, with the keys of each.
 pub(super) type Kinds = &'static [(&'static str, &'static [&'static str])];
 
+/// Keys that several types have, in groups.
+pub(super) type Groups = &'static [&'static [&'static str]];
+
 /// A table whose keys are looked up by name. Errors are recorded and values are replaced by placeholders, so that one run
 /// finds all errors; the result is valid only if none was recorded.
 pub(super) struct Table<'a> {
@@ -149,7 +152,7 @@ impl<'a> Table<'a> {
         &self,
         kinds: Kinds,
         default: Option<&'static str>,
-        common: impl Fn(&'static str) -> &'static [&'static str],
+        common: impl Fn(&'static str) -> Groups,
     ) -> Option<&'static str> {
         let words: Vec<(&str, &'static str)> = kinds.iter().map(|&(word, _)| (word, word)).collect();
         let word = match (self.find("type"), default) {
@@ -163,7 +166,7 @@ impl<'a> Table<'a> {
         };
         let keys_of = |word: &'static str| {
             let own = kinds.iter().find(|kind| kind.0 == word).map_or(&[][..], |kind| kind.1);
-            [&["type"], own, common(word)].concat()
+            [&["type"], own, &common(word).concat()].concat()
         };
         let known = keys_of(word);
         for key in self.map.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {

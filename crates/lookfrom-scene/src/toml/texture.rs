@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Reader;
 use super::color::plain_color;
 use super::mapping::mapping;
-use super::table::{Kinds, Table};
+use super::table::{Groups, Kinds, Table};
 use super::value::{Value, unit};
 use crate::chain;
 use crate::error::{Error, Result};
@@ -82,8 +82,8 @@ const fn mip(filter: MipFilter) -> TexelFilter {
     TexelFilter::Mip { filter, footprint: TexelFilter::FOOTPRINT }
 }
 
-/// Whether a type of texture has a mapping of its own.
-pub(super) fn is_mapped(kind: &str) -> bool {
+/// The keys of a type that others have, too: those of a mapping of its own.
+pub(super) fn common(kind: &str) -> Groups {
     const WITHOUT: [&str; 9] = [
         "scale",
         "mix",
@@ -95,7 +95,7 @@ pub(super) fn is_mapped(kind: &str) -> bool {
         "threshold",
         "quotient",
     ];
-    !WITHOUT.contains(&kind)
+    if WITHOUT.contains(&kind) { &[] } else { &[super::mapping::KEYS] }
 }
 
 impl Reader<'_, '_> {
@@ -137,8 +137,7 @@ impl Reader<'_, '_> {
     }
 
     fn typed(&mut self, table: &Table<'_>) -> Result<TextureKind> {
-        let mapping_keys = |kind| if is_mapped(kind) { super::mapping::KEYS } else { &[] };
-        let Some(word) = table.kind(KEYS, None, mapping_keys) else { return Err(Error::untold()) };
+        let Some(word) = table.kind(KEYS, None, common) else { return Err(Error::untold()) };
         let octaves = |default: u32| table.or("octaves", default.into(), |value| value.integer(1, 16)) as u32;
         let roughness = || {
             table.or("roughness", TextureKind::ROUGHNESS, |value| {

@@ -2,8 +2,8 @@
 
 use super::table::Kinds;
 use super::{
-    camera, color, keyframes, light, mapping, material, medium, physical, principled, settings, shape,
-    spectrum, texture, transform, volume,
+    camera, color, keyframes, light, material, medium, physical, principled, settings, shape, spectrum,
+    texture, transform, volume,
 };
 
 /// The top-level keys of a file, except the kinds of shapes.
@@ -57,14 +57,14 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
         ("keyframes".to_owned(), keyframes::KEYS.to_vec()),
     ];
     for &(kind, keys) in shape::KEYS {
-        tables.push((format!("[[{kind}]]"), [keys, shape::COMMON, transform::KEYS].concat()));
+        tables.push((format!("[[{kind}]]"), [keys, &shape::common(kind).concat()].concat()));
     }
     for &(kind, keys) in material::KEYS {
-        tables.push((format!("[materials.NAME] {kind}"), [material::COMMON, keys].concat()));
+        tables.push((format!("[materials.NAME] {kind}"), [keys, &material::common(kind).concat()].concat()));
     }
     for &(kind, keys) in texture::KEYS {
-        let mapping = if texture::is_mapped(kind) { mapping::KEYS } else { &[] };
-        tables.push((format!("[textures.NAME] {kind}"), [&["type"], keys, mapping].concat()));
+        let common = texture::common(kind).concat();
+        tables.push((format!("[textures.NAME] {kind}"), [&["type"], keys, &common].concat()));
     }
     for &(kind, keys) in light::KEYS {
         tables.push((format!("[[light]] {kind}"), [light::COMMON, keys].concat()));
@@ -75,7 +75,7 @@ pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {
 /// The keys with enumerated values, and these values.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
-    use super::{directional, physical, sky, solid};
+    use super::{directional, mapping, physical, sky, solid};
     use crate::settings::{
         Allocation, ColorMode, Filter, Integrator, LightSampler, Portals, Sampler, Tonemap,
     };
