@@ -11,7 +11,6 @@ mod false_color;
 mod light_paths;
 mod occlusion;
 mod path;
-mod raycast;
 mod sample_streams;
 mod scratch;
 mod shadow;
@@ -42,14 +41,13 @@ use light_paths::LastScattering;
 pub use light_paths::{LightPathState, LightPaths};
 pub use occlusion::AmbientOcclusion;
 pub use path::{Flight, LightSampling, PathTracer, PreviousVertex, SubsurfaceExit, SubsurfaceProbe};
-pub use raycast::Raycast;
 pub use sample_streams::BatchStreams;
 pub(crate) use scratch::Scratch;
 use shadow::ShadowLight;
 pub(crate) use shadow::resolve as resolve_shadows;
 pub use shadow::{Shadow, ShadowTransparency, Shadows};
 pub use spectral_modes::SpectralModes;
-pub use whitted::Whitted;
+pub use whitted::{RayTree, Whitted};
 
 /// A light transport algorithm. Implement it to plug one of your own into a [`Renderer`](crate::render::Renderer) or a
 /// [`Session`](crate::session::Session::set_integrator): the renderer traces rays in batches, and calls [`Integrator::step`]

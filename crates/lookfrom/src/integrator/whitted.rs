@@ -1,5 +1,6 @@
 //! Recursive ray tracing (Whitted 1980): at each hit shadow rays, one reflected and one refracted ray, and so on. The
-//! colour of a pixel is the sum over that tree of rays.
+//! colour of a pixel is the sum over that tree of rays. Without the tree it is ray casting (Appel 1968): the nearest surface, local
+//! shading, a shadow ray to each light, no recursion.
 //!
 //! *Adaptive depth control* (Hall & Greenberg 1983): a branch whose throughput is below a limit is not
 //! followed.
@@ -23,28 +24,52 @@ use crate::shading::material::{Coefficients, albedo_of_coefficients};
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 use emit::PathHit;
-pub(super) use shaded::Shaded;
+use shaded::Shaded;
 use step::{BareEight, BareKernel, Wanted, shade_one};
 
 /// The depth of the deepest tree that [`Path::address`] can number.
 const DEEPEST: u32 = 62;
 
-/// Recursive ray tracing.
+/// Recursive ray tracing, or ray casting.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted {
+    /// The tree of rays; `None` for ray casting.
+    pub tree: Option<RayTree>,
+    /// Whether shadow rays pass transparent materials, coloured by them.
+    pub transparent_shadows: bool,
+}
+
+/// How far the tree of rays grows.
+#[derive(Clone, Copy, Debug)]
+pub struct RayTree {
     /// Maximum number of reflections and refractions along a ray; no ray goes on after 62 surfaces.
     pub depth: u32,
     /// Branches with a smaller throughput are not followed.
     pub min_contribution: f32,
-    /// Whether shadow rays pass transparent materials, coloured by them.
-    pub transparent_shadows: bool,
+}
+
+impl RayTree {
+    /// The reason why a path does not go on with this throughput.
+    #[inline]
+    fn cut(&self, path: &Path, beta: Spectrum) -> Option<Cut> {
+        if beta.max_lane() < self.min_contribution || beta.is_black() {
+            Some(Cut::Contribution)
+        } else if path.depth >= self.depth || path.address >= 1 << DEEPEST {
+            Some(Cut::Depth)
+        } else {
+            None
+        }
+    }
 }
 
 impl Integrator for Whitted {
     type State = ();
 
     fn name(&self) -> &'static str {
-        "whitted"
+        match self.tree {
+            Some(_) => "whitted",
+            None => "raycast",
+        }
     }
 
     fn shadow_transparency(&self) -> ShadowTransparency {
@@ -59,7 +84,7 @@ impl Integrator for Whitted {
         hits: &[Hit],
         output: &mut StepOutput<'_, P>,
     ) {
-        step_all(Some(self), &HitBatch { world, streams, paths, hits }, output);
+        step_all(self.tree.as_ref(), &HitBatch { world, streams, paths, hits }, output);
     }
 
     fn step<P: Probe>(
@@ -70,21 +95,7 @@ impl Integrator for Whitted {
         hit: &Hit,
         output: &mut StepOutput<'_, P>,
     ) {
-        step(Some(self), world, stream, (path, hit), &mut Shaded::default(), output);
-    }
-}
-
-impl Whitted {
-    /// The reason why a path does not go on with this throughput.
-    #[inline]
-    fn cut(&self, path: &Path, beta: Spectrum) -> Option<Cut> {
-        if beta.max_lane() < self.min_contribution || beta.is_black() {
-            Some(Cut::Contribution)
-        } else if path.depth >= self.depth || path.address >= 1 << DEEPEST {
-            Some(Cut::Depth)
-        } else {
-            None
-        }
+        step(self.tree.as_ref(), world, stream, (path, hit), &mut Shaded::default(), output);
     }
 }
 
@@ -96,12 +107,8 @@ struct Memory {
     shaded: Shaded,
 }
 
-/// [`Integrator::step_all`] of Whitted ray tracing, or without a `tree` of ray casting.
-pub(super) fn step_all<P: Probe>(
-    tree: Option<&Whitted>,
-    batch: &HitBatch<'_>,
-    output: &mut StepOutput<'_, P>,
-) {
+/// [`Integrator::step_all`] of Whitted ray tracing, or without a tree of ray casting.
+fn step_all<P: Probe>(tree: Option<&RayTree>, batch: &HitBatch<'_>, output: &mut StepOutput<'_, P>) {
     let HitBatch { world, streams, paths, hits } = *batch;
     let in_lanes = are_shaded_together();
     let even_sky = output.queues.modes.of_all().and_then(|mode| world.even_sky(mode));
@@ -135,7 +142,7 @@ pub(super) fn step_all<P: Probe>(
 /// The step of up to eight paths that met bare surfaces of one kind of shape.
 #[inline(never)]
 fn shade_bare_hits<P: Probe>(
-    tree: Option<&Whitted>,
+    tree: Option<&RayTree>,
     batch: &HitBatch<'_>,
     (eight, are_on_spheres): (&Eight<'_>, bool),
     shaded: &mut Shaded,
@@ -175,8 +182,8 @@ fn shade_bare_hits<P: Probe>(
 }
 
 /// The step of one path, whatever it has hit.
-pub(super) fn step<P: Probe>(
-    tree: Option<&Whitted>,
+fn step<P: Probe>(
+    tree: Option<&RayTree>,
     world: &World,
     stream: &SampleStream,
     (path, hit): (&Path, &Hit),
@@ -222,6 +229,6 @@ pub(super) fn step<P: Probe>(
     shaded.go_on(world, (1, |_| departure), tree, output);
 }
 
-fn wanted<'a, P: Probe>(tree: Option<&'a Whitted>, output: &StepOutput<'_, P>) -> Wanted<'a> {
+fn wanted<'a, P: Probe>(tree: Option<&'a RayTree>, output: &StepOutput<'_, P>) -> Wanted<'a> {
     Wanted { tree, shares: output.light_paths.is_some(), is_watched: P::LISTENS }
 }

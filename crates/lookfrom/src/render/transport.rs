@@ -7,7 +7,7 @@ use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
 
 use super::{Batch, Rays, Renderer, SampleId};
 use crate::integrator::{
-    AmbientOcclusion, Event, FalseColor, Integrator, LightSampling, PathTracer, Raycast, Whitted,
+    AmbientOcclusion, Event, FalseColor, Integrator, LightSampling, PathTracer, RayTree, Whitted,
 };
 use crate::view::camera::Camera;
 
@@ -75,8 +75,10 @@ pub(super) fn of_settings(settings: &RenderSettings, camera: &Camera, eye: DVec3
     let path =
         |light_sampling| Arc::new(PathTracer { depth, regularize, thin_passages_count, light_sampling });
     match integrator {
-        Kind::Raycast => Arc::new(Raycast { transparent_shadows }),
-        Kind::Whitted => Arc::new(Whitted { depth, min_contribution, transparent_shadows }),
+        Kind::Raycast => Arc::new(Whitted { tree: None, transparent_shadows }),
+        Kind::Whitted => {
+            Arc::new(Whitted { tree: Some(RayTree { depth, min_contribution }), transparent_shadows })
+        }
         Kind::Path => path(LightSampling::MultipleImportance),
         Kind::SimplePath => path(LightSampling::NextEventEstimation),
         Kind::RandomWalk => path(LightSampling::None),

@@ -3,7 +3,7 @@
 
 use crate::same_bits::OneByOne;
 use crate::support::{Compiled, scene};
-use lookfrom::integrator::{LightSampling, PathTracer, Whitted};
+use lookfrom::integrator::{LightSampling, PathTracer, RayTree, Whitted};
 use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::image::Image;
@@ -184,7 +184,8 @@ fn eight_at_once_are_eight_one_by_one() {
             assert!(a == b, "paths, {kind:?} {color:?}");
 
             scene.render.integrator = Integrator::Whitted;
-            let whitted = Whitted { depth: 3, min_contribution: 0.0, transparent_shadows: true };
+            let tree = Some(RayTree { depth: 3, min_contribution: 0.0 });
+            let whitted = Whitted { tree, transparent_shadows: true };
             scene.render.min_contribution = 0.0;
             let in_lanes = Compiled::new(scene).renderer();
             let alone = in_lanes.clone().with_integrator(OneByOne(whitted));

@@ -4,14 +4,14 @@ use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{SvgView, inspect, svg};
 use lookfrom::integrator::{
-    Event, Integrator as Transport, LightSampling, Path, PathTracer, Probe, SampleStream, ShadowTransparency,
-    StepOutput, Whitted,
+    Event, Integrator as Transport, LightSampling, Path, PathTracer, Probe, RayTree, SampleStream,
+    ShadowTransparency, StepOutput, Whitted,
 };
 use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
 use lookfrom_scene::Scene;
-use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds};
+use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds, RenderSettings};
 
 const SCENES: [&str; 6] = [
     "whitted1980.toml",
@@ -298,11 +298,8 @@ fn trees_grow_eight_at_once_as_one_by_one() {
             if spectral {
                 scene.render.color = ColorMode::Spectral;
             }
-            let whitted = Whitted {
-                depth: scene.render.depth,
-                min_contribution: scene.render.min_contribution,
-                transparent_shadows: scene.render.transparent_shadows,
-            };
+            let RenderSettings { depth, min_contribution, transparent_shadows, .. } = scene.render;
+            let whitted = Whitted { tree: Some(RayTree { depth, min_contribution }), transparent_shadows };
             let compiled = Compiled::new(scene);
             let renderer = compiled.renderer();
             let one_by_one = renderer.clone().with_integrator(OneByOne(whitted));

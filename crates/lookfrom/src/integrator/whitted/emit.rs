@@ -3,7 +3,7 @@
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::LaneMask;
 
-use super::Whitted;
+use super::RayTree;
 use super::shaded::Shaded;
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Boundary, Departure};
@@ -72,7 +72,7 @@ impl Shaded {
         &self,
         world: &World,
         (lanes, departure): (u32, impl Fn(usize) -> Departure<'a>),
-        tree: Option<&Whitted>,
+        tree: Option<&RayTree>,
         output: &mut StepOutput<'_, P>,
     ) {
         for from in &self.lights[..self.light_count] {
@@ -99,7 +99,7 @@ impl Shaded {
 fn grow<P: Probe>(
     world: &World,
     departure: &Departure<'_>,
-    (tree, branch): (&Whitted, Branch),
+    (tree, branch): (&RayTree, Branch),
     (ray, beta): (Ray, Spectrum),
     output: &mut StepOutput<'_, P>,
 ) {

@@ -3,7 +3,7 @@
 
 use lookfrom_simd::{Float, Kernel, Mask, Real, Simd};
 
-use super::Whitted;
+use super::RayTree;
 use super::shaded::{BranchRays, FromLight, Shaded};
 use super::told::Told;
 use crate::aov::FirstSurfaceColumns;
@@ -25,7 +25,7 @@ use crate::world::World;
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'a> {
     /// The tree of rays, if one grows.
-    pub(super) tree: Option<&'a Whitted>,
+    pub(super) tree: Option<&'a RayTree>,
     /// Whether layers of light-path expressions need the shares of diffuse reflection.
     pub(super) shares: bool,
     /// Whether a probe listens.

@@ -2,7 +2,7 @@
 
 use lookfrom_simd::LaneMask;
 
-use super::Whitted;
+use super::RayTree;
 use crate::core::lanes::width::{Lanes, Mask, Width};
 use crate::core::lanes::{LANES, row, store};
 use crate::core::spectrum::Spectrum;
@@ -63,7 +63,7 @@ impl Told {
     pub(super) fn add_branches<W: Width>(
         &mut self,
         width: W,
-        (paths, tree): (&[&Path; LANES], &Whitted),
+        (paths, tree): (&[&Path; LANES], &RayTree),
         beta: Spectrum<W::Real>,
         branches: &Branches<W::Real>,
         [exist, is_refracted]: [Mask<W>; 2],
