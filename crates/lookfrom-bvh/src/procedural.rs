@@ -45,9 +45,9 @@ pub trait Procedural: Send + Sync + Debug {
     /// or not finite is left out. Called once or twice, when the tree is built.
     fn bounds(&self, primitive: u32) -> Aabb;
 
-    /// A capsule that contains all hits of [`Self::intersect`] but for the rounding of t, for all shapes or for none. Up to eight shapes with capsules share a leaf, and
-    /// rays that pass a capsule by are not asked for: much less time and memory for shapes that are long and thin. Called once or
-    /// twice, when the tree is built. `None` unless overridden.
+    /// A capsule that contains all hits of [`Self::intersect`] but for the rounding of t, for all shapes or for none; `None` unless
+    /// overridden. Up to eight shapes with capsules share a leaf, and rays that pass a capsule by do not ask for the shape: less time
+    /// and memory where shapes are long and thin. Called once or twice, when the tree is built.
     fn capsule(&self, _primitive: u32) -> Option<Capsule> {
         None
     }

@@ -5,6 +5,8 @@
 //! with the conventions of Pharr, Jakob, Humphreys, Physically Based Rendering: u along, v across, the depth is that of
 //! the curve's centre line, and a ray that leaves starts a whole width away.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray};
 use lookfrom_scene::shape::{Profile, Strand};
@@ -23,7 +25,8 @@ const MOST_SPLITS: u32 = 10;
 /// Curves of one shape, with their transform.
 #[derive(Clone, Debug)]
 pub struct Curves {
-    strands: Vec<Strand>,
+    /// Shared with the scene.
+    strands: Arc<[Strand]>,
     render_from_object: Affine,
     /// Inverse of the linear part.
     object_from_render: Affine,
@@ -40,7 +43,7 @@ type Controls = [DVec3; 4];
 impl Curves {
     /// Places strands by a transform. None where it has no inverse.
     pub fn new(
-        strands: &[Strand],
+        strands: Arc<[Strand]>,
         render_from_object: Affine,
         reverse: bool,
         binding: MaterialBinding,
@@ -48,7 +51,6 @@ impl Curves {
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
         let stretch = stretch(&render_from_object);
-        let strands = strands.to_vec();
         Some(Self { strands, render_from_object, object_from_render, stretch, reverse, binding })
     }
 
@@ -401,7 +403,9 @@ mod tests {
                 matrix: [20, 21, 22].map(|row| vector(seed + row).as_dvec3().to_array()),
                 translation: (size * vector(seed + 23)).as_dvec3().to_array(),
             };
-            let Some(curves) = Curves::new(&[strand], map, false, MaterialBinding::NONE) else { continue };
+            let Some(curves) = Curves::new(Arc::new([strand]), map, false, MaterialBinding::NONE) else {
+                continue;
+            };
 
             let primitive = index as u32 % SEGMENTS;
             let [from, to] = curves.ends(primitive as usize).map(DVec3::as_vec3);

@@ -9,8 +9,10 @@ use super::World;
 
 /// Bytes of a triangle: the primitive, its part of the tree, and what building the tree takes.
 const TRIANGLE: u64 = 165;
-/// Bytes of a sphere of many, a bilinear patch or a piece of a curve.
+/// Bytes of a sphere of many, or of a bilinear patch.
 const PRIMITIVE: u64 = 160;
+/// Bytes of a curve: its pieces' part of the tree, and what building the tree takes.
+const CURVE: u64 = 700;
 /// Bytes of a shape, apart from its primitives, with its name and its binding to a material.
 const SHAPE: u64 = 600;
 /// Bytes of an instance, and what building the tree over it takes; as written it is freed before.
@@ -68,7 +70,7 @@ fn of_shape(shape: &Shape, scene: &Scene) -> u64 {
         }
         Geometry::Spheres(spheres) => (spheres.len(), PRIMITIVE),
         Geometry::Bilinear(patches) => (patches.patches.len(), PRIMITIVE),
-        Geometry::Curves(strands) => (strands.len(), PRIMITIVE),
+        Geometry::Curves(strands) => (strands.len(), CURVE),
         _ => (1, PRIMITIVE),
     };
     let light = if shape.emission.is_some() { LIGHT } else { 0 };

@@ -108,11 +108,17 @@ impl Compiler<'_> {
         Ok(())
     }
 
-    pub(super) fn curves(&mut self, placing: Placing, strands: &[Strand], group: &mut Group) -> Result<()> {
+    pub(super) fn curves(
+        &mut self,
+        placing: Placing,
+        strands: &Arc<[Strand]>,
+        group: &mut Group,
+    ) -> Result<()> {
         let Placing { shape, matrix, binding } = placing;
         countable(placing, strands.len().saturating_mul(SEGMENTS as usize))?;
-        let mut curves = Curves::new(strands, math::affine(matrix), shape.reverse_orientation, binding)
-            .ok_or_else(|| not_invertible(&shape.at))?;
+        let mut curves =
+            Curves::new(strands.clone(), math::affine(matrix), shape.reverse_orientation, binding)
+                .ok_or_else(|| not_invertible(&shape.at))?;
         // Curves that face all rays have no back; their light would not be seen from behind.
         let has_back = strands.iter().any(|strand| matches!(strand.profile, Profile::Ribbon(_)));
         let emission = shape
