@@ -73,7 +73,7 @@ impl CapsuleBlock {
         block
     }
 
-    /// Which of a number of shapes a ray, rounded to single precision, may hit at t from `t_min` to `t_max`.
+    /// The shapes, of `count`, that a ray rounded to single precision may hit at t from `t_min` to `t_max`; it surely misses all others.
     ///
     /// Seen along the direction d, a segment from a to b is the one from (a − o) × d to (b − o) × d, turned and |d| times as large; a
     /// capsule is excluded where that is farther from zero than r |d|. With units of rounding u = 2⁻²⁴ and m the greatest magnitude of
@@ -162,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Where a line is nearest to a capsule's segment: t, and the distance there.
+    /// The closest approach of a line to a capsule's segment: t, and the distance.
     fn nearest(capsule: &Capsule, ray: &Ray) -> (f64, f64) {
         let [a, b] = capsule.ends.map(|end| subtract(wide(end), wide(ray.origin)));
         let d = wide(ray.direction);

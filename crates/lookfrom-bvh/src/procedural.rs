@@ -38,7 +38,7 @@ use crate::ray::Ray;
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 pub trait Procedural: Send + Sync + Debug {
-    /// The number of shapes. Called once, when the tree is built.
+    /// The number of shapes. Called when the tree is built.
     fn count(&self) -> u32;
 
     /// The bounding box of a shape, which must contain all hits of [`Self::intersect`]. A shape whose box is empty
@@ -47,7 +47,7 @@ pub trait Procedural: Send + Sync + Debug {
 
     /// A capsule that contains all hits of [`Self::intersect`] but for the rounding of t, for all shapes or for none; `None` unless
     /// overridden. Up to eight shapes with capsules share a leaf, and rays that pass a capsule by do not ask for the shape: less time
-    /// and memory where shapes are long and thin. Called once or twice, when the tree is built.
+    /// and memory where shapes are long and thin. Called when the tree is built.
     fn capsule(&self, _primitive: u32) -> Option<Capsule> {
         None
     }

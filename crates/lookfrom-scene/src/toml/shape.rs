@@ -97,7 +97,7 @@ impl Reader<'_, '_> {
         for &(kind, keys) in KEYS {
             let Some(value) = table.find(kind) else { continue };
             for table in value.tables() {
-                table.allow(&[keys, COMMON, transform::KEYS]);
+                table.allow(&[&[keys], common(kind)].concat());
                 if let Err(error) = self.shape(kind, &table, &mut shapes) {
                     table.note(error);
                 }

@@ -39,7 +39,7 @@ pub struct Whitted {
     pub transparent_shadows: bool,
 }
 
-/// How far the tree of rays grows.
+/// The limits of the tree of rays: the depth, and the least throughput (adaptive depth control).
 #[derive(Clone, Copy, Debug)]
 pub struct RayTree {
     /// Maximum number of reflections and refractions along a ray; no ray goes on after 62 surfaces.
