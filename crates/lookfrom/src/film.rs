@@ -3,9 +3,9 @@
 //! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
-//! denoiser, are in [`crate::aov`]; noise estimates in `noise`; firefly suppression in `fireflies`; which sums it has, in
-//! `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion for display is in
-//! [`crate::post::develop`].
+//! denoiser, are in [`crate::aov`]; what the sums tell of a pixel, in `means`; noise estimates in `noise`; firefly suppression in
+//! `fireflies`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion
+//! for display is in [`crate::post::develop`].
 //!
 //! In a tile, which a thread fills, a pixel takes 112 bytes, as many for variances in the sensor's channels, and those of AOVs, where they are
 //! enabled. The film keeps them packed, in `plane`: in about half of that.
@@ -17,8 +17,10 @@ mod first_hits;
 mod layout;
 mod ledger;
 mod light_paths;
+mod means;
 mod motion;
 mod noise;
+mod picture;
 mod pixel;
 mod plane;
 mod stored;
@@ -31,7 +33,9 @@ pub(crate) use self::layout::Layout;
 pub use self::ledger::{Overlap, SampleLedger};
 use self::light_paths::LightPathSums;
 use self::motion::MotionSums;
-use self::pixel::{Pixel, unbiased_variance};
+pub use self::picture::Picture;
+pub(crate) use self::picture::composited;
+use self::pixel::Pixel;
 use self::plane::Plane;
 pub(crate) use self::stored::StoredRows;
 use self::stored::{Sums, for_each_plane};
@@ -47,8 +51,6 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use crate::aov::{AovSums, LayerSums};
 pub use crate::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 pub use crate::core::fixed_point::BRIGHTEST;
-use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64};
-use crate::core::hash;
 pub use crate::core::sampler::SampleId;
 
 /// Maximum number of pixels of a picture: 2³⁰.
@@ -78,48 +80,6 @@ pub struct Film {
     dropped: u64,
     first_dropped: Option<SampleId>,
     ledger: SampleLedger,
-}
-
-/// Linear light, row by row from the top left.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// `width` × `height` pixels: red, green, blue.
-    pub pixels: Vec<[f32; 3]>,
-    /// Alpha of each pixel, 0 … 1 up to noise; the colours are premultiplied by it. Empty if the picture has none.
-    pub alpha: Vec<f32>,
-}
-
-impl Picture {
-    /// Replaces a part of this picture, with its upper left corner at column `x0` and row `y0`, by a smaller picture.
-    /// Pixels outside are left out.
-    pub fn replace(&mut self, x0: u32, y0: u32, part: &Self) {
-        let (width, columns) = (self.width as usize, part.width.min(self.width.saturating_sub(x0)) as usize);
-        if columns == 0 {
-            return;
-        }
-        if !part.alpha.is_empty() && self.alpha.is_empty() {
-            self.alpha = vec![0.0; self.pixels.len()];
-        }
-        for row in 0..part.height.min(self.height.saturating_sub(y0)) as usize {
-            let (to, from) = ((y0 as usize + row) * width + x0 as usize, row * part.width as usize);
-            self.pixels[to..to + columns].copy_from_slice(&part.pixels[from..from + columns]);
-            if !part.alpha.is_empty() {
-                self.alpha[to..to + columns].copy_from_slice(&part.alpha[from..from + columns]);
-            }
-        }
-    }
-
-    /// The picture composited by its alpha over a background of linear light; one without alpha stays the same.
-    pub fn before(mut self, background: [f32; 3]) -> Self {
-        for (pixel, alpha) in self.pixels.iter_mut().zip(std::mem::take(&mut self.alpha)) {
-            *pixel = composited(*pixel, alpha, background);
-        }
-        self
-    }
 }
 
 impl Film {
@@ -315,54 +275,6 @@ impl Film {
         &mut self.ledger
     }
 
-    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.
-    /// Black where there are none, and outside of [`Film::area`].
-    pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
-        self.pixel(x, y).map_or([0.0; 3], |pixel| pixel.mean())
-    }
-
-    /// The mean of a pixel composited by its alpha over a background, as [`Picture::before`] does.
-    pub fn mean_before(&self, x: u32, y: u32, background: [f32; 3]) -> [f32; 3] {
-        let mean = self.mean(x, y);
-        self.alpha(x, y).map_or(mean, |alpha| composited(mean, alpha, background))
-    }
-
-    /// The unbiased estimate of the variance of *one* sample of a pixel in X, Y and Z (CIE 1931, see [`xyz`]; the
-    /// second is that of the luminance). Divided by [`Film::samples`] it is that of the mean of independent samples;
-    /// that of stratified ones is less. Infinite with fewer than two samples, and outside of [`Film::area`]. The sum of
-    /// squares saturates at 2⁸⁰.
-    pub fn variance(&self, x: u32, y: u32) -> [f32; 3] {
-        self.pixel(x, y).map_or([f32::INFINITY; 3], |pixel| pixel.variance().map(|variance| variance as f32))
-    }
-
-    /// The variance of *one* sample of a pixel in the channels of the sensor, estimated like [`Film::variance`]; `None`
-    /// where the film has no memory for it (no AOVs, or a sensor that measures X, Y and Z), and outside of
-    /// [`Film::area`].
-    pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
-        self.sums_of(&self.channels, x, y)
-            .map(|sums| sums.variance_of(|mean| mean).map(|variance| variance as f32))
-    }
-
-    /// The mean AOVs of a pixel: the albedo over all samples (a miss is black), all others over the samples with a hit.
-    /// `None` where the film has no memory for them, where no sample hit anything, and outside of [`Film::area`].
-    pub fn aovs(&self, x: u32, y: u32) -> Option<Aovs> {
-        self.sums_of(&self.layers, x, y)?.mean()
-    }
-
-    /// The mean light of a pixel in each layer of light-path expressions; black outside of [`Film::area`].
-    pub fn light_paths(&self, x: u32, y: u32) -> impl Iterator<Item = [f32; 3]> {
-        let samples = self.samples(x, y);
-        self.light_paths
-            .iter()
-            .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
-    }
-
-    /// The motion vector of a pixel, from the opening to the closing of the shutter, in pixels to the right and upwards: the mean over the
-    /// samples with a hit, 0 without any. `None` where the film has no memory for it, and outside of [`Film::area`].
-    pub fn motion(&self, x: u32, y: u32) -> Option<[f32; 2]> {
-        self.sums_of(&self.motions, x, y).map(|sums| sums.mean())
-    }
-
     /// Whether the film has motion vectors.
     pub fn has_motion(&self) -> bool {
         !self.motions.is_empty()
@@ -371,30 +283,6 @@ impl Film {
     /// Whether the film has AOVs.
     pub fn has_layers(&self) -> bool {
         !self.layers.is_empty()
-    }
-
-    /// The denoiser features of a pixel; `None` where the film has no memory for them or no samples, and outside of
-    /// [`Film::area`].
-    pub fn denoiser_features(&self, x: u32, y: u32) -> Option<DenoiserFeatures> {
-        self.sums_of(&self.features, x, y)?.features()
-    }
-
-    /// The variance of the alpha of *one* sample of a pixel, estimated like [`Film::variance`]. 0 where the film has no
-    /// alpha or is not made for the denoiser, and outside of [`Film::area`].
-    pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
-        let sums = self.sums_of(&self.alphas, x, y).zip(self.sums_of(&self.alpha_squares, x, y));
-        let Some((sum, squares)) = sums else { return 0.0 };
-        let samples = self.samples(x, y);
-        if samples < 2 {
-            return f32::INFINITY;
-        }
-        let n = samples as f64;
-        unbiased_variance(n, sum as f64 / (n * TWO_TO_64), squares as f64 / (n * TWO_TO_48)) as f32
-    }
-
-    /// Number of samples of a pixel, without those that were dropped.
-    pub fn samples(&self, x: u32, y: u32) -> u64 {
-        self.pixel(x, y).map_or(0, |pixel| pixel.samples)
     }
 
     /// Number of samples that were dropped because they were not finite.
@@ -406,71 +294,6 @@ impl Film {
     pub fn first_dropped(&self) -> Option<SampleId> {
         self.first_dropped
     }
-
-    /// The means of all pixels, black outside of [`Film::area`].
-    pub fn picture(&self) -> Picture {
-        self.picture_of(PixelBounds { x0: 0, y0: 0, x1: self.width, y1: self.height })
-    }
-
-    /// A hash of the means of all pixels, in 16 hexadecimal digits: equal pictures of different machines have the same.
-    pub fn hash(&self) -> String {
-        let bytes = self.picture().pixels.into_iter().flatten().flat_map(f32::to_le_bytes);
-        format!("{:016x}", hash::of_bytes(bytes))
-    }
-
-    /// The means of the pixels of a rectangle, black outside of [`Film::area`]: a picture of its size.
-    pub fn picture_of(&self, part: PixelBounds) -> Picture {
-        let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
-        let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
-        let PixelBounds { x0, y0, x1, y1 } = common(part, self.area);
-        for y in y0..y1 {
-            let start = (y - part.y0) as usize * width as usize;
-            let row = &mut pixels[start + (x0 - part.x0) as usize..start + (x1 - part.x0) as usize];
-            let mut means = row.iter_mut();
-            self.pixels.row(y, x0, x1, |pixel| {
-                if let Some(mean) = means.next() {
-                    *mean = pixel.mean();
-                }
-            });
-        }
-        Picture { width, height, pixels, alpha: self.alpha_of(part) }
-    }
-
-    /// Alpha of the pixels of a rectangle; empty where the film has none.
-    fn alpha_of(&self, part: PixelBounds) -> Vec<f32> {
-        if self.alphas.is_empty() {
-            return Vec::new();
-        }
-        let rows = (part.y0..part.y1).flat_map(|y| (part.x0..part.x1).map(move |x| (x, y)));
-        rows.filter_map(|(x, y)| self.alpha(x, y)).collect()
-    }
-
-    /// The mean alpha of a pixel, 0 without samples; `None` if the film has no alpha.
-    pub(crate) fn alpha(&self, x: u32, y: u32) -> Option<f32> {
-        let mean = match (self.samples(x, y), self.sums_of(&self.alphas, x, y)) {
-            (0, _) | (_, None) => 0.0,
-            (samples, Some(sum)) => (sum as f64 / (samples as f64 * TWO_TO_64)) as f32,
-        };
-        (!self.alphas.is_empty()).then_some(mean)
-    }
-
-    /// The sums of a pixel; `None` outside of [`Film::area`].
-    fn pixel(&self, x: u32, y: u32) -> Option<Pixel> {
-        self.sums_of(&self.pixels, x, y)
-    }
-
-    /// Sums of a kind of a pixel; `None` where there are none, and outside of [`Film::area`].
-    fn sums_of<T: Sums>(&self, plane: &Plane<T>, x: u32, y: u32) -> Option<T> {
-        let PixelBounds { x0, y0, x1, y1 } = self.area;
-        let is_inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
-        if is_inside { plane.get(x, y) } else { None }
-    }
-}
-
-/// Light, premultiplied by alpha, over a background.
-pub(crate) fn composited(light: [f32; 3], alpha: f32, background: [f32; 3]) -> [f32; 3] {
-    let share = 1.0 - alpha.clamp(0.0, 1.0);
-    std::array::from_fn(|c| light[c] + share * background[c])
 }
 
 /// The pixels of a film for these settings.

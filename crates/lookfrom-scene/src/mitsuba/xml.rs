@@ -2,13 +2,16 @@
 //!
 //! Document type declarations are refused, and with them all entities of a file's own.
 
-use std::cell::Cell;
+mod text;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use glam::DVec3;
 use roxmltree::{Document, Node, ParsingOptions};
+
+pub(super) use text::Text;
 
 use super::plugin::{Ids, Plugin, Property, Value};
 use super::{transform, value};
@@ -84,41 +87,6 @@ pub(super) struct Reading<'c, 'f> {
     is_old: bool,
 }
 
-/// The text of a file, with the beginnings of its lines.
-pub(super) struct Text {
-    whole: Location,
-    text: String,
-    lines: Vec<usize>,
-    /// The line, offset and column that were counted last: a file may be one long line.
-    counted: Cell<(usize, usize, u32)>,
-    /// The folder of the file.
-    folder: PathBuf,
-}
-
-impl Text {
-    fn new(path: &Path, bytes: &[u8]) -> Result<Self> {
-        let whole = Location::file(path);
-        let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
-        let text = std::str::from_utf8(bytes).map_err(|_| {
-            Error::syntax(&whole, "the text is not UTF-8").hint("save it in UTF-8 with a text editor")
-        })?;
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(index, _)| index + 1)).collect();
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Ok(Self { whole, text: text.to_owned(), lines, counted: Cell::new((1, 0, 1)), folder })
-    }
-
-    /// The location of a byte.
-    pub(super) fn at(&self, offset: usize) -> Location {
-        let line = self.lines.partition_point(|&start| start <= offset);
-        let (counted_line, from, column) = self.counted.get();
-        let (from, column) = if line == counted_line { (from, column) } else { (self.lines[line - 1], 1) };
-        let count = |from, to| self.text.get(from..to).map_or(0, |between| between.chars().count() as u32);
-        let column = if from <= offset { column + count(from, offset) } else { column - count(offset, from) };
-        self.counted.set((line, offset, column));
-        self.whole.at(line as u32, column)
-    }
-}
-
 impl<'c, 'f> Reading<'c, 'f> {
     pub(super) fn new(path: &Path, context: &'c mut LoadContext<'f>) -> Self {
         let unquoted = |value: &String| match value.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'))
@@ -188,7 +156,7 @@ impl<'c, 'f> Reading<'c, 'f> {
         let _memory =
             self.context.budget.reserve(30 * bytes.len() as u64, "the parsed scene", &text.whole)?;
         let document =
-            Document::parse_with_options(&text.text, options).map_err(|error| syntax(&error, &text))?;
+            Document::parse_with_options(&text.text, options).map_err(|error| text.error(&error))?;
         self.nodes += document.descendants().len() as u32;
         let root = document.root_element();
         let at = text.at(root.range().start);
@@ -505,23 +473,6 @@ pub(super) fn blame(error: Error, at: &Location) -> Error {
     }
     let message = format!("{}: {}", error.at, error.message);
     Error { hint: error.hint, ..Error::new(error.kind, at, message) }
-}
-
-fn syntax(error: &roxmltree::Error, text: &Text) -> Error {
-    let pos = error.pos();
-    let at = text.whole.at(pos.row, pos.col);
-    match error {
-        roxmltree::Error::DtdDetected => {
-            Error::new(ErrorKind::Unsupported, &text.whole, "document type declarations are not read")
-                .hint("take the line with <!DOCTYPE …> out, and entities with it")
-        }
-        roxmltree::Error::NodesLimitReached => Error::new(
-            ErrorKind::Limit,
-            &text.whole,
-            format!("more than {MOST_NODES} elements, texts and comments"),
-        ),
-        _ => Error::syntax(&at, error.to_string()),
-    }
 }
 
 /// `toWorld` as `to_world`, `toUV` as `to_uv`.

@@ -1,12 +1,18 @@
-//! Options that change a session's picture and its camera, for which no scene is read and no tree is built.
+//! What changes of a session's picture and its camera: options, and settings one by one. No scene is read and no tree is built, unless
+//! the camera goes far away.
+
+use std::sync::Arc;
 
 use lookfrom_scene::camera::Camera;
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use lookfrom_scene::{CameraChoice, ImportOptions, Result};
 
 use super::options::unsuitable;
 use super::prepare::settle_limits;
-use super::{Exposure, Fireflies, Options, Session};
+use super::{Exposure, Fireflies, Options, Session, Turning};
+use crate::integrator::Integrator;
 use crate::render::StopCriteria;
+use crate::view::View;
 
 impl Session {
     /// Changes what options give: size, samples and how they are taken, camera, development, stop criteria. What they leave open stays
@@ -62,6 +68,75 @@ impl Session {
         }
         *self = changed;
         Ok(())
+    }
+
+    /// Changes the camera. Nothing is read or built again, unless the camera is so far from the origin of render space,
+    /// and so near to a surface, that the world would not be precise there ([`World::is_precise_from`]): then the scene
+    /// is read again and its world built around that camera.
+    ///
+    /// # Errors
+    /// `Invalid` for a degenerate camera; `Request` where the world is not precise from there and cannot be read again,
+    /// because the session was made of a scene or through [`Session::read`]. Then nothing has changed.
+    pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
+        let view = View::new(&camera, self.image().clone())?;
+        let eye = view.camera().lookfrom();
+        self.renderer = match self.world().is_precise_from(eye) {
+            true => self.renderer.with_view(view)?,
+            false => {
+                let (mut world, memory) = self.source.world_around(&camera, self.settings())?;
+                if let Some(turning) = &self.turntable {
+                    world = world.with_surroundings_turned(&turning.rotation());
+                }
+                let renderer = self.renderer.with_world(Arc::new(world), view)?;
+                self.memory = Arc::new(memory);
+                renderer
+            }
+        };
+        self.camera = camera;
+        Ok(())
+    }
+
+    /// Turns the scene on a turntable: the initial camera orbits it by `degrees`, counter-clockwise as seen from above,
+    /// and environment maps rotate with it. No BVH is built, nothing is read.
+    ///
+    /// # Errors
+    /// `Request` for a session without a turntable ([`Options::turn`]).
+    pub fn set_turn(&mut self, degrees: f64) -> Result<()> {
+        let Some(turning) = &self.turntable else {
+            let message = "this session has no turntable: enable it by the option `turn`";
+            return Err(unsuitable(message.to_owned()));
+        };
+        let turning = Turning { degrees, ..turning.clone() };
+        let camera = turning.turntable.turned(&turning.camera, degrees);
+        let world = Arc::new(turning.world.with_surroundings_turned(&turning.rotation()));
+        let view = View::new(&camera, self.image().clone())?;
+        self.renderer = self.renderer.with_world(world, view)?;
+        (self.camera, self.turntable) = (camera, Some(turning));
+        Ok(())
+    }
+
+    /// Changes the image settings: size, crop, filter, background or development.
+    ///
+    /// # Errors
+    /// `Invalid` for a size or crop without pixels; then nothing has changed.
+    pub fn set_image(&mut self, image: ImageSettings) -> Result<()> {
+        self.renderer = self.renderer.with_view(View::new(&self.camera, image)?)?;
+        Ok(())
+    }
+
+    /// Changes the render settings: samples, integrator, depth, seed. The light sampler stays as the world was
+    /// compiled.
+    ///
+    /// # Errors
+    /// `Invalid` for no samples; then nothing has changed.
+    pub fn set_settings(&mut self, settings: RenderSettings) -> Result<()> {
+        self.renderer = self.renderer.with_settings(settings)?;
+        Ok(())
+    }
+
+    /// Sets a custom integrator. The next [`Session::set_settings`] removes it again.
+    pub fn set_integrator(&mut self, integrator: impl Integrator + 'static) {
+        self.renderer = self.renderer.clone().with_integrator(integrator);
     }
 }
 

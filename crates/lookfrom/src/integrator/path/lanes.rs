@@ -14,9 +14,10 @@ mod kernel;
 mod medium;
 mod skies;
 mod vertices;
+mod waiting;
 
 use glam::Vec3;
-use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_bvh::Ray;
 use lookfrom_simd::LaneMask;
 
 use class_points::ClassPoints;
@@ -24,231 +25,26 @@ pub(super) use in_medium::MediumVertex;
 use kernel::{ScatterKernel, Scattered, Task};
 use medium::MediumKernel;
 use vertices::VertexColumns;
+pub(super) use waiting::Waiting;
 
 use super::subsurface::exit_below;
-use super::{Departure, HitBatch, Path, StepOutput};
+use super::{Departure, Path, StepOutput};
 use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
-use crate::integrator::wavefront::{Behind, Bins, Boundary, Interfaces, LightSamples, Modes};
+use crate::integrator::wavefront::{Boundary, LightSamples, Modes};
 use crate::integrator::{Bounce, Event, Probe, SampleStream, Shadow};
-use crate::shading::bsdf::conductor::Conductor;
-use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::Diffuse;
-use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
-use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::measured::Measured;
-use crate::shading::bsdf::open_pbr::OpenPbrSurface;
-use crate::shading::bsdf::plastic::Plastic;
-use crate::shading::bsdf::principled::Principled;
 use crate::shading::bsdf::subsurface::Subsurface;
-use crate::shading::bsdf::{Bsdf, BsdfClass, BsdfSample, Uniform, bsdf_classes};
-use crate::world::{HitClass, World};
-
-/// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
-/// nothing, in bins, and all others as vertices.
-#[derive(Default)]
-pub(super) struct Waiting {
-    /// Whether they wait at all: otherwise each is scattered alone, at once.
-    in_lanes: bool,
-    bins: Bins,
-    vertices: [Vec<Vertex>; BsdfClass::COUNT],
-    in_media: Vec<MediumVertex>,
-    interfaces: Interfaces,
-    /// Paths at interfaces of media.
-    at_interfaces: Vec<(Path, Hit)>,
-    /// Media by their numbers, and the paths on their ways in them.
-    in_flight: Vec<(u32, Vec<u32>)>,
-    memory: Memory,
-}
-
-/// The bin of paths that hit nothing, after those of the classes.
-const ESCAPED: usize = BsdfClass::COUNT;
-
-/// The bin of the first class of paths that hit spheres.
-const ON_SPHERES: usize = ESCAPED + 1;
-const _: () = assert!(ON_SPHERES + BsdfClass::COUNT <= Bins::COUNT, "bins of other kinds");
+use crate::shading::bsdf::{BsdfSample, Uniform};
+use crate::world::World;
 
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
 #[derive(Default)]
 struct Memory {
     points: ClassPoints,
     scattered: Scattered,
-}
-
-/// Calls a generic method of a path tracer with the BSDF of a class.
-macro_rules! with_class {
-    ($class:expr, $tracer:ident.$method:ident $arguments:tt) => {
-        bsdf_classes!(call_with_class($class, $tracer, $method, $arguments))
-    };
-}
-
-macro_rules! call_with_class {
-    (
-        ($class:expr, $tracer:ident, $method:ident, $arguments:tt)
-        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
-        one_by_one { $($rest:tt)* }
-    ) => {
-        match $class {
-            $(BsdfClass::$lane => call!($tracer, $method, $type, $arguments),)*
-        }
-    };
-}
-
-macro_rules! call {
-    ($tracer:ident, $method:ident, $type:ty, ($($argument:expr),*)) => {
-        $tracer.$method::<$type, P>($($argument),*)
-    };
-}
-
-impl Waiting {
-    /// None yet; to be scattered in lanes or alone.
-    pub(super) fn new(in_lanes: bool) -> Self {
-        Self { in_lanes, ..Self::default() }
-    }
-
-    /// Adds a path that hit nothing, and ends the paths of its kind where they fill the lanes.
-    #[inline]
-    pub(super) fn push_escaped<P: Probe>(
-        &mut self,
-        tracer: &PathTracer,
-        batch: &HitBatch<'_>,
-        index: usize,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape_together(batch, eight, output));
-    }
-
-    /// Adds a hit, and scatters the hits of its class where they fill the lanes.
-    #[inline]
-    pub(super) fn push_hit<P: Probe>(
-        &mut self,
-        tracer: &PathTracer,
-        batch: &HitBatch<'_>,
-        (HitClass { bsdf, is_sphere }, index): (HitClass, usize),
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let memory = &mut self.memory;
-        let first = if is_sphere { ON_SPHERES } else { 0 };
-        self.bins.push(first + bsdf as usize, index as u32, 0, |eight| {
-            with_class!(bsdf, tracer.scatter_hits(batch, eight, memory, output));
-        });
-    }
-
-    /// Adds a vertex, and scatters the vertices of its class where they fill the lanes. A vertex whose BSDF has no class is
-    /// scattered alone, as all are without lanes.
-    #[inline(always)]
-    pub(super) fn push_vertex<P: Probe>(
-        &mut self,
-        tracer: &PathTracer,
-        world: &World,
-        vertex: Vertex,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        let scattered = &mut self.memory.scattered;
-        let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| self.in_lanes) else {
-            tracer.scatter_vertex(world, &vertex, scattered, output);
-            if let Bsdf::Subsurface(boundary) = &vertex.shading.bsdf {
-                tracer.leave_below(world, (&vertex, boundary), scattered, output);
-            }
-            return;
-        };
-        let vertices = &mut self.vertices[class as usize];
-        if fills_lanes(vertices, vertex) {
-            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
-            vertices.clear();
-        }
-    }
-
-    /// Adds a path on its way in a medium.
-    pub(super) fn push_in_flight(&mut self, medium: u32, index: usize) {
-        let place = self.in_flight.iter().position(|(known, _)| *known == medium).unwrap_or_else(|| {
-            self.in_flight.push((medium, Vec::new()));
-            self.in_flight.len() - 1
-        });
-        self.in_flight[place].1.push(index as u32);
-    }
-
-    /// Takes a path that has arrived at an interface of media which it may cross beside others.
-    #[inline(always)]
-    pub(super) fn takes_at_interface(&mut self, world: &World, path: &Path, hit: &Hit) -> bool {
-        let Some(kind) = Interfaces::kind(world, hit).filter(|_| self.in_lanes) else { return false };
-        self.interfaces.push(kind, self.at_interfaces.len());
-        self.at_interfaces.push((*path, *hit));
-        true
-    }
-
-    /// Lets paths go on behind interfaces.
-    fn cross_interfaces<P: Probe>(&mut self, world: &World, output: &mut StepOutput<'_, P>) {
-        let at = std::mem::take(&mut self.at_interfaces);
-        let behind = self.interfaces.cross(world, |place| {
-            let (path, hit) = &at[place as usize];
-            (&path.ray, hit, path.interior)
-        });
-        for Behind { place, origin, interior } in behind {
-            let (path, hit) = &at[place as usize];
-            output.paths.push(Path {
-                ray: Ray::new(origin, path.ray.direction),
-                address: path.address + 1,
-                origin_primitive: OriginPrimitive::of(hit),
-                interior,
-                ..*path
-            });
-        }
-    }
-
-    /// Takes all paths on their ways in media.
-    pub(super) fn take_in_flight(&mut self) -> Vec<(u32, Vec<u32>)> {
-        std::mem::take(&mut self.in_flight)
-    }
-
-    /// Adds a vertex in a medium, and scatters those there where they fill the lanes.
-    pub(super) fn push_in_medium<P: Probe>(
-        &mut self,
-        tracer: &PathTracer,
-        world: &World,
-        vertex: MediumVertex,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        if fills_lanes(&mut self.in_media, vertex) || !self.in_lanes {
-            tracer.scatter_in_media(world, &self.in_media, &mut self.memory.scattered, output);
-            self.in_media.clear();
-        }
-    }
-
-    /// Scatters the paths that are left.
-    pub(super) fn flush<P: Probe>(
-        mut self,
-        tracer: &PathTracer,
-        batch: &HitBatch<'_>,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        self.cross_interfaces(batch.world, output);
-        self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
-        tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
-        for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
-            let memory = &mut self.memory;
-            for first in [0, ON_SPHERES] {
-                self.bins.flush(1 << (first + class as usize), |eight| {
-                    with_class!(class, tracer.scatter_hits(batch, eight, memory, output));
-                });
-            }
-            let (world, scattered) = (batch.world, &mut memory.scattered);
-            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
-        }
-    }
-}
-
-/// Adds a path to those of its class; true where they fill the lanes.
-#[inline]
-fn fills_lanes<T>(waiting: &mut Vec<T>, path: T) -> bool {
-    if waiting.capacity() == 0 {
-        waiting.reserve_exact(LANES);
-    }
-    waiting.push(path);
-    waiting.len() == LANES
 }
 
 impl Vertex {
