@@ -71,7 +71,7 @@ impl Session {
     }
 
     /// Changes the camera. Nothing is read or built again, unless the camera is so far from the origin of render space,
-    /// and so near to a surface, that the world would not be precise there ([`World::is_precise_from`]): then the scene
+    /// and so near to a surface, that the world would not be precise there ([`World::is_precise_from`](crate::world::World::is_precise_from)): then the scene
     /// is read again and its world built around that camera.
     ///
     /// # Errors
