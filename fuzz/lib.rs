@@ -14,8 +14,8 @@ use lookfrom_scene::files::{Limits, Memory};
 use lookfrom_scene::shape::{Geometry, Mesh, Part};
 use lookfrom_scene::{LoadContext, Result, Scene};
 
-/// A reader of models.
-pub type Reader = fn(&Path, &mut LoadContext<'_>, &mut Scene) -> Result<Vec<Part>>;
+/// A reader of the content of models.
+pub type Reader = fn(&[u8], &Path, &mut LoadContext<'_>, &mut Scene) -> Result<Vec<Part>>;
 
 /// Limits that keep a single run short.
 pub fn limits() -> Limits {
@@ -29,7 +29,7 @@ pub fn read_model(files: &[(&str, &[u8])], reader: Reader) {
     let mut context = LoadContext::new(&memory);
     context.limits = limits();
     let mut scene = Scene::default();
-    if let Ok(parts) = reader(Path::new(files[0].0), &mut context, &mut scene) {
+    if let Ok(parts) = reader(files[0].1, Path::new(files[0].0), &mut context, &mut scene) {
         parts.iter().for_each(|part| check(part, &scene));
     }
 }

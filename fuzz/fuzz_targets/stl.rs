@@ -1,5 +1,5 @@
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    lookfrom_fuzz::read_model(&[("a.stl", bytes)], lookfrom_scene::stl::read);
+    lookfrom_fuzz::read_model(&[("a.stl", bytes)], lookfrom_scene::stl::from_bytes);
 });

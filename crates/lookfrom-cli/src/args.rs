@@ -27,6 +27,7 @@ use lookfrom_scene::settings::{
     Sampler, Sensor, SpectralFilm, Tonemap,
 };
 
+use crate::scenes;
 use crate::terminal::{Show, Way};
 use crate::values;
 
@@ -186,8 +187,7 @@ pub(crate) enum Command {
 
 #[derive(Args, Debug)]
 pub(crate) struct RenderArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb), folders of them, or - for one from stdin
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(help = scenes::several(", folders of them, or - for one from stdin"), required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
     /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm, .gif, .apng), a folder, a pattern with {name}, or - for stdout
@@ -271,8 +271,7 @@ impl RenderArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct InfoArguments {
-    /// Scenes (.toml, .pbrt, .xml), models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb) or pictures and films (.exr)
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(help = scenes::several(", or pictures and films (.exr)"), required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
     /// Print one JSON object per line for each scene
@@ -330,8 +329,7 @@ pub(crate) struct CompareArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct BenchArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(help = scenes::several(""), required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
     /// Render for this time instead of 16 samples per pixel (or --samples): 10s, 2m

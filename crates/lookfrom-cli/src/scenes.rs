@@ -2,9 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::load::has_known_name;
+use lookfrom_scene::load::{has_known_name, known_files};
 
 use crate::exit::Failure;
+
+/// The kinds of files that can be read, with their extensions, in the singular or with an `s`.
+fn kinds(ending: &str) -> String {
+    let [scene, model, volume] = known_files().map(|(content, names)| format!("{content}{ending} ({names})"));
+    format!("{scene}, {model} or {volume}")
+}
+
+/// The help of an argument for one scene.
+pub(crate) fn one() -> String {
+    format!("A {}", kinds(""))
+}
+
+/// The help of an argument for several scenes, or what else.
+pub(crate) fn several(or_else: &str) -> String {
+    format!("One or more {}{or_else}", kinds("s"))
+}
 
 /// The scenes, with each folder replaced by the scenes and models in it (not in its folders), sorted by name.
 ///
@@ -26,11 +42,10 @@ fn in_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     scenes.retain(|path| has_known_name(path) && path.is_file());
     scenes.sort();
     if scenes.is_empty() {
-        return Err(failed(
-            "a folder without scenes (.toml, .pbrt) and models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)\n  help: folders in it are \
-             not searched: name them"
-                .to_owned(),
-        ));
+        return Err(failed(format!(
+            "a folder without {}\n  help: folders in it are not searched: name them",
+            kinds("s")
+        )));
     }
     Ok(scenes)
 }

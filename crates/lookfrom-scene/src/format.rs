@@ -19,9 +19,15 @@ pub(crate) enum Format {
     Vdb,
 }
 
+/// What files of a format contain, in the singular.
+const SCENE: &str = "scene";
+const MODEL: &str = "model";
+const VOLUME: &str = "volume";
+
 /// A row of the table of formats.
 struct Row {
     format: Format,
+    content: &'static str,
     /// Extensions in lower case.
     extensions: &'static [&'static str],
     /// Whether files may be compressed, with `.gz` after the extension.
@@ -32,16 +38,68 @@ struct Row {
 
 /// All formats; where the content decides, the first that it suits.
 const FORMATS: &[Row] = &[
-    Row { format: Format::Toml, extensions: &["toml"], may_be_packed: false, sniff: |_| false },
-    Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
-    Row { format: Format::Mitsuba, extensions: &["xml"], may_be_packed: false, sniff: is_mitsuba },
-    Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: is_gltf },
-    Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
-    Row { format: Format::Hair, extensions: &["hair"], may_be_packed: true, sniff: hair::is_hair },
-    Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
-    Row { format: Format::Vdb, extensions: &["vdb", "nvdb"], may_be_packed: false, sniff: vdb::is_vdb },
-    Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
+    Row {
+        format: Format::Toml,
+        content: SCENE,
+        extensions: &["toml"],
+        may_be_packed: false,
+        sniff: |_| false,
+    },
+    Row { format: Format::Pbrt, content: SCENE, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
+    Row {
+        format: Format::Mitsuba,
+        content: SCENE,
+        extensions: &["xml"],
+        may_be_packed: false,
+        sniff: is_mitsuba,
+    },
+    Row {
+        format: Format::Gltf,
+        content: MODEL,
+        extensions: &["gltf", "glb"],
+        may_be_packed: false,
+        sniff: is_gltf,
+    },
+    Row { format: Format::Ply, content: MODEL, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
+    Row {
+        format: Format::Hair,
+        content: MODEL,
+        extensions: &["hair"],
+        may_be_packed: true,
+        sniff: hair::is_hair,
+    },
+    Row {
+        format: Format::Stl,
+        content: MODEL,
+        extensions: &["stl"],
+        may_be_packed: true,
+        sniff: stl::is_stl,
+    },
+    Row {
+        format: Format::Vdb,
+        content: VOLUME,
+        extensions: &["vdb", "nvdb"],
+        may_be_packed: false,
+        sniff: vdb::is_vdb,
+    },
+    Row {
+        format: Format::Obj,
+        content: MODEL,
+        extensions: &["obj"],
+        may_be_packed: true,
+        sniff: looks_like_obj,
+    },
 ];
+
+/// What files contain that can be read, `scene`, `model` or `volume`, and their extensions as `.toml, .pbrt, .xml`.
+pub fn known_files() -> [(&'static str, String); 3] {
+    [SCENE, MODEL, VOLUME].map(|content| {
+        let rows = FORMATS.iter().filter(|row| row.content == content);
+        let extensions: Vec<String> =
+            rows.flat_map(|row| row.extensions).map(|name| format!(".{name}")).collect();
+        (content, extensions.join(", "))
+    })
+}
 
 impl Format {
     /// The format that a name tells, by its extension in upper or lower case.

@@ -12,7 +12,6 @@ use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::material::{Color, Hair, Material, MaterialKind, Pigment, Scalar};
 use crate::model::tally::Tally;
-use crate::packed;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::{Geometry, Part, Profile, Strand};
 
@@ -31,18 +30,11 @@ const THICKNESS: u32 = 1 << 2;
 const TRANSPARENCY: u32 = 1 << 3;
 const COLORS: u32 = 1 << 4;
 
-/// Reads a HAIR file: one part with all strands.
+/// Reads the content of a HAIR file: one part with all strands.
+/// Messages name `path`.
 ///
 /// # Errors
-/// `Io`, `Limit` and `Syntax`.
-pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, context)?, path, context, scene)
-}
-
-/// As [`read`], for the content of a file; `path` is for messages.
-///
-/// # Errors
-/// As [`read`].
+/// `Limit` and `Syntax`.
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,
@@ -273,10 +265,10 @@ mod tests {
         bytes
     }
 
-    fn of(bytes: Vec<u8>) -> Result<(Vec<Part>, Scene, Vec<String>)> {
-        let files = Memory([("a.hair".into(), bytes)].into());
+    fn of(bytes: &[u8]) -> Result<(Vec<Part>, Scene, Vec<String>)> {
+        let files = Memory::default();
         let (mut context, mut scene) = (LoadContext::new(&files), Scene::default());
-        let parts = read(Path::new("a.hair"), &mut context, &mut scene)?;
+        let parts = from_bytes(bytes, Path::new("a.hair"), &mut context, &mut scene)?;
         Ok((parts, scene, context.warnings.iter().map(ToString::to_string).collect()))
     }
 
@@ -294,7 +286,7 @@ mod tests {
     #[test]
     fn a_strand_passes_through_its_points() {
         let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0];
-        let (parts, scene, warnings) = of(file(POINTS, [1, 3], &[], &points)).unwrap();
+        let (parts, scene, warnings) = of(&file(POINTS, [1, 3], &[], &points)).unwrap();
         assert_eq!((warnings.len(), parts[0].alpha), (0, Some(Scalar::Value(0.5))));
         assert_eq!(reflectance(&scene), [0.2, 0.4, 0.6]);
         let [first, second] = strands(&parts[0]) else { panic!("two curves") };
@@ -317,14 +309,14 @@ mod tests {
         let transparency = [0.0; 5];
         let colors = [0.0, 0.5, 1.0].repeat(5);
         let numbers = [&points[..], &thickness, &transparency, &colors].concat();
-        let (parts, scene, warnings) = of(file(all, [2, 5], &[1, 2], &numbers)).unwrap();
+        let (parts, scene, warnings) = of(&file(all, [2, 5], &[1, 2], &numbers)).unwrap();
         assert_eq!((warnings.len(), parts[0].alpha, reflectance(&scene)), (0, None, [0.0, 0.5, 1.0]));
         // The last point is where the one before is: no curve.
         let [first, second] = strands(&parts[0]) else { panic!("two curves") };
         assert_eq!([first.width, second.width], [[0.4, 0.2], [0.1, 0.4 * THINNEST]]);
         let mut numbers = numbers;
         *numbers.last_mut().unwrap() = 0.5;
-        let (_, scene, warnings) = of(file(all, [2, 5], &[1, 2], &numbers)).unwrap();
+        let (_, scene, warnings) = of(&file(all, [2, 5], &[1, 2], &numbers)).unwrap();
         assert!(warnings[0].contains("the colours of points are replaced by their mean"), "{warnings:?}");
         assert!((reflectance(&scene)[2] - 0.9).abs() < 1e-6);
     }
@@ -344,11 +336,11 @@ mod tests {
             (file(SEGMENTS | POINTS, [1, 2], &[2], &two), "the strands have 3 points, but 2 are declared"),
             (file(POINTS, [u32::MAX, u32::MAX], &[], &[]), "more than the limit"),
         ] {
-            let error = of(bytes).unwrap_err().to_string();
+            let error = of(&bytes).unwrap_err().to_string();
             assert!(error.contains(expected), "{expected}: {error}");
         }
         let not_finite = [0.0, f32::NAN, 0.0, 1.0, 0.0, 0.0];
-        let (parts, _, warnings) = of(file(SEGMENTS | POINTS, [1, 2], &[1], &not_finite)).unwrap();
+        let (parts, _, warnings) = of(&file(SEGMENTS | POINTS, [1, 2], &[1], &not_finite)).unwrap();
         assert!(parts.is_empty() && warnings.len() == 2, "{warnings:?}");
         assert!(
             warnings[0].contains("1 strand left out: a coordinate is infinite or not a number"),

@@ -8,6 +8,7 @@ use crate::camera::Camera;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{CameraChoice, ImportOptions, LoadContext};
 use crate::format::Format;
+pub use crate::format::known_files;
 #[cfg(feature = "gltf")]
 use crate::gltf;
 use crate::light::Light;
@@ -172,8 +173,9 @@ fn unknown_format(path: &Path) -> Error {
 }
 
 fn unsupported(path: &Path, message: &str) -> Error {
+    let known = known_files().map(|(content, extensions)| format!("{content}s ({extensions})"));
     Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint("scenes are .toml, .pbrt or .xml files, models .gltf, .glb, .obj, .ply, .stl or .hair, volumes .vdb or .nvdb")
+        .hint(format!("what can be read: {}", known.join(", ")))
 }
 
 /// The refusal of a format whose reader was not compiled.

@@ -24,23 +24,15 @@ use crate::model::{lines, points, text};
 use build::Elements;
 use look::MeshTraits;
 
-use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Part};
 
-/// Reads an OBJ file and the material libraries and images that it names. There is one part per material; a file without
+/// Reads the content of an OBJ file and the material libraries and images that it names. There is one part per material; a file without
 /// faces and lines is a point cloud; lines are thin wires. Vertex colours are taken to be sRGB-encoded.
+/// Messages and relative file names use `path`.
 ///
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`, at line and column. After an error the scene may contain parts of the file.
-pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, context)?, path, context, scene)
-}
-
-/// As [`read`], for the content of a file; messages and relative file names use `path`.
-///
-/// # Errors
-/// As [`read`].
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,

@@ -21,21 +21,14 @@ use crate::packed;
 use crate::scene::Scene;
 use crate::shape::Part;
 
-/// Reads a PLY file, ASCII or binary: one mesh, or wires along its edges if there are no faces, or a point cloud if there
+/// Reads the content of a PLY file, ASCII or binary: one mesh, or wires along its edges if there are no faces, or a point cloud if there
 /// are no edges either. Integer colours, and floating-point ones from 0 to 255, are sRGB-encoded, other floating-point ones linear; an image named by a comment
 /// `TextureFile` is used.
+/// Messages and relative file names use `path`.
 ///
 /// # Errors
 /// `Io`, `Limit`, `Syntax` and `Invalid`; at line and column, or at a byte in binary formats. After an error the scene may
 /// contain parts of the file.
-pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, context)?, path, context, scene)
-}
-
-/// As [`read`], for the content of a file; messages and relative file names use `path`.
-///
-/// # Errors
-/// As [`read`].
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,
@@ -52,7 +45,7 @@ pub fn from_bytes(
     placed(content, &header, path, context, scene)
 }
 
-/// As [`read`], with an attribute of vertices or faces, linear, for the colours; `None` if the file does not have it.
+/// Reads a file as [`from_bytes`], with an attribute of vertices or faces, linear, for the colours; `None` if the file does not have it.
 pub(crate) fn read_with_attribute(
     path: &Path,
     (element, name): (&str, &str),

@@ -20,7 +20,6 @@ use crate::model::surface::push_vertex_colors;
 use crate::model::tally::Tally;
 use crate::model::text;
 use crate::model::weld::Weld;
-use crate::packed;
 use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Mesh, Part};
 
@@ -31,18 +30,11 @@ const TRIANGLE: usize = 50;
 /// Placeholder for a facet without a colour of its own.
 const NO_COLOR: u32 = u32::MAX;
 
-/// Reads an STL file: one part per solid.
+/// Reads the content of an STL file: one part per solid.
+/// Messages name `path`.
 ///
 /// # Errors
-/// `Io`, `Limit` and `Syntax`; at line and column, or at a byte in binary files.
-pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    from_bytes(&packed::read(path, context)?, path, context, scene)
-}
-
-/// As [`read`], for the content of a file; `path` is for messages.
-///
-/// # Errors
-/// As [`read`].
+/// `Limit` and `Syntax`; at line and column, or at a byte in binary files.
 pub fn from_bytes(
     bytes: &[u8],
     path: &Path,

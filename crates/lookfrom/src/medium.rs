@@ -26,9 +26,9 @@ pub(crate) use way::Way;
 
 use crate::core::spectrum::Spectrum;
 use crate::light::EmissionSpectrum;
-use crate::shading::bsdf::droplets::Droplets;
 use crate::shading::bsdf::henyey_greenstein::HenyeyGreenstein;
 use crate::shading::bsdf::phase::Phase;
+use crate::shading::bsdf::two_lobes::TwoLobes;
 use crate::shading::texture::{SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
 /// A medium.
@@ -123,8 +123,8 @@ impl Medium {
         around: (DVec3, f64),
     ) -> Self {
         let phase = written.scatters().then(|| match (written.droplets, written.draine) {
-            (Some(diameter), _) => Phase::Droplets(Droplets::new(diameter)),
-            (None, Some(lobe)) if lobe.share > 0.0 => Phase::Droplets(Droplets::of_lobes(written.g, lobe)),
+            (Some(diameter), _) => Phase::TwoLobes(TwoLobes::of_droplets(diameter)),
+            (None, Some(lobe)) if lobe.share > 0.0 => Phase::TwoLobes(TwoLobes::new(written.g, lobe)),
             _ => Phase::HenyeyGreenstein(HenyeyGreenstein::new(written.g)),
         });
         let luminance = match written.emission {

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Common, Overrides};
+use crate::scenes;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -19,8 +20,7 @@ Exit codes: 0 done, 1 the scene cannot be read, or has what the format has no wo
 
 #[derive(Args, Debug)]
 pub(crate) struct ConvertArguments {
-    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(value_name = "SCENE")]
+    #[arg(help = scenes::one(), value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
     /// Output: a file NAME.toml; meshes, pictures and tables are put into the folder NAME beside it

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{MemoryArguments, Overrides};
+use crate::scenes;
 use crate::values;
 
 pub(super) const EXAMPLES: &str = "\
@@ -48,8 +49,7 @@ pub(crate) struct FarmArguments {
     #[arg(value_name = "SCHEDULER", value_parser = values::word(Scheduler::WORDS))]
     pub(crate) scheduler: Scheduler,
 
-    /// A scene (.toml, .pbrt, .xml) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(value_name = "SCENE")]
+    #[arg(help = scenes::one(), value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
     /// Folder of the job, which all machines share: scripts, parts and pictures

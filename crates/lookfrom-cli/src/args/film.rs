@@ -10,6 +10,7 @@ use lookfrom::session::Fireflies;
 use lookfrom_scene::settings::{Background, Tonemap};
 
 use super::{Common, EncodingArguments, MemoryArguments, VariableArguments};
+use crate::scenes;
 use crate::values;
 
 pub(super) const RESUME_EXAMPLES: &str = "\
@@ -164,8 +165,7 @@ pub(crate) struct DevelopArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FilesArguments {
-    /// Scenes (.toml, .pbrt, .xml) or models (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(required = true, value_name = "SCENE")]
+    #[arg(help = scenes::several(""), required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
 
     /// End names with a zero byte in place of a new line: lookfrom files scene.pbrt -0 | tar --null -T - -cf scene.tar

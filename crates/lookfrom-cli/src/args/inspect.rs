@@ -7,6 +7,7 @@ use clap::Args;
 use lookfrom::inspect::{SvgView, TextPart};
 
 use super::{Common, Overrides};
+use crate::scenes;
 use crate::values;
 
 /// The parts of the text.
@@ -31,8 +32,7 @@ Give the same options as for the render: they determine the rays of the sample."
 
 #[derive(Args, Debug)]
 pub(crate) struct InspectArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(value_name = "SCENE")]
+    #[arg(help = scenes::one(), value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
     /// Column of the pixel, counted from 0 at the left

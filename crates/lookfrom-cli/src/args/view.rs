@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Common, Overrides};
+use crate::scenes;
 use crate::values;
 
 pub(crate) const EXAMPLES: &str = "\
@@ -21,8 +22,7 @@ Ctrl-C ends the server. Exit codes: 130 interrupted, 1 scene, 2 usage, 3 the por
 
 #[derive(Args, Debug)]
 pub(crate) struct ViewArguments {
-    /// A scene (.toml, .pbrt) or a model (.gltf, .glb, .obj, .ply, .stl, .hair, .vdb)
-    #[arg(value_name = "SCENE")]
+    #[arg(help = scenes::one(), value_name = "SCENE")]
     pub(crate) scene: PathBuf,
 
     /// Port of the server; 0 for any that is free

@@ -40,8 +40,8 @@ class SceneWarning(UserWarning):
 class Session:
     """A scene that is read and compiled once, to be rendered with any camera and settings.
 
-    scene: the name of a scene or model (.toml, .pbrt, .gltf, .glb, .obj, .ply, .stl, .hair, .vdb), a Scene, a dictionary in its
-        words, a mesh of trimesh, or the bytes of a self-contained file, whose format `name` tells ("model.glb").
+    scene: the name of a scene or model (.toml, .pbrt, .xml, .gltf, .glb, .obj, .ply, .stl, .hair, .vdb), a Scene, a dictionary in
+        its words, a mesh of trimesh, or the bytes of a self-contained file, whose format `name` tells ("model.glb").
     keep: whether the session keeps the scene beside what is compiled, so that `set_material` and `set_lights` can change it; it
         takes the memory of its meshes once more.
     options: those of the command `lookfrom render`: see `Options` and `lookfrom.options()`. `environment` may also be an array,

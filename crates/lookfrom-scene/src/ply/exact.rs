@@ -101,7 +101,7 @@ impl Columns {
 /// Reads the content after the header.
 ///
 /// # Errors
-/// `Syntax` for elements other than those that are written, and for bytes that are missing; `Invalid` for positions that are not finite and
+/// `Syntax` for elements other than those that are written, and for bytes that are missing; `Invalid` for numbers that are not finite and
 /// corners that there are not; `Limit`.
 pub(super) fn read(
     bytes: &[u8],
@@ -146,17 +146,21 @@ pub(super) fn read(
             Error::syntax(file, "the file ends before all its values").hint("the file may be cut off")
         })?;
     context.keep((rows.len() + corners.len()) as u64, "the mesh", file)?;
+    if !floats(rows).all(f32::is_finite) {
+        return Err(Error::invalid(file, "a number of a vertex is infinite or not a number"));
+    }
     let mut mesh = of_rows(rows, names.len(), &columns);
     mesh.triangles = triangles(corners, faces.count as usize, vertices.count, file)?;
     (mesh.name, mesh.is_of_solid) = (file.file.to_string(), is_of_solid);
-    let places = mesh.later.iter().flat_map(|pose| &pose.positions);
-    if !mesh.positions.iter().chain(places).all(|position| position.is_finite()) {
-        return Err(Error::invalid(file, "a position is infinite or not a number"));
-    }
     let material = (!mesh.colors.is_empty()).then(|| push_vertex_colors(scene, file));
     let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
     scene.meshes.push(mesh);
     Ok(vec![Part { material, ..Part::new(None, geometry) }])
+}
+
+/// The numbers of bytes.
+fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> {
+    bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes))
 }
 
 /// The vertices of rows of numbers.
@@ -167,7 +171,7 @@ fn of_rows(rows: &[u8], width: usize, columns: &Columns) -> Mesh {
         ..Mesh::default()
     };
     for row in rows.chunks_exact(4 * width) {
-        let mut numbers = row.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
+        let mut numbers = floats(row);
         let mut next = || numbers.next().unwrap_or_default();
         mesh.positions.push(Vec3::new(next(), next(), next()));
         if columns.normals {

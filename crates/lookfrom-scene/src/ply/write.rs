@@ -6,7 +6,7 @@ use super::exact::Columns;
 use super::header::{MARK, SOLID};
 use crate::shape::Mesh;
 
-/// A mesh as a binary, little-endian PLY file. [`super::read`] gives the same mesh, bit by bit, except for its name and its displacement,
+/// A mesh as a binary, little-endian PLY file. [`super::from_bytes`] gives the same mesh, bit by bit, except for its name and its displacement,
 /// by a comment in the file; other programs see its vertices, normals, texture coordinates, colours and triangles.
 pub fn write(mesh: &Mesh) -> Vec<u8> {
     let columns = Columns::of(mesh);

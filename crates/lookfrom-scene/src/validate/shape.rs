@@ -118,7 +118,9 @@ fn check_patches(part: &Part<'_>, patches: &Patches) -> Result<()> {
     let is_valid = |patch: &[u32; 4]| patch.iter().all(|vertex| (*vertex as usize) < vertices);
     part.all("patches", &patches.patches, &format!("of the {vertices} vertices"), is_valid)?;
     part.none_or_as_many("normals", patches.normals.len(), vertices)?;
-    part.none_or_as_many("uvs", patches.uvs.len(), vertices)
+    part.none_or_as_many("uvs", patches.uvs.len(), vertices)?;
+    part.all("normals", &patches.normals, "finite", |normal| normal.is_finite())?;
+    part.all("uvs", &patches.uvs, "finite", |uv| uv.is_finite())
 }
 
 fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
@@ -128,6 +130,8 @@ fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
     for pose in &mesh.later {
         part.as_many("later positions", pose.positions.len(), "positions", mesh.positions.len())?;
         part.as_many("later normals", pose.normals.len(), "normals", mesh.normals.len())?;
+        part.all("later positions", &pose.positions, "finite", |position| position.is_finite())?;
+        part.all("later normals", &pose.normals, "finite", |normal| normal.is_finite())?;
     }
     if let Some(displacement) = mesh.displacement {
         part.scalar("displacement", displacement)?;
@@ -144,5 +148,13 @@ fn check_mesh(part: &Part<'_>, mesh: &Mesh) -> Result<()> {
         ("tangents", mesh.tangents.len()),
     ];
     attributes.into_iter().try_for_each(|(name, count)| part.none_or_as_many(name, count, vertices))?;
-    mesh.more_uvs.iter().try_for_each(|uvs| part.as_many("more_uvs", uvs.len(), "vertices", vertices))
+    part.all("normals", &mesh.normals, "finite", |normal| normal.is_finite())?;
+    part.all("colors", mesh.colors.as_flattened(), "finite", |color| color.is_finite())?;
+    part.all("opacities", &mesh.opacities, "finite", |opacity| opacity.is_finite())?;
+    part.all("tangents", &mesh.tangents, "finite", |tangent| tangent.is_finite())?;
+    for uvs in &mesh.more_uvs {
+        part.as_many("more_uvs", uvs.len(), "vertices", vertices)?;
+    }
+    let mut sets = std::iter::once(&mesh.uvs).chain(&mesh.more_uvs);
+    sets.try_for_each(|uvs| part.all("uvs", uvs, "finite", |uv| uv.is_finite()))
 }

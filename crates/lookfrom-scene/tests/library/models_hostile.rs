@@ -130,6 +130,28 @@ fn every_truncation_is_survived() {
     }
 }
 
+#[test]
+fn numbers_of_files_of_our_own_are_finite() {
+    let mesh = Mesh {
+        positions: vec![glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Y],
+        triangles: vec![[0, 1, 2]],
+        normals: vec![glam::Vec3::Z; 3],
+        uvs: vec![glam::Vec2::ONE; 3],
+        ..Mesh::default()
+    };
+    let content = lookfrom_scene::ply::write(&mesh);
+    // One face of a byte and three indices at the end, before it three vertices of eight numbers.
+    let first = content.len() - 13 - 3 * 8 * 4;
+    for place in (first..content.len() - 13).step_by(4) {
+        for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            let mut content = content.clone();
+            content[place..place + 4].copy_from_slice(&number.to_le_bytes());
+            let error = read("a.ply", content).unwrap_err();
+            assert_eq!(error, "a.ply: a number of a vertex is infinite or not a number", "{place} {number}");
+        }
+    }
+}
+
 /// What a mutation puts in: bytes that mean something in these formats.
 fn piece() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Error, ErrorKind, Limits, LoadContext, Memory, Scene, load, obj, ply, stl};
+use lookfrom_scene::{Error, ErrorKind, Limits, LoadContext, Memory, Scene, load, model};
 
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 const PLY: &[u8] =
@@ -59,12 +59,12 @@ fn packed_files_are_read_wherever_plain_ones_are() {
 }
 
 #[test]
-fn readers_asked_by_their_name_unpack_too() {
+fn models_are_unpacked() {
     let files = memory(&[("m.obj.gz", packed(OBJ)), ("m.ply.gz", packed(PLY)), ("m.stl.gz", packed(STL))]);
     let (context, scene) = (&mut LoadContext::new(&files), &mut Scene::default());
-    assert_eq!(obj::read(Path::new("m.obj"), context, scene).unwrap().len(), 1);
-    assert_eq!(ply::read(Path::new("m.ply.gz"), context, scene).unwrap().len(), 1);
-    assert_eq!(stl::read(Path::new("m.stl"), context, scene).unwrap().len(), 1);
+    for name in ["m.obj", "m.ply.gz", "m.stl"] {
+        assert_eq!(model::read(Path::new(name), context, scene).unwrap().len(), 1, "{name}");
+    }
 }
 
 #[test]

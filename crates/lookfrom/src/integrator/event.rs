@@ -258,7 +258,7 @@ pub struct Bounce {
 pub struct PhaseSample {
     /// The phase function.
     pub phase: Phase,
-    /// Whether the direction is of Draine's lobe, of droplets.
+    /// Whether the direction is of Draine's lobe, where the phase function has two.
     pub is_draine: bool,
     /// In render space.
     pub wi: Vec3,

@@ -13,7 +13,6 @@ pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
 pub mod disney;
-pub mod droplets;
 mod factors;
 pub mod fresnel;
 pub mod hair;
@@ -30,6 +29,7 @@ pub mod phase;
 pub mod plastic;
 pub mod principled;
 pub mod subsurface;
+pub mod two_lobes;
 pub mod whitted;
 
 use glam::Vec3;

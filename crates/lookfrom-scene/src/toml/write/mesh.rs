@@ -1,7 +1,5 @@
 //! Meshes: small ones in the document, others as PLY files beside it.
 
-use glam::{Vec2, Vec3};
-
 use super::Writer;
 use super::text::{Fields, Item};
 use crate::ply;
@@ -49,8 +47,8 @@ fn is_small(mesh: &Mesh) -> bool {
         name: _,
         positions,
         triangles,
-        normals,
-        uvs,
+        normals: _,
+        uvs: _,
         more_uvs,
         colors,
         opacities,
@@ -60,12 +58,8 @@ fn is_small(mesh: &Mesh) -> bool {
         later,
     } = mesh;
     let is_plain = more_uvs.is_empty() && opacities.is_empty() && tangents.is_empty() && later.is_empty();
-    // Numbers of a file may be any.
-    let are_finite = normals.iter().all(|normal: &Vec3| normal.is_finite())
-        && uvs.iter().all(|uv: &Vec2| uv.is_finite())
-        && colors.as_flattened().iter().all(|light| light.is_finite() && *light >= 0.0);
     is_plain
-        && are_finite
+        && colors.as_flattened().iter().all(|light| *light >= 0.0)
         && !is_of_solid
         && !triangles.is_empty()
         && positions.len().max(triangles.len()) <= MOST_INLINE

@@ -2,8 +2,8 @@
 
 use lookfrom_simd::{Mask, Real};
 
-use super::droplets::Droplets;
 use super::henyey_greenstein::HenyeyGreenstein;
+use super::two_lobes::TwoLobes;
 use crate::core::lanes::width::Width;
 use crate::core::vector::Vector;
 
@@ -12,8 +12,8 @@ use crate::core::vector::Vector;
 pub enum Phase {
     /// That of Henyey and Greenstein.
     HenyeyGreenstein(HenyeyGreenstein),
-    /// That of water droplets.
-    Droplets(Droplets),
+    /// A mix of one of Henyey and Greenstein and one of Draine, as of water droplets.
+    TwoLobes(TwoLobes),
 }
 
 /// A lobe of a phase function, as the inspector tells of it.
@@ -30,23 +30,23 @@ pub(crate) struct PhaseLobe {
 }
 
 impl Phase {
-    /// The lobes, of which droplets have two, with their values for two directions.
+    /// The lobe, or both, with their values for two directions.
     pub(crate) fn lobes(&self, wo: Vector<f32>, wi: Vector<f32>) -> (PhaseLobe, Option<PhaseLobe>) {
         let first = |weight, g, value| PhaseLobe { name: "Henyey-Greenstein", weight, g, alpha: 0.0, value };
         match self {
             Self::HenyeyGreenstein(of) => (first(1.0, of.g(), of.p(wo, wi)), None),
-            Self::Droplets(of) => {
+            Self::TwoLobes(of) => {
                 let [ahead, back] = of.lobes(wo, wi);
-                let Droplets { g, alpha, weight, .. } = *of;
+                let TwoLobes { g, alpha, weight, .. } = *of;
                 let second = PhaseLobe { name: "Draine", weight, g, alpha, value: back };
                 (first(1.0 - weight, of.ahead, ahead), Some(second))
             }
         }
     }
 
-    fn droplets(&self) -> Option<&Droplets> {
+    fn two_lobes(&self) -> Option<&TwoLobes> {
         match self {
-            Self::Droplets(droplets) => Some(droplets),
+            Self::TwoLobes(lobes) => Some(lobes),
             Self::HenyeyGreenstein(_) => None,
         }
     }
@@ -54,7 +54,7 @@ impl Phase {
     fn g(&self) -> f32 {
         match self {
             Self::HenyeyGreenstein(of) => of.g(),
-            Self::Droplets(_) => 0.0,
+            Self::TwoLobes(_) => 0.0,
         }
     }
 }
@@ -63,8 +63,8 @@ impl Phase {
 #[derive(Clone, Copy)]
 pub(crate) struct Phases<R: Real> {
     henyey_greenstein: HenyeyGreenstein<R>,
-    /// Droplets and the lanes that have them, if any has.
-    droplets: Option<(R::Mask, Droplets<R>)>,
+    /// Pairs of lobes and the lanes that have them, if any has.
+    two_lobes: Option<(R::Mask, TwoLobes<R>)>,
 }
 
 impl<R: Real> Phases<R> {
@@ -76,29 +76,29 @@ impl<R: Real> Phases<R> {
             |lane| of(lane).g(),
         ));
         // What other lanes have is any numbers.
-        let number = |number: fn(&Droplets) -> f32, other: f32| {
+        let number = |number: fn(&TwoLobes) -> f32, other: f32| {
             width.f32s(
                 #[inline(always)]
-                |lane| of(lane).droplets().map_or(other, number),
+                |lane| of(lane).two_lobes().map_or(other, number),
             )
         };
         let weight = number(|of| of.weight, 0.0);
-        let is_droplets = weight.gt(weight.like(0.0));
-        let droplets = is_droplets.any().then(|| {
+        let are_two = weight.gt(weight.like(0.0));
+        let two_lobes = are_two.any().then(|| {
             let [ahead, g] = [number(|of| of.ahead, 0.5), number(|of| of.g, 0.5)];
-            let weight = R::select(is_droplets, weight, weight.like(0.5));
-            (is_droplets, Droplets { ahead, g, alpha: number(|of| of.alpha, 0.0), weight })
+            let weight = R::select(are_two, weight, weight.like(0.5));
+            (are_two, TwoLobes { ahead, g, alpha: number(|of| of.alpha, 0.0), weight })
         });
-        Self { henyey_greenstein, droplets }
+        Self { henyey_greenstein, two_lobes }
     }
 
     /// The values, per solid angle; also the densities of [`Self::sample`].
     #[inline(always)]
     pub(crate) fn p(&self, wo: Vector<R>, wi: Vector<R>) -> R {
         let p = self.henyey_greenstein.p(wo, wi);
-        match self.droplets {
+        match self.two_lobes {
             None => p,
-            Some((is, droplets)) => R::select(is, droplets.p(wo, wi), p),
+            Some((is, two_lobes)) => R::select(is, two_lobes.p(wo, wi), p),
         }
     }
 
@@ -106,9 +106,9 @@ impl<R: Real> Phases<R> {
     #[inline(always)]
     pub(crate) fn sample(&self, wo: Vector<R>, u: [R; 2]) -> Vector<R> {
         let wi = self.henyey_greenstein.sample(wo, u);
-        match self.droplets {
+        match self.two_lobes {
             None => wi,
-            Some((is, droplets)) => Vector::select(is, droplets.sample(wo, u), wi),
+            Some((is, two_lobes)) => Vector::select(is, two_lobes.sample(wo, u), wi),
         }
     }
 
@@ -116,6 +116,6 @@ impl<R: Real> Phases<R> {
     #[inline(always)]
     pub(crate) fn choose_draine(&self, u: R) -> R::Mask {
         let none = u.lt(u);
-        self.droplets.map_or(none, |(is, droplets)| is & droplets.chooses_draine(u))
+        self.two_lobes.map_or(none, |(is, two_lobes)| is & two_lobes.chooses_draine(u))
     }
 }

@@ -623,12 +623,12 @@ fn phases_are_normal_and_of_mean_cosine_g() {
 
 #[test]
 fn phases_of_two_lobes_are_normal_and_sampled_as_they_are() {
-    use droplets::Droplets;
     use lookfrom_scene::medium::DraineLobe;
-    let of_droplets = [0.1, 0.2, 0.7, 1.49, 1.5, 3.0, 5.0, 12.0, 50.0].map(Droplets::new);
-    let rayleigh = Droplets::of_lobes(0.0, DraineLobe { g: 0.0, alpha: 1.0, share: 1.0 });
-    let backward = Droplets::of_lobes(-0.6, DraineLobe { g: 0.5, alpha: 0.0, share: 0.25 });
-    let forward = Droplets::of_lobes(0.3, DraineLobe { g: -0.75, alpha: 2.0, share: 0.5 });
+    use two_lobes::TwoLobes;
+    let of_droplets = [0.1, 0.2, 0.7, 1.49, 1.5, 3.0, 5.0, 12.0, 50.0].map(TwoLobes::of_droplets);
+    let rayleigh = TwoLobes::new(0.0, DraineLobe { g: 0.0, alpha: 1.0, share: 1.0 });
+    let backward = TwoLobes::new(-0.6, DraineLobe { g: 0.5, alpha: 0.0, share: 0.25 });
+    let forward = TwoLobes::new(0.3, DraineLobe { g: -0.75, alpha: 2.0, share: 0.5 });
     // Rayleigh's is 3 (1 + μ²) / 16 π.
     for mu in [-1.0, -0.3, 0.0, 0.8] {
         let wi = Vec3::new((1.0_f32 - mu * mu).sqrt(), 0.0, mu);
@@ -672,9 +672,9 @@ fn phases_of_two_lobes_are_normal_and_sampled_as_they_are() {
 
 #[test]
 fn peaks_of_droplets_are_sampled_by_their_angle() {
-    use droplets::Droplets;
+    use two_lobes::TwoLobes;
     // Of the lobe ahead, the part F of the samples is within 1 − μ = (1 − g) F (s + 1 − g) / (1 + g − 2 g F).
-    let phase = Droplets { weight: 1e-6, ..Droplets::new(50.0) };
+    let phase = TwoLobes { weight: 1e-6, ..TwoLobes::of_droplets(50.0) };
     let g = f64::from(phase.ahead);
     let n = 50_000;
     let wo = direction(40.0, 70.0);
@@ -698,10 +698,10 @@ fn peaks_of_droplets_are_sampled_by_their_angle() {
 fn phases_of_eight_lanes_are_those_of_each() {
     use crate::core::lanes::width::{Lanes, One};
     use crate::core::lanes::{LANES, load, shade_together, store};
-    use droplets::Droplets;
     use henyey_greenstein::HenyeyGreenstein;
     use lookfrom_simd::{Kernel, Simd, f32x8, prelude::*};
     use phase::{Phase, Phases};
+    use two_lobes::TwoLobes;
 
     struct Eight<'a> {
         phases: &'a [Phase; LANES],
@@ -723,7 +723,7 @@ fn phases_of_eight_lanes_are_those_of_each() {
             0 => Phase::HenyeyGreenstein(HenyeyGreenstein::new(
                 number(41, (trial * 8 + lane) as u64) * 1.9 - 0.95,
             )),
-            _ => Phase::Droplets(Droplets::new(50.0 * number(42, (trial * 8 + lane) as u64))),
+            _ => Phase::TwoLobes(TwoLobes::of_droplets(50.0 * number(42, (trial * 8 + lane) as u64))),
         });
         let phases = if trial % 4 == 0 { [phases[trial % 8]; LANES] } else { phases };
         let rows: Vec<Vec3> =

@@ -1,8 +1,7 @@
-//! The phase function of water droplets in fog and clouds: Jendersie & d'Eon 2023, "An Approximate Mie Scattering Function for Fog and
-//! Cloud Rendering".
+//! A phase function of two lobes: one of Henyey & Greenstein 1941 and one of Draine 2003, which has the light that is scattered back, too.
 //!
-//! Mie's theory for droplets of many sizes around a diameter, fitted by a mix of two lobes: one of Henyey & Greenstein 1941, a narrow peak
-//! ahead, and one of Draine 2003, which has the light that is scattered back, too. Both are
+//! Of water droplets in fog and clouds, by Mie's theory for many sizes around a diameter, it is a fit: Jendersie & d'Eon 2023, "An
+//! Approximate Mie Scattering Function for Fog and Cloud Rendering". There the first is a narrow peak ahead. Both lobes are
 //!
 //! ```text
 //! p(μ) = (1 − g²) / (4π (1 + g² − 2 g μ)^(3/2)) · (1 + α μ²) / (1 + α (1 + 2 g²) / 3),   μ = cos θ
@@ -19,9 +18,9 @@ use crate::core::elementary::sin_cos_of_turns;
 use crate::core::vector::Vector;
 use crate::core::warp;
 
-/// The mix of lobes for droplets of a diameter, or of any two lobes.
+/// A mix of two lobes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Droplets<R = f32> {
+pub struct TwoLobes<R = f32> {
     /// Mean cosine of the lobe of Henyey and Greenstein.
     pub(crate) ahead: R,
     /// g and …
@@ -42,9 +41,9 @@ const LEAST: f64 = 1e-3;
 /// in two.
 const STEPS: u32 = 12;
 
-impl Droplets {
-    /// For a diameter in micrometres, clamped to [`DIAMETERS`]: the fits of the paper's table, which has three ranges here.
-    pub fn new(diameter: f32) -> Self {
+impl TwoLobes {
+    /// For water droplets of a diameter in micrometres, clamped to [`DIAMETERS`]: the fits of the paper's table, which has three ranges here.
+    pub fn of_droplets(diameter: f32) -> Self {
         let [least, most] = DIAMETERS.map(f64::from);
         let d = f64::from(diameter).clamp(least, most);
         let (exp, cos, ln) = (libm::exp, libm::cos, libm::log(d));
@@ -77,13 +76,13 @@ impl Droplets {
     }
 
     /// A lobe of Henyey and Greenstein with a mean cosine, and one of Draine, of which g = 0 is replaced by the least magnitude.
-    pub fn of_lobes(g: f32, draine: DraineLobe) -> Self {
+    pub fn new(g: f32, draine: DraineLobe) -> Self {
         let own = if f64::from(draine.g.abs()) < LEAST { LEAST as f32 } else { draine.g };
         Self { ahead: g, g: own, alpha: draine.alpha, weight: draine.share }
     }
 }
 
-impl<R: Real> Droplets<R> {
+impl<R: Real> TwoLobes<R> {
     /// The value of the phase function, per solid angle; also the density of [`Self::sample`].
     #[inline(always)]
     pub fn p(self, wo: Vector<R>, wi: Vector<R>) -> R {
