@@ -19,15 +19,9 @@ pub(crate) enum Format {
     Vdb,
 }
 
-/// What files of a format contain, in the singular.
-const SCENE: &str = "scene";
-const MODEL: &str = "model";
-const VOLUME: &str = "volume";
-
 /// A row of the table of formats.
 struct Row {
     format: Format,
-    content: &'static str,
     /// Extensions in lower case.
     extensions: &'static [&'static str],
     /// Whether files may be compressed, with `.gz` after the extension.
@@ -38,63 +32,21 @@ struct Row {
 
 /// All formats; where the content decides, the first that it suits.
 const FORMATS: &[Row] = &[
-    Row {
-        format: Format::Toml,
-        content: SCENE,
-        extensions: &["toml"],
-        may_be_packed: false,
-        sniff: |_| false,
-    },
-    Row { format: Format::Pbrt, content: SCENE, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
-    Row {
-        format: Format::Mitsuba,
-        content: SCENE,
-        extensions: &["xml"],
-        may_be_packed: false,
-        sniff: is_mitsuba,
-    },
-    Row {
-        format: Format::Gltf,
-        content: MODEL,
-        extensions: &["gltf", "glb"],
-        may_be_packed: false,
-        sniff: is_gltf,
-    },
-    Row { format: Format::Ply, content: MODEL, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
-    Row {
-        format: Format::Hair,
-        content: MODEL,
-        extensions: &["hair"],
-        may_be_packed: true,
-        sniff: hair::is_hair,
-    },
-    Row {
-        format: Format::Stl,
-        content: MODEL,
-        extensions: &["stl"],
-        may_be_packed: true,
-        sniff: stl::is_stl,
-    },
-    Row {
-        format: Format::Vdb,
-        content: VOLUME,
-        extensions: &["vdb", "nvdb"],
-        may_be_packed: false,
-        sniff: vdb::is_vdb,
-    },
-    Row {
-        format: Format::Obj,
-        content: MODEL,
-        extensions: &["obj"],
-        may_be_packed: true,
-        sniff: looks_like_obj,
-    },
+    Row { format: Format::Toml, extensions: &["toml"], may_be_packed: false, sniff: |_| false },
+    Row { format: Format::Pbrt, extensions: &["pbrt"], may_be_packed: true, sniff: is_pbrt },
+    Row { format: Format::Mitsuba, extensions: &["xml"], may_be_packed: false, sniff: is_mitsuba },
+    Row { format: Format::Gltf, extensions: &["gltf", "glb"], may_be_packed: false, sniff: is_gltf },
+    Row { format: Format::Ply, extensions: &["ply"], may_be_packed: true, sniff: is_ply },
+    Row { format: Format::Hair, extensions: &["hair"], may_be_packed: true, sniff: hair::is_hair },
+    Row { format: Format::Stl, extensions: &["stl"], may_be_packed: true, sniff: stl::is_stl },
+    Row { format: Format::Vdb, extensions: &["vdb", "nvdb"], may_be_packed: false, sniff: vdb::is_vdb },
+    Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
 ];
 
 /// What files contain that can be read, `scene`, `model` or `volume`, and their extensions as `.toml, .pbrt, .xml`.
 pub fn known_files() -> [(&'static str, String); 3] {
-    [SCENE, MODEL, VOLUME].map(|content| {
-        let rows = FORMATS.iter().filter(|row| row.content == content);
+    ["scene", "model", "volume"].map(|content| {
+        let rows = FORMATS.iter().filter(|row| row.format.content() == content);
         let extensions: Vec<String> =
             rows.flat_map(|row| row.extensions).map(|name| format!(".{name}")).collect();
         (content, extensions.join(", "))
@@ -122,6 +74,15 @@ impl Format {
         };
         let found = FORMATS.iter().filter(may_be).find(|row| (row.sniff)(content));
         found.map(|row| row.format).or(named)
+    }
+
+    /// What its files contain.
+    fn content(self) -> &'static str {
+        match self {
+            Self::Toml | Self::Pbrt | Self::Mitsuba => "scene",
+            Self::Gltf | Self::Ply | Self::Stl | Self::Obj | Self::Hair => "model",
+            Self::Vdb => "volume",
+        }
     }
 
     /// Whether it is one of models that have neither a camera nor lights.

@@ -16,6 +16,7 @@ mod progress;
 mod sensor;
 mod spectral_film;
 mod start;
+mod traced;
 mod transport;
 
 use std::ops::Range;
@@ -33,7 +34,6 @@ use crate::aov::{AovAccumulator, RayHit};
 use crate::core::color::Sensor;
 use crate::core::filter::Filter;
 use crate::core::sampler::Sampler;
-use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
 pub use crate::film::SampleId;
 use crate::film::{FEATURE_SAMPLES, FilmTile, SampleSums};
@@ -54,6 +54,7 @@ use transport::Transport;
 pub use driver::FEWEST_SAMPLES;
 pub use labels::Label;
 pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
+pub use traced::{Rays, Traced};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
@@ -90,50 +91,6 @@ pub struct Renderer {
     keeps_rgb: bool,
     /// The light-path expressions of the picture's layers, if there are any.
     light_paths: Option<Arc<LightPaths>>,
-}
-
-/// Numbers of rays traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Rays {
-    /// Camera rays.
-    pub camera: u64,
-    /// Further rays of paths and trees.
-    pub secondary: u64,
-    /// Shadow rays.
-    pub shadow: u64,
-}
-
-impl Rays {
-    /// The sum of all.
-    pub fn total(self) -> u64 {
-        self.camera + self.secondary + self.shadow
-    }
-}
-
-impl std::ops::AddAssign for Rays {
-    fn add_assign(&mut self, other: Self) {
-        self.camera += other.camera;
-        self.secondary += other.secondary;
-        self.shadow += other.shadow;
-    }
-}
-
-/// A sample's light, before and after the sensor and the filter weight.
-#[derive(Clone, Copy, Debug)]
-pub struct Traced {
-    /// The value for the film: `radiance · weight`.
-    pub rgb: [f32; 3],
-    /// The sum over the tree of rays.
-    pub radiance: Spectrum,
-    /// The spectral mode of `radiance`.
-    pub mode: SpectralMode,
-    /// The filter's weight, which is 1 for filters without negative lobes, times that of a ray through a lens system or from a surface that
-    /// is measured.
-    pub weight: f32,
-    /// The filter's weight alone.
-    pub filter_weight: f32,
-    /// Alpha, not multiplied by the filter weight.
-    pub alpha: f32,
 }
 
 /// The memory of a batch, reused by the next one.
