@@ -43,7 +43,7 @@ const FORMATS: &[Row] = &[
     Row { format: Format::Obj, extensions: &["obj"], may_be_packed: true, sniff: looks_like_obj },
 ];
 
-/// What files contain that can be read, `scene`, `model` or `volume`, and their extensions as `.toml, .pbrt, .xml`.
+/// The kinds of files that can be read, `scene`, `model` and `volume`, each with its extensions: `.toml, .pbrt, .xml`.
 pub fn known_files() -> [(&'static str, String); 3] {
     ["scene", "model", "volume"].map(|content| {
         let rows = FORMATS.iter().filter(|row| row.format.content() == content);
@@ -76,7 +76,7 @@ impl Format {
         found.map(|row| row.format).or(named)
     }
 
-    /// What its files contain.
+    /// The kind of content: `scene`, `model` or `volume`.
     fn content(self) -> &'static str {
         match self {
             Self::Toml | Self::Pbrt | Self::Mitsuba => "scene",

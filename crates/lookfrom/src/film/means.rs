@@ -1,4 +1,4 @@
-//! What a film's sums tell: the mean of each pixel and the variance of one sample, and pictures of them.
+//! Estimates from a film's sums: the mean of each pixel, the variance of one sample, and pictures of means.
 
 use lookfrom_scene::settings::PixelBounds;
 

@@ -1,4 +1,4 @@
-//! What tracing gives: the light of each sample, and the numbers of rays.
+//! The results of tracing: the light of each sample, and the numbers of rays.
 
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::SpectralMode;

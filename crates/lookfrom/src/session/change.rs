@@ -1,5 +1,5 @@
-//! What changes of a session's picture and its camera: options, and settings one by one. No scene is read and no tree is built, unless
-//! the camera goes far away.
+//! Changes of a session's camera, image and render settings, for which no scene is read and no tree is built, unless the camera goes
+//! far away.
 
 use std::sync::Arc;
 

@@ -40,7 +40,7 @@ impl Text {
         self.whole.at(line as u32, column)
     }
 
-    /// What its parser has found.
+    /// An error of the XML parser, at its place in the file.
     pub(super) fn error(&self, error: &roxmltree::Error) -> Error {
         let pos = error.pos();
         let at = self.whole.at(pos.row, pos.col);
