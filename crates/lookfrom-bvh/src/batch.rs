@@ -3,6 +3,7 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::Mutex;
 
 use crate::coherence::Coherence;
 use crate::collector::{AnyHit, BatchQuery, ClosestHit};
@@ -11,6 +12,7 @@ use crate::interleaved::{self, trace_interleaved};
 use crate::moving::go_on_through_moving;
 use crate::origin_primitive::OriginPrimitive;
 use crate::packet::trace_packet;
+use crate::parallel;
 use crate::ray::{Hit, Ray};
 use crate::ray8::RAYS;
 use crate::settings::{Settings, VisibilityKind};
@@ -20,7 +22,6 @@ use crate::visibility::{Everything, ExceptOrigin, Masked, Visibility};
 use lookfrom_simd::{Kernel, Simd};
 
 /// Number of rays (or points) in one task of a thread.
-#[cfg(feature = "parallel")]
 const BATCH: usize = 4096;
 
 /// The closest hit of each ray.
@@ -137,7 +138,7 @@ fn trace_rest<'a, S: Simd, C: BatchQuery, V: Visibility<'a>>(
         || {
             for (number, (ray, result)) in rays.iter().zip(results).enumerate() {
                 let visibility = V::of(settings, number);
-                *result = trace(simd, settings.bvh, ray, C::start, visibility, (), stack).result();
+                *result = trace(simd, settings.bvh, ray, C::start, visibility, (), stack).collector.result();
             }
         },
     );
@@ -161,15 +162,12 @@ fn for_batches<I: Sync, R: Send>(
     results: &mut [R],
     compute: impl Fn(usize, &[I], &mut [R]) + Sync,
 ) {
-    #[cfg(feature = "parallel")]
-    if items.len() > BATCH {
-        use rayon::prelude::*;
-        items
-            .par_chunks(BATCH)
-            .zip(results.par_chunks_mut(BATCH))
-            .enumerate()
-            .for_each(|(batch, (items, results))| compute(batch * BATCH, items, results));
-        return;
+    if items.len() <= BATCH {
+        return compute(0, items, results);
     }
-    compute(0, items, results);
+    let batches: Vec<_> = items.chunks(BATCH).zip(results.chunks_mut(BATCH).map(Mutex::new)).collect();
+    parallel::for_each(batches.len(), &|batch| {
+        let (items, results) = &batches[batch];
+        compute(batch * BATCH, items, &mut results.lock().expect("each is locked once"));
+    });
 }

@@ -6,7 +6,6 @@
 mod collapse;
 mod masks;
 mod moving;
-mod parallel;
 mod plan;
 mod primitives;
 mod reference;
@@ -23,6 +22,7 @@ use crate::affine::Affine;
 use crate::bvh::{Bvh, Instance, Moving};
 use crate::masks::Masks;
 use crate::node::Child;
+use crate::parallel;
 use crate::procedural::Procedural;
 use crate::sphere::Sphere;
 use lookfrom_simd::level;

@@ -1,9 +1,9 @@
 //! SIMD dispatch of the kernel: `lookfrom_simd`'s. Unit tests of small parts also use the scalar level, for which
 //! the traversal is too large: it would be half of the tests' compile time.
 
-pub(crate) use lookfrom_simd::dispatch;
 #[cfg(test)]
 use lookfrom_simd::{Kernel, Level};
+pub(crate) use lookfrom_simd::{dispatch, run_at_baseline};
 
 /// [`dispatch`], or the scalar level.
 #[cfg(test)]

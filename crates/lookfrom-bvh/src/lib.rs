@@ -31,6 +31,7 @@ mod origin;
 mod origin_primitive;
 mod packet;
 mod packet_bounds;
+mod parallel;
 mod prepared;
 mod procedural;
 mod query;

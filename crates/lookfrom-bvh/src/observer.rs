@@ -1,7 +1,6 @@
 //! Observers of a traversal: counters, trace logs, or none.
 
-/// Is notified of the nodes and candidates of a traversal. The default methods do nothing; `()` observes nothing
-/// and costs nothing.
+/// Is notified of the nodes and candidates of a traversal. The default methods do nothing.
 ///
 /// ```
 /// use lookfrom_bvh::{Builder, Ray, Sphere, Observer};
@@ -23,9 +22,6 @@
 /// # Ok::<(), lookfrom_bvh::BuildError>(())
 /// ```
 pub trait Observer {
-    /// True if the methods are to be called at all.
-    const LISTENS: bool = true;
-
     /// The ray visits a node of a tree; `instance` is [`NONE`](crate::NONE) in the outer tree.
     fn node(&mut self, instance: u32, node: u32) {
         let _ = (instance, node);
@@ -43,22 +39,22 @@ pub trait Observer {
     }
 }
 
-impl Observer for () {
-    const LISTENS: bool = false;
+/// Who is told of a traversal: an observer of any type, for which the kernel is compiled once, or nobody, which costs nothing.
+pub trait Listener {
+    /// The observer, if there is one.
+    fn observer(&mut self) -> Option<&mut dyn Observer>;
 }
 
-impl<W: Observer> Observer for &mut W {
-    const LISTENS: bool = W::LISTENS;
-
-    fn node(&mut self, instance: u32, node: u32) {
-        (**self).node(instance, node);
+impl Listener for () {
+    #[inline(always)]
+    fn observer(&mut self) -> Option<&mut dyn Observer> {
+        None
     }
+}
 
-    fn boxes(&mut self, instance: u32, tested: u32, entered: u32) {
-        (**self).boxes(instance, tested, entered);
-    }
-
-    fn candidate(&mut self, instance: u32, geometry: u32, primitive: u32) {
-        (**self).candidate(instance, geometry, primitive);
+impl Listener for &mut dyn Observer {
+    #[inline(always)]
+    fn observer(&mut self) -> Option<&mut dyn Observer> {
+        Some(&mut **self)
     }
 }

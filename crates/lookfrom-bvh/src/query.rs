@@ -4,7 +4,7 @@ use crate::batch::for_each;
 use crate::bvh::Bvh;
 use crate::closest_point::{self, ClosestPoint};
 use crate::faces::Faces;
-use crate::observer::Observer;
+use crate::observer::{Listener, Observer};
 use crate::origin_primitive::OriginPrimitive;
 use crate::ray::{Hit, Ray};
 use crate::settings::Settings;
@@ -257,12 +257,12 @@ impl<'a, O> Query<'a, O> {
     /// assert_eq!((hit.t, candidates.0), (2.0, 1));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
-    pub fn observer<W: Observer>(self, observer: &mut W) -> Query<'a, &mut W> {
+    pub fn observer(self, observer: &mut dyn Observer) -> Query<'a, &mut dyn Observer> {
         Query { settings: self.settings, observer }
     }
 }
 
-impl<O: Observer> Query<'_, O> {
+impl<O: Listener> Query<'_, O> {
     /// The hit with the smallest t in the ray's range, or a miss. Of several hits at equal t it is the one with the
     /// lowest ids: geometry outside of instances comes first, then by instance, geometry and primitive.
     ///
@@ -281,7 +281,7 @@ impl<O: Observer> Query<'_, O> {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hit<R: TraceRay>(mut self, ray: &R) -> R::Hit {
-        R::closest_hit(&self.settings, ray, &mut self.observer)
+        R::closest_hit(&self.settings, ray, self.observer.observer())
     }
 
     /// True if there is a hit in the ray's range.
@@ -297,7 +297,7 @@ impl<O: Observer> Query<'_, O> {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded<R: TraceRay>(mut self, ray: &R) -> bool {
-        R::occluded(&self.settings, ray, &mut self.observer)
+        R::occluded(&self.settings, ray, self.observer.observer())
     }
 
     /// Replaces the content of `hits` by all hits in the ray's range, sorted by t, ties as in
@@ -316,7 +316,7 @@ impl<O: Observer> Query<'_, O> {
     /// ```
     pub fn all_hits<R: TraceRay>(mut self, ray: &R, hits: &mut Vec<R::Hit>) {
         hits.clear();
-        R::all_hits(&self.settings, ray, hits, &mut self.observer);
+        R::all_hits(&self.settings, ray, hits, self.observer.observer());
     }
 
     /// [`Self::all_hits`], but only those where the ray crosses a surface, each once: where it meets an edge or corner that
@@ -359,9 +359,9 @@ impl<O: Observer> Query<'_, O> {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn closest_hits<R: TraceRay>(mut self, rays: &[R], hits: &mut [R::Hit]) {
-        if O::LISTENS {
+        if self.observer.observer().is_some() {
             for (number, (ray, hit)) in rays.iter().zip(hits).enumerate() {
-                *hit = R::closest_hit(&self.settings.from(number), ray, &mut self.observer);
+                *hit = R::closest_hit(&self.settings.from(number), ray, self.observer.observer());
             }
         } else {
             R::closest_hits(&self.settings, rays, hits);
@@ -382,9 +382,9 @@ impl<O: Observer> Query<'_, O> {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn occluded_many<R: TraceRay>(mut self, rays: &[R], occluded: &mut [bool]) {
-        if O::LISTENS {
+        if self.observer.observer().is_some() {
             for (number, (ray, occluded)) in rays.iter().zip(occluded).enumerate() {
-                *occluded = R::occluded(&self.settings.from(number), ray, &mut self.observer);
+                *occluded = R::occluded(&self.settings.from(number), ray, self.observer.observer());
             }
         } else {
             R::occluded_many(&self.settings, rays, occluded);

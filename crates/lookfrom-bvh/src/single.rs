@@ -3,9 +3,9 @@
 use crate::batch;
 use crate::bvh::Bvh;
 use crate::collector::{AllHits, AnyHit, BatchQuery, ClosestHit, Collector};
-use crate::dispatch::dispatch;
+use crate::dispatch::{dispatch, run_at_baseline};
 use crate::moving::continued;
-use crate::observer::Observer;
+use crate::observer::{Listener, Observer};
 use crate::ray::{Hit, Ray};
 use crate::settings::{Settings, VisibilityKind};
 use crate::stack::with_stack;
@@ -24,18 +24,18 @@ struct Trace<'a, F, V, O> {
     observer: O,
 }
 
-impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Observer> Kernel for Trace<'a, F, V, O> {
+impl<'a, C: Collector, F: FnOnce(&Ray) -> C, V: Visibility<'a>, O: Listener> Kernel for Trace<'a, F, V, O> {
     type Output = C;
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> C {
-        let Self { bvh, ray, time, start, visibility, mut observer } = self;
+        let Self { bvh, ray, time, start, visibility, observer } = self;
         with_stack(
             #[inline(always)]
             |stack| {
-                let collector = trace(simd, bvh, ray, start, visibility, &mut observer, stack);
+                let state = trace(simd, bvh, ray, start, visibility, observer, stack);
                 match bvh.moving.is_some() {
-                    false => collector,
-                    true => continued(simd, bvh, (ray, time), collector, (visibility, observer), stack),
+                    false => state.collector,
+                    true => continued(simd, bvh, (ray, time), state, stack),
                 }
             },
         )
@@ -49,14 +49,21 @@ fn trace_everything<C: Collector>(bvh: &Bvh, (ray, time): (&Ray, f32), start: im
 
 /// The general case, with any settings.
 #[inline(always)]
-fn trace_selected<C: Collector>(
+fn trace_selected<C: Collector>(settings: &Settings<'_>, ray: &Ray, start: impl FnOnce(&Ray) -> C) -> C {
+    let (bvh, time) = (settings.bvh, settings.time_of(0));
+    dispatch(bvh.level, Trace { bvh, ray, time, start, visibility: Masked::of(settings, 0), observer: () })
+}
+
+/// The general case, with an observer.
+#[inline(always)]
+fn trace_observed<C: Collector>(
     settings: &Settings<'_>,
     ray: &Ray,
     start: impl FnOnce(&Ray) -> C,
-    observer: impl Observer,
+    observer: &mut dyn Observer,
 ) -> C {
     let (bvh, time) = (settings.bvh, settings.time_of(0));
-    dispatch(bvh.level, Trace { bvh, ray, time, start, visibility: Masked::of(settings, 0), observer })
+    run_at_baseline(Trace { bvh, ray, time, start, visibility: Masked::of(settings, 0), observer })
 }
 
 /// The closest hit in the whole tree.
@@ -95,19 +102,19 @@ pub(crate) fn all_hits(settings: &Settings<'_>, ray: &Ray, hits: &mut Vec<Hit>) 
     let all = move |ray: &Ray| AllHits::new(ray, room);
     *hits = match settings.visibility_kind() {
         VisibilityKind::Everything => trace_everything(settings.bvh, (ray, settings.time_of(0)), all).hits,
-        _ => trace_selected(settings, ray, all, ()).hits,
+        _ => trace_selected(settings, ray, all).hits,
     };
     sort(hits);
 }
 
 /// The closest hit, with an observer.
-pub(crate) fn observed_closest_hit(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> Hit {
-    trace_selected(settings, ray, ClosestHit::start, observer).hit
+pub(crate) fn observed_closest_hit(settings: &Settings<'_>, ray: &Ray, observer: &mut dyn Observer) -> Hit {
+    trace_observed(settings, ray, ClosestHit::start, observer).hit
 }
 
 /// True if there is a hit, with an observer.
-pub(crate) fn observed_occluded(settings: &Settings<'_>, ray: &Ray, observer: &mut impl Observer) -> bool {
-    trace_selected(settings, ray, AnyHit::start, observer).found
+pub(crate) fn observed_occluded(settings: &Settings<'_>, ray: &Ray, observer: &mut dyn Observer) -> bool {
+    trace_observed(settings, ray, AnyHit::start, observer).found
 }
 
 /// All hits, sorted, with an observer. `hits` must be empty.
@@ -115,10 +122,10 @@ pub(crate) fn observed_all_hits(
     settings: &Settings<'_>,
     ray: &Ray,
     hits: &mut Vec<Hit>,
-    observer: &mut impl Observer,
+    observer: &mut dyn Observer,
 ) {
     let room = std::mem::take(hits);
-    *hits = trace_selected(settings, ray, move |ray: &Ray| AllHits::new(ray, room), observer).hits;
+    *hits = trace_observed(settings, ray, move |ray: &Ray| AllHits::new(ray, room), observer).hits;
     sort(hits);
 }
 

@@ -34,14 +34,15 @@ mod sealed {
         /// A hit in the same precision.
         type Hit: Copy + Send;
 
-        fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Self::Hit;
-        fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool;
+        fn closest_hit(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>)
+        -> Self::Hit;
+        fn occluded(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>) -> bool;
         /// Adds the hits to `hits`, which must be empty.
-        fn all_hits<O: Observer>(
+        fn all_hits(
             settings: &Settings<'_>,
             ray: &Self,
             hits: &mut Vec<Self::Hit>,
-            observer: &mut O,
+            observer: Option<&mut dyn Observer>,
         );
         fn closest_hits(settings: &Settings<'_>, rays: &[Self], hits: &mut [Self::Hit]);
         fn occluded_many(settings: &Settings<'_>, rays: &[Self], occluded: &mut [bool]);
@@ -51,27 +52,29 @@ mod sealed {
 impl sealed::Trace for Ray {
     type Hit = Hit;
 
-    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> Hit {
-        if O::LISTENS {
-            single::observed_closest_hit(settings, ray, observer)
-        } else {
-            single::closest_hit(settings, ray)
+    fn closest_hit(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>) -> Hit {
+        match observer {
+            Some(observer) => single::observed_closest_hit(settings, ray, observer),
+            None => single::closest_hit(settings, ray),
         }
     }
 
-    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
-        if O::LISTENS {
-            single::observed_occluded(settings, ray, observer)
-        } else {
-            single::occluded(settings, ray)
+    fn occluded(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>) -> bool {
+        match observer {
+            Some(observer) => single::observed_occluded(settings, ray, observer),
+            None => single::occluded(settings, ray),
         }
     }
 
-    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<Hit>, observer: &mut O) {
-        if O::LISTENS {
-            single::observed_all_hits(settings, ray, hits, observer);
-        } else {
-            single::all_hits(settings, ray, hits);
+    fn all_hits(
+        settings: &Settings<'_>,
+        ray: &Self,
+        hits: &mut Vec<Hit>,
+        observer: Option<&mut dyn Observer>,
+    ) {
+        match observer {
+            Some(observer) => single::observed_all_hits(settings, ray, hits, observer),
+            None => single::all_hits(settings, ray, hits),
         }
     }
 
@@ -87,15 +90,20 @@ impl sealed::Trace for Ray {
 impl sealed::Trace for RayF64 {
     type Hit = HitF64;
 
-    fn closest_hit<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> HitF64 {
+    fn closest_hit(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>) -> HitF64 {
         traverse_f64::closest_hit(settings, ray, observer)
     }
 
-    fn occluded<O: Observer>(settings: &Settings<'_>, ray: &Self, observer: &mut O) -> bool {
+    fn occluded(settings: &Settings<'_>, ray: &Self, observer: Option<&mut dyn Observer>) -> bool {
         traverse_f64::occluded(settings, ray, observer)
     }
 
-    fn all_hits<O: Observer>(settings: &Settings<'_>, ray: &Self, hits: &mut Vec<HitF64>, observer: &mut O) {
+    fn all_hits(
+        settings: &Settings<'_>,
+        ray: &Self,
+        hits: &mut Vec<HitF64>,
+        observer: Option<&mut dyn Observer>,
+    ) {
         traverse_f64::all_hits(settings, ray, hits, observer);
     }
 

@@ -1,7 +1,7 @@
 //! Traversal of rays, one at a time; its steps serve the traversal of several rays in turn too (see `interleaved`).
 //!
 //! Generic over the query ([`Collector`]: the closest hit, any hit, all hits), over the part of the geometry that
-//! the ray sees ([`Visibility`]) and over an [`Observer`]. Children are visited from near to far; subtrees beyond
+//! the ray sees ([`Visibility`]) and over who is told of it ([`Listener`]). Children are visited from near to far; subtrees beyond
 //! the query's current end are skipped. The order of visits never affects a result: ends are compared with an error
 //! margin (see `node`), and ties are decided by ids (see `Hit`).
 
@@ -10,7 +10,7 @@ use crate::collector::Collector;
 use crate::conservative::{RayLanes, TriangleBlock};
 use crate::exact::ExactRay;
 use crate::node::{Child, Content, Slabs};
-use crate::observer::Observer;
+use crate::observer::Listener;
 use crate::prepared::PreparedRay;
 use crate::ray::{Hit, NONE, Ray};
 use crate::stack::{Stack, TraversalStack};
@@ -32,9 +32,9 @@ pub(crate) struct TraversalState<C, V, O> {
     pub(crate) observer: O,
 }
 
-/// Traces a ray in the world.
+/// Traces a ray in the world. Returns its state at the end.
 #[inline(always)]
-pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     ray: &Ray,
@@ -42,10 +42,10 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     visibility: V,
     observer: O,
     stack: &mut Stack,
-) -> C {
+) -> TraversalState<C, V, O> {
     let mut state = TraversalState { instance: NONE, collector: start(ray), visibility, observer };
     if bvh.nodes.is_empty() || !(ray.t_min < ray.t_max) {
-        return state.collector;
+        return state;
     }
     let stack = &mut TraversalStack::above(stack, 0);
     if let Some(prepared) = PreparedRay::usual(simd, ray, bvh.largest) {
@@ -55,7 +55,7 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
     } else {
         trace_any(simd, bvh, &ExactRay::new(ray), &mut state, stack);
     }
-    state.collector
+    state
 }
 
 /// Traces any ray, in the world or in an object's space, through a tree that is not empty. Returns true if no more
@@ -63,7 +63,7 @@ pub(crate) fn trace<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
 ///
 /// Not inlined, so that the loop over the outer tree keeps its registers; compiled for the level again inside.
 #[inline(never)]
-pub(crate) fn trace_any<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn trace_any<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     exact: &ExactRay,
@@ -81,7 +81,7 @@ pub(crate) fn trace_any<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observe
 
 /// Traces a ray through one tree that is not empty.
 #[inline(always)]
-fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     ray: &PreparedRay,
@@ -128,7 +128,7 @@ impl<'t> TreePath<'t> {
     /// Visits a node. Returns the nearest child that the ray enters, after which the others go on the stack; if it
     /// enters none, the next from the stack.
     #[inline(always)]
-    pub(crate) fn enter<S: Simd, C: Collector, V, O: Observer>(
+    pub(crate) fn enter<S: Simd, C: Collector, V, O: Listener>(
         &self,
         simd: S,
         bvh: &Bvh,
@@ -137,11 +137,11 @@ impl<'t> TreePath<'t> {
         state: &mut TraversalState<C, V, O>,
         stack: &mut TraversalStack<'_>,
     ) -> Option<Child> {
-        state.observer.node(state.instance, number as u32);
         let node = &bvh.nodes[number];
         let entered = node.enter(simd, slabs, self.end);
-        if O::LISTENS {
-            state.observer.boxes(state.instance, node.count() as u32, entered.children.count_ones());
+        if let Some(observer) = state.observer.observer() {
+            observer.node(state.instance, number as u32);
+            observer.boxes(state.instance, node.count() as u32, entered.children.count_ones());
         }
         if entered.children == 0 {
             stack.pop(self.end)
@@ -152,7 +152,7 @@ impl<'t> TreePath<'t> {
 
     /// Tests the primitives of a leaf. Returns true if no more hits are needed. `stack` is for the trees of instances.
     #[inline(always)]
-    pub(crate) fn test_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    pub(crate) fn test_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
         &mut self,
         simd: S,
         bvh: &'t Bvh,
@@ -202,7 +202,7 @@ impl<'t> TreePath<'t> {
 }
 
 #[inline(always)]
-fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
+fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Listener>(
     simd: S,
     block: &'a TriangleBlock,
     ray_lanes: &RayLanes<S>,
@@ -211,10 +211,10 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
     deferred: &mut Option<DeferredHit<'a>>,
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
-    if O::LISTENS {
+    if let Some(observer) = state.observer.observer() {
         for lane in 0..block.count() {
             let (geometry, primitive) = block.ids(lane);
-            state.observer.candidate(state.instance, geometry, primitive);
+            observer.candidate(state.instance, geometry, primitive);
         }
     }
     let mut tested = block.test_conservatively(simd, ray_lanes, *end);
@@ -257,7 +257,7 @@ fn triangles<'a, 'b, S: Simd, C: Collector, V: Visibility<'b>, O: Observer>(
 
 /// Tests the triangles of a block that lasts only for the test.
 #[inline(always)]
-pub(crate) fn test_block<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn test_block<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     block: &TriangleBlock,
     ray_lanes: &RayLanes<S>,

@@ -24,7 +24,11 @@ use crate::{sphere, triangle};
 const ROOM: f64 = 9.536_743_164_062_5e-7;
 
 /// The closest hit.
-pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &RayF64, observer: &mut impl Observer) -> HitF64 {
+pub(crate) fn closest_hit(
+    settings: &Settings<'_>,
+    ray: &RayF64,
+    observer: Option<&mut dyn Observer>,
+) -> HitF64 {
     let mut closest = HitF64::MISS;
     traverse(settings, ray, observer, |hit| {
         if hit.precedes(&closest) {
@@ -36,7 +40,7 @@ pub(crate) fn closest_hit(settings: &Settings<'_>, ray: &RayF64, observer: &mut 
 }
 
 /// True if there is a hit.
-pub(crate) fn occluded(settings: &Settings<'_>, ray: &RayF64, observer: &mut impl Observer) -> bool {
+pub(crate) fn occluded(settings: &Settings<'_>, ray: &RayF64, observer: Option<&mut dyn Observer>) -> bool {
     let mut found = false;
     traverse(settings, ray, observer, |_| {
         found = true;
@@ -50,7 +54,7 @@ pub(crate) fn all_hits(
     settings: &Settings<'_>,
     ray: &RayF64,
     hits: &mut Vec<HitF64>,
-    observer: &mut impl Observer,
+    observer: Option<&mut dyn Observer>,
 ) {
     traverse(settings, ray, observer, |hit| {
         hits.push(hit);
@@ -62,13 +66,13 @@ pub(crate) fn all_hits(
 
 /// The closest hit of each ray.
 pub(crate) fn closest_hits(settings: &Settings<'_>, rays: &[RayF64], hits: &mut [HitF64]) {
-    for_each(rays, hits, |number, ray, hit| *hit = closest_hit(&settings.from(number), ray, &mut ()));
+    for_each(rays, hits, |number, ray, hit| *hit = closest_hit(&settings.from(number), ray, None));
 }
 
 /// True for each ray that has a hit.
 pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[RayF64], occluded: &mut [bool]) {
     for_each(rays, occluded, |number, ray, occluded| {
-        *occluded = self::occluded(&settings.from(number), ray, &mut ());
+        *occluded = self::occluded(&settings.from(number), ray, None);
     });
 }
 
@@ -76,7 +80,7 @@ pub(crate) fn occluded_many(settings: &Settings<'_>, rays: &[RayF64], occluded: 
 fn traverse(
     settings: &Settings<'_>,
     ray: &RayF64,
-    observer: &mut impl Observer,
+    observer: Option<&mut dyn Observer>,
     mut commit: impl FnMut(HitF64) -> f64,
 ) {
     let bvh = settings.bvh;
@@ -90,7 +94,7 @@ fn traverse(
 }
 
 /// A ray during traversal.
-struct Traversal<'a, O> {
+struct Traversal<'a, 'o> {
     outer: &'a Bvh,
     /// The ray in world space.
     ray: &'a RayF64,
@@ -98,11 +102,11 @@ struct Traversal<'a, O> {
     /// Hits beyond this are ignored.
     end: f64,
     visibility: Masked<'a>,
-    observer: &'a mut O,
+    observer: Option<&'o mut dyn Observer>,
     commit: &'a mut dyn FnMut(HitF64) -> f64,
 }
 
-impl<O: Observer> Traversal<'_, O> {
+impl Traversal<'_, '_> {
     /// Traces a ray through a tree and its moving part, with the ray in the tree's space.
     fn tree(&mut self, bvh: &Bvh, ray: &ExactRay<f64>, instance: u32) {
         if !bvh.nodes.is_empty() {
@@ -115,15 +119,15 @@ impl<O: Observer> Traversal<'_, O> {
 
     /// Visits a node and all nodes below it.
     fn node(&mut self, part: Part<'_>, ray: &ExactRay<f64>, instance: u32, number: usize) {
-        self.observer.node(instance, number as u32);
         let node = part.node(number);
         let (mut entered, count) = enter(&node, ray, self.ray.t_min);
         let entered = &mut entered[..count];
         entered.sort_by(|a, b| a.0.total_cmp(&b.0));
         let is_beyond = |near: f64, end: f64| near - near.abs() * ROOM > end;
-        if O::LISTENS {
+        if let Some(observer) = &mut self.observer {
             let reached = entered.iter().filter(|(near, _)| !is_beyond(*near, self.end)).count();
-            self.observer.boxes(instance, node.count() as u32, reached as u32);
+            observer.node(instance, number as u32);
+            observer.boxes(instance, node.count() as u32, reached as u32);
         }
         for &(near, child) in entered.iter() {
             if is_beyond(near, self.end) {
@@ -146,7 +150,9 @@ impl<O: Observer> Traversal<'_, O> {
 
     /// True if a primitive must be tested. The observer is notified in any case.
     fn is_candidate(&mut self, instance: u32, (geometry, primitive): (u32, u32)) -> bool {
-        self.observer.candidate(instance, geometry, primitive);
+        if let Some(observer) = &mut self.observer {
+            observer.candidate(instance, geometry, primitive);
+        }
         self.visibility.shows(geometry, primitive)
     }
 

@@ -17,6 +17,8 @@ trimesh = pytest.importorskip("trimesh")
 pytest.importorskip("embreex")
 pytest.importorskip("manifold3d")
 
+pytestmark = pytest.mark.slow
+
 # What the tests take from the module `generic`, which the source distribution does not have.
 GENERIC = """
 import json, os, time

@@ -1,18 +1,28 @@
 //! Data-parallel maps: on rayon's threads with the feature `parallel`, on the caller's thread without it.
 //!
-//! Results come in the order of the items, so that they are the same for any number of threads.
+//! Results come in the order of the items, so that they are the same for any number of threads. What runs is called through a trait
+//! object, so that rayon's tasks are compiled once and not for each caller.
+
+use std::sync::Mutex;
 
 /// `make(item)` for each item, in order.
-#[cfg(feature = "parallel")]
-pub(crate) fn map<T: Send, U: Send>(items: Vec<T>, make: impl Fn(T) -> U + Send + Sync) -> Vec<U> {
-    use rayon::prelude::*;
-    items.into_par_iter().map(make).collect()
+pub(crate) fn map<T: Send, U: Send>(items: Vec<T>, make: impl Fn(T) -> U + Sync) -> Vec<U> {
+    let slots: Vec<_> = items.into_iter().map(|item| Mutex::new((Some(item), None))).collect();
+    for_each(slots.len(), &|number| {
+        let mut slot = slots[number].lock().expect("each is locked once");
+        slot.1 = slot.0.take().map(&make);
+    });
+    slots.into_iter().filter_map(|slot| slot.into_inner().expect("no task has failed").1).collect()
 }
 
-/// `make(item)` for each item, in order.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn map<T, U>(items: Vec<T>, make: impl Fn(T) -> U) -> Vec<U> {
-    items.into_iter().map(make).collect()
+fn for_each(count: usize, each: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().for_each(each);
+    }
+    #[cfg(not(feature = "parallel"))]
+    (0..count).for_each(each);
 }
 
 /// The number of threads that [`map`] uses.

@@ -56,6 +56,16 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     fearless_simd::dispatch!(level, simd => kernel.run(simd))
 }
 
+/// Runs a kernel with the instructions that all machines of the architecture have: for what is called too seldom to be compiled
+/// for each level.
+#[inline(always)]
+pub fn run_at_baseline<K: Kernel>(kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    return kernel.run(Level::baseline().as_sse2().expect("x86-64 has SSE2"));
+    #[cfg(not(target_arch = "x86_64"))]
+    dispatch(Level::baseline(), kernel)
+}
+
 /// As [`dispatch`], for large kernels, which are compiled once for x86-64: for AVX2, also where there is AVX-512. Eight lanes in the
 /// sixteen registers of SSE2 would be most of their code, for machines before 2013; with the registers of AVX-512 they are hardly
 /// faster (docs/timings.md). `None` at SSE2; callers go one by one there.

@@ -11,7 +11,7 @@ mod rounding;
 mod transpose;
 mod vector;
 
-pub use dispatch::{Kernel, dispatch, dispatch_wide, is_wide};
+pub use dispatch::{Kernel, dispatch, dispatch_wide, is_wide, run_at_baseline};
 pub use fearless_simd::{
     Level, Simd, f32x4, f32x8, f32x16, f64x4, f64x8, i32x8, mask32x8, mask64x8, prelude, u32x4, u32x8, u64x8,
 };

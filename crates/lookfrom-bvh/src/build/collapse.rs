@@ -10,9 +10,9 @@ use crate::capsule::CapsuleBlock;
 use crate::conservative::TriangleBlock;
 use crate::item::{Leaf, ProceduralItem};
 use crate::node::{Child, Node};
+use crate::parallel;
 use crate::sphere::{SphereBlock, SphereItem};
 
-use super::parallel;
 use super::plan::Plan;
 use super::primitives::{Geometry, Kind, Primitives};
 use super::reference::Reference;

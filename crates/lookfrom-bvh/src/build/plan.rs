@@ -6,9 +6,9 @@
 
 use crate::node::WIDTH;
 
-use super::parallel::{self, join};
 use super::reference::{Reference, fits_a_leaf};
 use super::sah::Binary;
+use crate::parallel::{self, join};
 
 /// Maximum number of slots for a child's subtree.
 const PLACES: usize = WIDTH - 1;

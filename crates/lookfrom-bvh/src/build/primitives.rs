@@ -7,13 +7,14 @@ use crate::affine::Affine;
 use crate::bvh::Instance;
 use crate::conservative::BLOCK;
 use crate::node::Child;
+use crate::parallel;
 use crate::procedural::Procedural;
 use crate::ray::NONE;
 use crate::sphere::Sphere;
 use crate::vector::{cross, subtract, wide};
 
+use super::BuildError;
 use super::reference::Reference;
-use super::{BuildError, parallel};
 
 /// A geometry that was added to the builder.
 #[derive(Debug)]

@@ -8,8 +8,8 @@
 
 use crate::aabb::Aabb;
 use crate::node::LARGEST_DEPTH;
+use crate::parallel;
 
-use super::parallel;
 use super::reference::Reference;
 use super::sah::Binary;
 

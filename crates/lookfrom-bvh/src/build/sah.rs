@@ -9,9 +9,9 @@ use crate::dispatch::dispatch;
 use lookfrom_simd::Level;
 
 use super::Quality;
-use super::parallel::{self, join};
 use super::reference::{Covered, Reference, fits_a_leaf};
 use super::split::{MAX_BINS, Split};
+use crate::parallel::{self, join};
 
 /// Number of levels split by the heuristic; below, by the median.
 const HEURISTIC_DEPTH: u32 = 64;

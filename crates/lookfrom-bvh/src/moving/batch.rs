@@ -1,9 +1,10 @@
 //! Batches of rays through the moving part of a tree, after what stands still.
 
 use crate::collector::BatchQuery;
-use crate::ray::Ray;
+use crate::ray::{NONE, Ray};
 use crate::settings::Settings;
 use crate::stack::Stack;
+use crate::traverse::TraversalState;
 use crate::visibility::Visibility;
 use lookfrom_simd::Simd;
 
@@ -19,8 +20,9 @@ pub(crate) fn go_on_through_moving<'a, S: Simd, C: BatchQuery, V: Visibility<'a>
     stack: &mut Stack,
 ) {
     for (number, (ray, result)) in rays.iter().zip(results).enumerate() {
-        let (before, visibility) = (C::after(ray, result), V::of(settings, number));
+        let (collector, visibility) = (C::after(ray, result), V::of(settings, number));
         let at = (ray, settings.time_of(number));
-        *result = continued(simd, settings.bvh, at, before, (visibility, ()), stack).result();
+        let state = TraversalState { instance: NONE, collector, visibility, observer: () };
+        *result = continued(simd, settings.bvh, at, state, stack).result();
     }
 }

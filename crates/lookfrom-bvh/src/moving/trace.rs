@@ -6,7 +6,7 @@ use crate::conservative::RayLanes;
 use crate::exact::ExactRay;
 use crate::item::Leaf;
 use crate::node::{Child, Content, Slabs};
-use crate::observer::Observer;
+use crate::observer::Listener;
 use crate::prepared::PreparedRay;
 use crate::ray::{NONE, Ray};
 use crate::stack::{Stack, TraversalStack};
@@ -16,15 +16,13 @@ use lookfrom_simd::Simd;
 
 /// Continues a query of a ray of the world, after what stands still, with what moves.
 #[inline(always)]
-pub(crate) fn continued<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn continued<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     (ray, time): (&Ray, f32),
-    collector: C,
-    (visibility, observer): (V, O),
+    mut state: TraversalState<C, V, O>,
     stack: &mut Stack,
 ) -> C {
-    let mut state = TraversalState { instance: NONE, collector, visibility, observer };
     if bvh.moving.is_some() && ray.t_min < ray.t_max && !state.collector.is_done() {
         trace_moving(simd, bvh, &ExactRay::new(ray), time, &mut state, &mut TraversalStack::above(stack, 0));
     }
@@ -34,7 +32,7 @@ pub(crate) fn continued<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observe
 /// Traces a ray, in the world or in an object's space, through the moving part of a tree, if it has one. Returns true if
 /// no more hits are needed.
 #[inline(never)]
-pub(crate) fn trace_moving<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn trace_moving<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     ray: &ExactRay,
@@ -64,7 +62,7 @@ struct Parts<'t> {
 
 impl Parts<'_> {
     #[inline(always)]
-    fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    fn traverse<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
         &self,
         simd: S,
         (ray, prepared): (&ExactRay, &PreparedRay),
@@ -78,12 +76,11 @@ impl Parts<'_> {
         let mut next = Some(Child::ROOT);
         while let Some(current) = next {
             if let Content::Node(number) = current.content() {
-                state.observer.node(state.instance, number as u32);
                 let node = moving.node(number, moment);
                 let entered = node.enter(simd, &slabs, end);
-                if O::LISTENS {
-                    let (tested, entered) = (node.count() as u32, entered.children.count_ones());
-                    state.observer.boxes(state.instance, tested, entered);
+                if let Some(observer) = state.observer.observer() {
+                    observer.node(state.instance, number as u32);
+                    observer.boxes(state.instance, node.count() as u32, entered.children.count_ones());
                 }
                 next = match entered.children {
                     0 => stack.pop(end),
@@ -111,7 +108,7 @@ impl Parts<'_> {
 
     /// Traces a ray through instances where they are at the moment.
     #[inline(never)]
-    fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+    fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
         &self,
         simd: S,
         leaf: &Leaf,

@@ -8,7 +8,7 @@ use crate::capsule::CapsuleBlock;
 use crate::collector::Collector;
 use crate::exact::ExactRay;
 use crate::item::{Leaf, ProceduralItem};
-use crate::observer::Observer;
+use crate::observer::Listener;
 use crate::ray::{Hit, NONE, Ray};
 use crate::sphere::{self, SphereBlock, SphereItem};
 use crate::stack::TraversalStack;
@@ -17,7 +17,7 @@ use lookfrom_simd::{LaneMask, Simd};
 
 /// Tests the primitives of a leaf without triangles. A ray is usual if it is one of the world whose numbers need no care.
 #[inline(never)]
-pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     leaf: &Leaf,
@@ -40,15 +40,15 @@ pub(crate) fn other_leaf<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observ
 }
 
 #[inline(always)]
-fn spheres<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+fn spheres<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     block: &SphereBlock,
     (ray, is_usual): (&ExactRay, bool),
     state: &mut TraversalState<C, V, O>,
 ) -> bool {
     let instance = state.instance;
-    if O::LISTENS {
-        block.items().for_each(|item| state.observer.candidate(instance, item.geometry, item.primitive));
+    if let Some(observer) = state.observer.observer() {
+        block.items().for_each(|item| observer.candidate(instance, item.geometry, item.primitive));
     }
     let kept = match is_usual {
         true => simd.vectorize(
@@ -80,7 +80,7 @@ fn spheres<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
 }
 
 #[inline(always)]
-fn capsules<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+fn capsules<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     (block, items): (&CapsuleBlock, &[ProceduralItem]),
@@ -93,13 +93,14 @@ fn capsules<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
         || block.may_hit(simd, items.len(), ray, range),
     );
     // An observer hears of all candidates, as of those in boxes of their own.
-    let tested = if O::LISTENS { LaneMask((1 << items.len()) - 1) } else { kept };
+    let is_observed = state.observer.observer().is_some();
+    let tested = if is_observed { LaneMask((1 << items.len()) - 1) } else { kept };
     tested.0 != 0 && procedurals(bvh, items, tested, ray, state)
 }
 
 /// Tests some of the items of a leaf.
 #[inline(never)]
-fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
+fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Listener>(
     bvh: &Bvh,
     items: &[ProceduralItem],
     tested: LaneMask,
@@ -108,7 +109,9 @@ fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
 ) -> bool {
     for item in tested.map(|place| &items[place]) {
         let (geometry, primitive, instance) = (item.geometry, item.primitive, state.instance);
-        state.observer.candidate(instance, geometry, primitive);
+        if let Some(observer) = state.observer.observer() {
+            observer.candidate(instance, geometry, primitive);
+        }
         if V::SELECTS && !state.visibility.shows(geometry, primitive) {
             continue;
         }
@@ -135,7 +138,7 @@ fn procedurals<'a, C: Collector, V: Visibility<'a>, O: Observer>(
 }
 
 /// Traces a ray through instances.
-fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Observer>(
+fn instances<'a, S: Simd, C: Collector, V: Visibility<'a>, O: Listener>(
     simd: S,
     bvh: &Bvh,
     mut range: Range<usize>,

@@ -1,60 +1,69 @@
 //! Data-parallel loops: on rayon's threads with the feature `parallel`, on the caller's thread without it.
 //!
-//! Each result has a fixed position, so that results are the same for any number of threads.
+//! Each result has a fixed position, so that results are the same for any number of threads. What runs is called through trait
+//! objects, so that rayon's tasks are compiled once and not for each caller.
+
+use std::sync::Mutex;
 
 use lookfrom_scene::Result;
 #[cfg(feature = "parallel")]
 use lookfrom_scene::{Error, ErrorKind, Location};
 
-/// `make(i)` for each `i` below `count`, in order.
-#[cfg(feature = "parallel")]
-pub(crate) fn collect<T: Send>(count: usize, make: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-    use rayon::prelude::*;
-    (0..count).into_par_iter().map(make).collect()
+/// Tasks that [`collect`] makes at most.
+const MOST_TASKS: usize = 4096;
+
+/// Calls `each` with every number below `count`.
+fn for_each(count: usize, each: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().for_each(each);
+    }
+    #[cfg(not(feature = "parallel"))]
+    (0..count).for_each(each);
 }
 
 /// `make(i)` for each `i` below `count`, in order.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn collect<T>(count: usize, make: impl Fn(usize) -> T) -> Vec<T> {
-    (0..count).map(make).collect()
+pub(crate) fn collect<T: Send>(count: usize, make: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let size = count.div_ceil(MOST_TASKS).max(1);
+    let mut pieces = Vec::new();
+    pieces.resize_with(count.div_ceil(size), Vec::new);
+    for_chunks_mut(&mut pieces, 1, |number, piece| {
+        piece[0] = (number * size..count.min((number + 1) * size)).map(&make).collect();
+    });
+    pieces.into_iter().flatten().collect()
 }
 
 /// Calls `each` with the index and the elements of every chunk of `size` elements; the last chunk may be shorter.
 ///
 /// # Panics
 /// If `size` is 0.
-#[cfg(feature = "parallel")]
-pub(crate) fn for_chunks_mut<T: Send>(
-    items: &mut [T],
-    size: usize,
-    each: impl Fn(usize, &mut [T]) + Send + Sync,
-) {
-    use rayon::prelude::*;
-    items.par_chunks_mut(size).enumerate().for_each(|(number, chunk)| each(number, chunk));
-}
-
-/// Calls `each` with the index and the elements of every chunk of `size` elements; the last chunk may be shorter.
-///
-/// # Panics
-/// If `size` is 0.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn for_chunks_mut<T>(items: &mut [T], size: usize, each: impl Fn(usize, &mut [T])) {
-    items.chunks_mut(size).enumerate().for_each(|(number, chunk)| each(number, chunk));
+pub(crate) fn for_chunks_mut<T: Send>(items: &mut [T], size: usize, each: impl Fn(usize, &mut [T]) + Sync) {
+    let chunks: Vec<_> = items.chunks_mut(size).map(Mutex::new).collect();
+    for_each(chunks.len(), &|number| {
+        each(number, &mut chunks[number].lock().expect("each is locked once"));
+    });
 }
 
 /// Runs both closures, in parallel if possible, and returns both results.
-#[cfg(feature = "parallel")]
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    rayon::join(one, other)
+    let (mut one, mut other) = (Some(one), Some(other));
+    let (mut of_one, mut of_other) = (None, None);
+    both(&mut || of_one = one.take().map(|one| one()), &mut || of_other = other.take().map(|other| other()));
+    (of_one.expect("it has run"), of_other.expect("it has run"))
 }
 
-/// Runs both closures and returns both results.
-#[cfg(not(feature = "parallel"))]
-pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
-    (one(), other())
+fn both(one: &mut (dyn FnMut() + Send), other: &mut (dyn FnMut() + Send)) {
+    #[cfg(feature = "parallel")]
+    rayon::join(one, other);
+    #[cfg(not(feature = "parallel"))]
+    {
+        one();
+        other();
+    }
 }
 
 /// Runs `work` so that its parallel loops use `threads` threads (`None`: one per hardware thread).

@@ -104,7 +104,7 @@ pub(super) const LADDERS: &[Ladder] = &[
     Ladder {
         name: "lookfrom-bvh",
         rungs: &[
-            "aabb dispatch error_bounds faces lanes masks observer ray reference testing vector",
+            "aabb dispatch error_bounds faces lanes masks observer parallel ray reference testing vector",
             "affine collector exact nearest origin_primitive ray_f64 unrounded",
             "capsule ellipsoid origin prepared sphere triangle",
             "conservative item node procedural",
