@@ -73,6 +73,7 @@ def test_the_intersector_without_trimesh():
     assert ray.contains_points([(2, 0, 0)]).all()
 
 
+@pytest.mark.slow
 def test_the_intersector_agrees_with_those_of_trimesh():
     trimesh = pytest.importorskip("trimesh")
     pytest.importorskip("rtree")
@@ -96,6 +97,7 @@ def test_the_intersector_agrees_with_those_of_trimesh():
         assert (ours.contains_points(points) == other.contains_points(points)).all()
 
 
+@pytest.mark.slow
 def test_rays_agree_with_embree():
     pytest.importorskip("embreex")
     from embreex import rtcore_scene
