@@ -35,13 +35,27 @@ pub struct Guide {
     histograms: Vec<Histogram>,
 }
 
-/// A node of a tree.
+/// A node of a tree, in eight bytes, so that a tree stays in the cache.
 #[derive(Clone, Copy, Debug)]
-enum Node {
-    /// Points below a coordinate are in the first child, which follows; others in the second.
-    Split { axis: usize, at: f32, second: u32 },
-    /// The histogram there; `None` where a guide would not help.
-    Leaf(Option<u32>),
+struct Node {
+    /// Points with a smaller coordinate are in the first child, which follows; others in the second.
+    at: f32,
+    /// Four times the index of the second child, plus the axis; of a leaf four times the number of its histogram, from 1 on, plus
+    /// [`Node::LEAF`].
+    link: u32,
+}
+
+impl Node {
+    const LEAF: u32 = 3;
+
+    fn split(axis: usize, at: f32, second: u32) -> Self {
+        Self { at, link: second << 2 | axis as u32 }
+    }
+
+    /// A leaf with the histogram of an index; `None` where a guide would not help.
+    fn leaf(histogram: Option<u32>) -> Self {
+        Self { at: 0.0, link: histogram.map_or(0, |index| index + 1) << 2 | Self::LEAF }
+    }
 }
 
 /// A density over the square of directions: columns, and the rows of each.
@@ -66,12 +80,15 @@ impl Guide {
     /// The histogram at a point with a unit normal, or zero in a medium.
     #[inline]
     pub(super) fn histogram(&self, p: Vec3, n: Vec3) -> Option<&Histogram> {
-        let mut node = self.roots[class_of(n)]?;
+        let mut index = self.roots[class_of(n)]?;
+        let p = [p.x, p.y, p.z, 0.0];
         loop {
-            match self.nodes[node as usize] {
-                Node::Leaf(histogram) => return histogram.map(|index| &self.histograms[index as usize]),
-                Node::Split { axis, at, second } => node = if p[axis] < at { node + 1 } else { second },
+            let Node { at, link } = self.nodes[index as usize];
+            let (axis, number) = (link & Node::LEAF, link >> 2);
+            if axis == Node::LEAF {
+                return self.histograms.get((number as usize).wrapping_sub(1));
             }
+            index = if p[axis as usize] < at { index + 1 } else { number };
         }
     }
 }
@@ -91,8 +108,19 @@ impl Histogram {
     /// A unit direction for `u` in [0, 1)².
     #[inline]
     pub(super) fn sample(&self, u: [f32; 2]) -> Vec3 {
-        let (column, s) = self.columns.choose(u[0]);
-        let (row, t) = self.rows[column].choose(u[1]);
+        self.direction(self.column(u[0]), u[1])
+    }
+
+    /// The column of the square that a number chooses, and the position in it (0 … 1).
+    #[inline]
+    pub(super) fn column(&self, u: f32) -> (usize, f32) {
+        self.columns.choose(u)
+    }
+
+    /// The unit direction in a column that a number chooses.
+    #[inline]
+    pub(super) fn direction(&self, (column, s): (usize, f32), u: f32) -> Vec3 {
+        let (row, t) = self.rows[column].choose(u);
         let square =
             [(column, s), (row, t)].map(|(cell, rest)| (cell as f32 + rest) / SIDE as f32 * 2.0 - 1.0);
         Direction::of_square(square).unit()

@@ -1,6 +1,6 @@
 //! Light samples of the vertices of paths, up to their shadow rays.
 //!
-//! Triangles, whole spheres and disks of one colour that stand still, environment maps, and point and distant lights that all lanes sample,
+//! Triangles, whole spheres and disks of one colour that stand still, environment maps, skies with guides, and point and distant lights that all lanes sample,
 //! are sampled in lanes; every other light by [`Light::sample`], lane by lane.
 
 use lookfrom_bvh::Point;
@@ -272,7 +272,8 @@ impl LightSamples {
         }
     }
 
-    /// Samples the environment maps in the lanes that have chosen them, and returns these lanes.
+    /// Samples environments in the lanes that have chosen them, and returns these lanes, without those whose environment is sampled
+    /// one by one.
     #[inline(always)]
     fn sample_skies<S: Simd>(
         &mut self,
@@ -286,11 +287,12 @@ impl LightSamples {
         for &index in &world.environments {
             let chosen = bitmask(&by_lane!(lane => self.light[lane] == index));
             let Light::Environment(environment) = &world.lights[index as usize] else { continue };
-            let Some(sky) = environment.map_in_lanes().filter(|_| chosen != 0 && environment.illuminates)
-            else {
+            if chosen == 0 || !environment.illuminates {
+                continue;
+            }
+            let Some(samples) = environment.sample_lanes(simd, &world.textures, places, u, modes) else {
                 continue;
             };
-            let samples = environment.sample_lanes(simd, (sky, &world.textures), places, u, modes);
             for lane in (0..LANES).filter(|lane| chosen & 1 << lane != 0) {
                 set_row(&mut self.wi, lane, samples.wi[lane]);
                 set_row(&mut self.li, lane, samples.li[lane].0);

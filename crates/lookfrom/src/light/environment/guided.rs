@@ -82,7 +82,8 @@ impl Environment {
             }
             (Chosen::Environment(_), _) => return None,
         };
-        let (pdf, li) = (self.pdf(at, wi, IncompletePdf::Allowed), self.color(textures, wi, mode));
+        let pdf = self.mixed_pdf(histogram, wi, self.unguided_pdf(wi));
+        let li = self.color(textures, wi, mode);
         let usable = pdf > 0.0 && pdf.is_finite() && !li.is_black();
         usable.then_some(LightSample { wi, li, pdf, target: Target::Infinity })
     }

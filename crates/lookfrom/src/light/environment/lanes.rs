@@ -1,6 +1,6 @@
 //! Environment maps for eight paths at once: directions sampled, with guides or without, and their radiance, and what escaped rays see.
 //!
-//! Those without a portal. The bits are those of [`Environment`]'s scalar methods.
+//! Those without a portal, and other skies with a guide. The bits are those of [`Environment`]'s scalar methods.
 
 use glam::Vec3;
 use lookfrom_scene::texture::Wrap;
@@ -14,7 +14,7 @@ use crate::core::vector::Vector;
 use crate::light::IncompletePdf;
 use crate::shading::texture::{self, SpectralMode, Textures};
 
-/// Directions toward an environment map in eight lanes.
+/// Directions toward an environment in eight lanes.
 pub(crate) struct SkySamples {
     pub(crate) wi: [[f32; 3]; LANES],
     pub(crate) li: [Spectrum; LANES],
@@ -34,32 +34,53 @@ impl SkySamples {
 pub(crate) type Places<S> = (Vector<f64x8<S>>, Vector<f32x8<S>>);
 
 impl Environment {
-    /// As [`Environment::sample`] with incomplete densities, for the environment map that is `sky`, from points with their normals.
+    /// As [`Environment::sample`] with incomplete densities, from points with their normals; `None` for those that are sampled one by
+    /// one, without a map or through a portal.
     #[inline(always)]
     pub(crate) fn sample_lanes<S: Simd>(
         &self,
         simd: S,
-        (sky, textures): (&SkyImage, &Textures),
+        textures: &Textures,
         (points, n): Places<S>,
         u: [[f32; LANES]; 2],
         modes: &[&SpectralMode; LANES],
-    ) -> SkySamples {
-        let Some(guide) = &self.guide else { return sky.sample_lanes(simd, textures, u, modes) };
+    ) -> Option<SkySamples> {
+        let sky = self.map_in_lanes();
+        let Some(guide) = &self.guide else { return Some(sky?.sample_lanes(simd, textures, u, modes)) };
+
+        // Choose directions by the guide, step by step for all lanes: each step reads from memory, and does not wait for other lanes.
         let (points, n) = (store(Vector::<f32x8<S>>::narrow(points)), store(n));
         let histograms = by_lane!(lane => guide.histogram(row(&points, lane).into(), row(&n, lane).into()));
         let chosen = by_lane!(lane => self.choose(histograms[lane], row(&u, lane)));
+        let columns = by_lane!(lane => match chosen[lane] {
+            Chosen::Guide(histogram, [u, _]) => histogram.column(u),
+            Chosen::Environment(_) => (0, 0.0),
+        });
+        let by_guide = by_lane!(lane => match chosen[lane] {
+            Chosen::Guide(histogram, [_, v]) => histogram.direction(columns[lane], v),
+            Chosen::Environment(_) => Vec3::ZERO,
+        });
+
+        // Without a map a sky is sampled by the guide alone.
+        let Some(sky) = sky else {
+            return Some(SkySamples {
+                wi: by_lane!(lane => by_guide[lane].to_array()),
+                li: by_lane!(lane => self.color(textures, by_guide[lane], modes[lane])),
+                pdf: by_lane!(lane => self.mixed_pdf(histograms[lane], by_guide[lane], 0.0)),
+            });
+        };
         let numbers = by_lane!(lane => match chosen[lane] {
             Chosen::Environment(u) => u,
             Chosen::Guide(..) => [0.0; 2],
         });
         let unguided = sky.directions(simd, [0, 1].map(|axis| by_lane!(lane => numbers[lane][axis])));
         let directions = by_lane!(lane => match chosen[lane] {
-            Chosen::Guide(histogram, u) => histogram.sample(u),
+            Chosen::Guide(..) => by_guide[lane],
             Chosen::Environment(_) => Vec3::from_array(unguided[lane]),
         });
         let mut samples = sky.seen(textures, &directions, modes, (1 << LANES) - 1);
         samples.pdf = by_lane!(lane => self.mixed_pdf(histograms[lane], directions[lane], samples.pdf[lane]));
-        samples
+        Some(samples)
     }
 
     /// The environment map, if it is sampled and looked up in lanes.

@@ -119,7 +119,7 @@ impl Learner<'_> {
             })
         });
         let node = self.guide.nodes.len() as u32;
-        self.guide.nodes.push(Node::Leaf(None));
+        self.guide.nodes.push(Node::leaf(None));
         if of_group.is_some_and(<[f32]>::is_empty) {
             return node;
         }
@@ -128,7 +128,7 @@ impl Learner<'_> {
                 let (first, others) = members.split_at_mut(middle);
                 self.branch(first, of_group);
                 let second = self.branch(others, of_group);
-                self.guide.nodes[node as usize] = Node::Split { axis, at, second };
+                self.guide.nodes[node as usize] = Node::split(axis, at, second);
             }
             None => {
                 let own;
@@ -141,7 +141,7 @@ impl Learner<'_> {
                 };
                 if let Some(histogram) = self.histogram(members, of_group) {
                     self.guided += members.len();
-                    self.guide.nodes[node as usize] = Node::Leaf(Some(self.guide.histograms.len() as u32));
+                    self.guide.nodes[node as usize] = Node::leaf(Some(self.guide.histograms.len() as u32));
                     self.guide.histograms.push(histogram);
                 }
             }
