@@ -5,7 +5,7 @@
 //!
 //! ```sh
 //! cargo install cargo-fuzz
-//! RUSTC_BOOTSTRAP=1 cargo fuzz run --features libfuzzer obj -- -max_total_time=60
+//! RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_STRIP=none cargo fuzz run --features libfuzzer obj -- -max_total_time=60
 //! ```
 
 use std::path::{Path, PathBuf};
