@@ -39,7 +39,8 @@ pub trait Observer {
     }
 }
 
-/// Who is told of a traversal: an observer of any type, for which the kernel is compiled once, or nobody, which costs nothing.
+/// The recipient of a traversal's notifications: a type-erased [`Observer`], so that the kernel has one instance for all types, or
+/// nobody, `()`, at no cost.
 pub trait Listener {
     /// The observer, if there is one.
     fn observer(&mut self) -> Option<&mut dyn Observer>;

@@ -1,6 +1,6 @@
 //! Parallel loops: on rayon's threads with the feature `parallel`, on the caller's thread without it. Results are the same.
 //!
-//! What runs is called through trait objects where it can be, so that rayon's tasks are compiled once and not for each caller.
+//! Closures of loops are type-erased (`dyn Fn`) where results need not be written in place: one instance of rayon's task code.
 
 use std::sync::Mutex;
 
@@ -18,25 +18,19 @@ pub(crate) fn for_each(count: usize, each: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(each);
 }
 
-/// Runs both closures and returns both results.
+/// Runs both closures, in parallel if possible, and returns both results.
+#[cfg(feature = "parallel")]
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    let (mut one, mut other) = (Some(one), Some(other));
-    let (mut of_one, mut of_other) = (None, None);
-    both(&mut || of_one = one.take().map(|one| one()), &mut || of_other = other.take().map(|other| other()));
-    (of_one.expect("it has run"), of_other.expect("it has run"))
+    rayon::join(one, other)
 }
 
-fn both(one: &mut (dyn FnMut() + Send), other: &mut (dyn FnMut() + Send)) {
-    #[cfg(feature = "parallel")]
-    rayon::join(one, other);
-    #[cfg(not(feature = "parallel"))]
-    {
-        one();
-        other();
-    }
+/// Runs both closures and returns both results.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
+    (one(), other())
 }
 
 /// The results of a function for each number below `count`, in order; each task has at least `grain` of them. They are written where

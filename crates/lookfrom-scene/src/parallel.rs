@@ -1,7 +1,7 @@
 //! Data-parallel maps: on rayon's threads with the feature `parallel`, on the caller's thread without it.
 //!
-//! Results come in the order of the items, so that they are the same for any number of threads. What runs is called through a trait
-//! object, so that rayon's tasks are compiled once and not for each caller.
+//! Results come in the order of the items, so that they are the same for any number of threads. Closures are
+//! type-erased (`dyn Fn`): one instance of rayon's task code.
 
 use std::sync::Mutex;
 

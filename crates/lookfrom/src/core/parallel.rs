@@ -1,7 +1,7 @@
 //! Data-parallel loops: on rayon's threads with the feature `parallel`, on the caller's thread without it.
 //!
-//! Each result has a fixed position, so that results are the same for any number of threads. What runs is called through trait
-//! objects, so that rayon's tasks are compiled once and not for each caller.
+//! Each result has a fixed position, so that results are the same for any number of threads. Closures of loops are
+//! type-erased (`dyn Fn`): one instance of rayon's task code.
 
 use std::sync::Mutex;
 
@@ -46,24 +46,18 @@ pub(crate) fn for_chunks_mut<T: Send>(items: &mut [T], size: usize, each: impl F
 }
 
 /// Runs both closures, in parallel if possible, and returns both results.
+#[cfg(feature = "parallel")]
 pub(crate) fn join<A: Send, B: Send>(
     one: impl FnOnce() -> A + Send,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    let (mut one, mut other) = (Some(one), Some(other));
-    let (mut of_one, mut of_other) = (None, None);
-    both(&mut || of_one = one.take().map(|one| one()), &mut || of_other = other.take().map(|other| other()));
-    (of_one.expect("it has run"), of_other.expect("it has run"))
+    rayon::join(one, other)
 }
 
-fn both(one: &mut (dyn FnMut() + Send), other: &mut (dyn FnMut() + Send)) {
-    #[cfg(feature = "parallel")]
-    rayon::join(one, other);
-    #[cfg(not(feature = "parallel"))]
-    {
-        one();
-        other();
-    }
+/// Runs both closures and returns both results.
+#[cfg(not(feature = "parallel"))]
+pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
+    (one(), other())
 }
 
 /// Runs `work` so that its parallel loops use `threads` threads (`None`: one per hardware thread).

@@ -1,7 +1,7 @@
 //! Light samples of the vertices of paths, up to their shadow rays.
 //!
-//! Triangles, whole spheres and disks of one colour that stand still, environment maps, skies with guides, and point and distant lights that all lanes sample,
-//! are sampled in lanes; every other light by [`Light::sample`], lane by lane.
+//! Triangles, whole spheres and disks of one colour that stand still, environment maps, skies with guides, and point and distant lights
+//! that all lanes sample, are sampled in lanes; every other light by [`Light::sample`], lane by lane.
 
 use lookfrom_bvh::Point;
 use lookfrom_simd::{Float, LaneMask, Real, Simd, f32x8, f64x8, prelude::*};

@@ -35,7 +35,7 @@ pub(crate) type Places<S> = (Vector<f64x8<S>>, Vector<f32x8<S>>);
 
 impl Environment {
     /// As [`Environment::sample`] with incomplete densities, from points with their normals; `None` for those that are sampled one by
-    /// one, without a map or through a portal.
+    /// one: through a portal, or with neither a map nor a guide.
     #[inline(always)]
     pub(crate) fn sample_lanes<S: Simd>(
         &self,
