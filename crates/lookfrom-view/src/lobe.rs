@@ -68,7 +68,7 @@ enum Balloon<'a> {
     /// A BSDF.
     Bsdf(&'a SurfaceInteraction, &'a lookfrom::shading::material::Shading),
     /// `k_d (N·L) + k_s (N·H)ⁿ`.
-    Whitted(&'a SurfaceInteraction, &'a lookfrom::shading::material::Coefficients),
+    Whitted(&'a SurfaceInteraction, &'a lookfrom::shading::bsdf::whitted::WhittedCoefficients),
 }
 
 impl<'a> Balloon<'a> {

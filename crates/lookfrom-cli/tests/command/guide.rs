@@ -86,7 +86,7 @@ fn the_lesson_shows_what_is_written() {
     let written: String = [
         "crates/lookfrom/src/view/camera.rs",
         "crates/lookfrom-bvh/src/reference.rs",
-        "crates/lookfrom/src/shading/material/whitted.rs",
+        "crates/lookfrom/src/shading/bsdf/whitted.rs",
         "crates/lookfrom/src/world/medium.rs",
     ]
     .map(read)

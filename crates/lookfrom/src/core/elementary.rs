@@ -13,19 +13,33 @@ const ROUNDER: f32 = 12_582_912.0;
 /// eˣ to 1 ulp. Below −87.3, where it would be less than the least normal number, 0; above 88.3 infinite; NaN stays.
 #[inline(always)]
 pub(crate) fn exp<R: Real>(x: R) -> R {
-    // x = n ln 2 + r, |r| ≤ ½ ln 2; n ln 2 in two parts, of which the first is exact.
+    let (less_one, scale) = reduced_exp(x);
+    let is_small = x.lt(x.like(-87.3));
+    let is_large = x.gt(x.like(88.3));
+    let exp = (less_one + 1.0) * scale;
+    R::select(is_small, x.like(0.0), R::select(is_large, x.like(f32::INFINITY), exp))
+}
+
+/// 1 − e⁻ˣ for x of 0 and above, to 2 ulp.
+#[inline(always)]
+pub(crate) fn one_minus_exp<R: Real>(x: R) -> R {
+    let one = x.like(1.0);
+    let (less_one, scale) = reduced_exp(-x);
+    R::select(x.gt(x.like(87.3)), one, one - scale - less_one * scale)
+}
+
+/// eʳ − 1 and 2ⁿ, with eˣ = 2ⁿ eʳ and |r| ≤ ½ ln 2, for |x| < 88.
+#[inline(always)]
+fn reduced_exp<R: Real>(x: R) -> (R, R) {
+    // x = n ln 2 + r; n ln 2 in two parts, of which the first is exact.
     let shifted = x * std::f32::consts::LOG2_E + ROUNDER;
     let n = shifted - ROUNDER;
     let r = x - n * 0.693_359_4 + n * 2.121_944_4e-4;
     // eʳ − 1 − r by its series, to r⁷.
     let tail =
         ((((r * (1.0 / 5040.0) + 1.0 / 720.0) * r + 1.0 / 120.0) * r + 1.0 / 24.0) * r + 1.0 / 6.0) * r + 0.5;
-    let power = r + r * r * tail + 1.0;
     let bits = shifted.to_bits();
-    let scale = R::from_bits((bits << 23).wrapping_add(bits.like(0x3f80_0000)));
-    let is_small = x.lt(x.like(-87.3));
-    let is_large = x.gt(x.like(88.3));
-    R::select(is_small, x.like(0.0), R::select(is_large, x.like(f32::INFINITY), power * scale))
+    (r + r * r * tail, R::from_bits((bits << 23).wrapping_add(bits.like(0x3f80_0000))))
 }
 
 /// The natural logarithm of a positive normal number, to 2 ulp; of 0, −88 or so.
@@ -243,6 +257,9 @@ mod tests {
                 let error = ulps(exp(x), libm::exp(f64::from(x)));
                 assert!(error <= 1.0, "exp({x}): {error} ulp");
             }
+            let x = number(count, 10).abs();
+            let error = ulps(one_minus_exp(x), -libm::expm1(f64::from(-x)));
+            assert!(error <= 2.0, "1 - exp(-{x}): {error} ulp");
             let x = number(count, 126).abs();
             let error = ulps(ln(x), libm::log(f64::from(x)));
             assert!(error <= 2.0, "ln({x}): {error} ulp");
@@ -290,13 +307,14 @@ mod tests {
     fn ends_of_the_exponential() {
         assert_eq!(exp(0.0), 1.0);
         assert_eq!((exp(-88.0), exp(f32::NEG_INFINITY), exp(90.0)), (0.0, 0.0, f32::INFINITY));
+        assert_eq!([0.0, 90.0, 1e30, f32::INFINITY].map(one_minus_exp), [0.0, 1.0, 1.0, 1.0]);
         assert!(exp(88.29).is_finite() && exp(-87.29) > f32::MIN_POSITIVE && exp(f32::NAN).is_nan());
     }
 
     struct All([f32; 8]);
 
     impl Kernel for All {
-        type Output = ([[f32; 8]; 5], [[f64; 8]; 3]);
+        type Output = ([[f32; 8]; 6], [[f64; 8]; 3]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let x = f32x8::load_array(simd, self.0);
@@ -307,7 +325,14 @@ mod tests {
             let (s, c) = sin_cos(angle);
             let turns = angle_in_turns(x, size - 1.0);
             (
-                [exp(x).into(), ln(size).into(), sin.into(), cos.into(), turns.into()],
+                [
+                    exp(x).into(),
+                    ln(size).into(),
+                    sin.into(),
+                    cos.into(),
+                    turns.into(),
+                    one_minus_exp(size).into(),
+                ],
                 [angle.into(), s.into(), c.into()],
             )
         }
@@ -322,12 +347,14 @@ mod tests {
                 }
                 x => x,
             });
-            let ([e, l, s, c, t], wide) = dispatch(level(), All(x));
+            let ([e, l, s, c, t, m], wide) = dispatch(level(), All(x));
             for (lane, &x) in x.iter().enumerate() {
                 let (sin, cos) = sin_cos_of_turns(x);
                 let turns = angle_in_turns(x, x.abs() - 1.0);
-                let expected = [exp(x), ln(x.abs()), sin, cos, turns].map(f32::to_bits);
-                assert_eq!([e[lane], l[lane], s[lane], c[lane], t[lane]].map(f32::to_bits), expected, "{x}");
+                let less = one_minus_exp(x.abs());
+                let expected = [exp(x), ln(x.abs()), sin, cos, turns, less].map(f32::to_bits);
+                let got = [e[lane], l[lane], s[lane], c[lane], t[lane], m[lane]].map(f32::to_bits);
+                assert_eq!(got, expected, "{x}");
                 let angle = atan2(f64::from(x.abs()), f64::from(x));
                 let (sin, cos) = sin_cos(angle);
                 let expected = [angle, sin, cos].map(f64::to_bits);

@@ -4,7 +4,6 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 use lookfrom_bvh::Affine;
 use lookfrom_simd::{Float, Real};
 
-pub(crate) use crate::core::elementary::power;
 use crate::core::optics;
 
 /// [`optics::reflect`] of one direction.

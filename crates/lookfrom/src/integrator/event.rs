@@ -122,7 +122,7 @@ pub enum Event {
         /// The surface interaction.
         surface: Box<SurfaceInteraction>,
         /// Whitted's coefficients, where the integrator evaluates them.
-        coefficients: Option<Box<crate::shading::material::Coefficients>>,
+        coefficients: Option<Box<crate::shading::bsdf::whitted::WhittedCoefficients>>,
     },
     /// A light was sampled, in Whitted's model.
     LocalLight {

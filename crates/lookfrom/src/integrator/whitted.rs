@@ -20,7 +20,8 @@ use crate::integrator::wavefront::{Bins, Boundary, Departure, Eight, HitBatch, R
 use crate::integrator::{
     BatchStreams, Cut, Integrator, Path, Probe, Queues, SampleStream, ShadowTransparency, StepOutput,
 };
-use crate::shading::material::{Coefficients, albedo_of_coefficients};
+use crate::shading::bsdf::whitted::WhittedCoefficients;
+use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 use emit::PathHit;
@@ -215,9 +216,9 @@ fn step<P: Probe>(
     // Shade what is seen: I_a and every light, and the branches of the tree.
     let (mode, material) = (output.mode(path), &world.materials[surface.material as usize]);
     let coefficients =
-        Coefficients::at(&material.whitted, &world.textures, &world.shading_point(surface), &mode);
+        WhittedCoefficients::at(&material.whitted, &world.textures, &world.shading_point(surface), &mode);
     output.leave_first_surface(world, path, surface, || {
-        let Coefficients { diffuse, mirror, transmission, .. } = coefficients;
+        let WhittedCoefficients { diffuse, mirror, transmission, .. } = coefficients;
         let is_known = matches!(mode, SpectralMode::Rgb) && material.has_albedo_of_coefficients();
         is_known.then(|| albedo_of_coefficients([diffuse, mirror, transmission]))
     });

@@ -1,7 +1,7 @@
 //! Materials: from their parameters at a point to a BSDF in a shading frame.
 //!
 //! [`Shading`] is the scattering function of a material at a point, in the frame of the shading normal (with bump
-//! mapping): for path tracing. [`Coefficients`] are those of Whitted's model, which ray casting and Whitted ray
+//! mapping): for path tracing. [`WhittedCoefficients`](crate::shading::bsdf::whitted::WhittedCoefficients) are those of Whitted's model, which ray casting and Whitted ray
 //! tracing use for every material.
 
 mod albedo;
@@ -32,7 +32,6 @@ use crate::shading::bsdf::diffuse::Diffuse;
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::plastic::Plastic;
-use crate::shading::bsdf::whitted::WhittedBsdf;
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
@@ -53,7 +52,6 @@ pub use kind::{
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::MaterialRow;
-pub use whitted::{Branches, Coefficients};
 
 /// A material of a world.
 #[derive(Clone, Debug)]
@@ -354,18 +352,7 @@ impl Evaluator<'_> {
     fn bsdf(&mut self, index: u32) -> Option<Bsdf> {
         let materials = self.materials;
         Some(match &materials[index as usize].kind {
-            MaterialKind::Whitted(whitted) => {
-                let k = Coefficients::at(whitted, self.textures, self.point, self.mode);
-                Bsdf::Whitted(WhittedBsdf {
-                    diffuse: k.diffuse,
-                    specular: k.specular,
-                    shininess: k.shininess,
-                    mirror: k.mirror,
-                    transmission: k.transmission,
-                    ior: k.ior,
-                    fresnel: k.fresnel,
-                })
-            }
+            MaterialKind::Whitted(whitted) => Bsdf::Whitted(self.whitted(whitted)),
             MaterialKind::Diffuse { reflectance } => Bsdf::Diffuse(self.diffuse(reflectance)),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 let [reflected, transmitted] = [reflectance, transmittance].map(|color| {

@@ -35,8 +35,8 @@ pub(crate) use self::input::uplift;
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
 pub use self::look_ups::{LookUps, LookedUp, PictureSet};
 pub(crate) use self::mapping::sphere_uv;
-pub(crate) use self::picture::look_up_lanes;
 pub use self::picture::{blended_texels, look_up};
+pub(crate) use self::picture::{look_up_lanes, nearest_lanes};
 
 use self::evaluation::{Evaluation, FloatEvaluation, RgbEvaluation, SpectralEvaluation};
 use self::input::Input;

@@ -95,10 +95,26 @@ impl Piecewise2D {
     /// The density at a point, over the area of the unit square: its integral is 1. 0 outside of the square.
     #[inline]
     pub fn pdf(&self, uv: [f32; 2]) -> f32 {
-        if !uv.iter().all(|x| (0.0..=1.0).contains(x)) {
-            return 0.0;
-        }
-        let (column, row) = (cell(uv[0], self.width), cell(uv[1], self.height));
+        self.cell_at(uv).map_or(0.0, |cell| self.density(cell))
+    }
+
+    /// [`Piecewise2D::pdf`] in the lanes of a mask, 0 in others. All cells are found before the tables are read, as in
+    /// [`Piecewise2D::sample_lanes`].
+    #[inline(always)]
+    pub(crate) fn pdf_lanes(&self, uv: &[[f32; 2]; LANES], mask: u32) -> [f32; LANES] {
+        let cells = by_lane!(lane => self.cell_at(uv[lane]).filter(|_| mask & 1 << lane != 0));
+        by_lane!(lane => cells[lane].map_or(0.0, |cell| self.density(cell)))
+    }
+
+    /// Column and row of the cell at a point, if it is in the square.
+    #[inline(always)]
+    fn cell_at(&self, [u, v]: [f32; 2]) -> Option<[usize; 2]> {
+        let is_within = (0.0..=1.0).contains(&u) & (0.0..=1.0).contains(&v);
+        is_within.then(|| [cell(u, self.width), cell(v, self.height)])
+    }
+
+    #[inline(always)]
+    fn density(&self, [column, row]: [usize; 2]) -> f32 {
         let ends = &self.row(row)[column..column + 2];
         (ends[1] - ends[0]) as f32 * self.per_unit[row]
     }
@@ -262,6 +278,11 @@ mod tests {
             let (points, densities) = grid.sample_lanes(u);
             for lane in 0..LANES {
                 assert_eq!((points[lane], densities[lane]), grid.sample([u[0][lane], u[1][lane]]));
+            }
+            let places = by_lane!(lane => [2.0 * u[0][lane] - 0.25, u[1][lane]]);
+            let densities = grid.pdf_lanes(&places, 0xf5);
+            for (lane, place) in places.into_iter().enumerate() {
+                assert_eq!(densities[lane], if 0xf5 & 1 << lane != 0 { grid.pdf(place) } else { 0.0 });
             }
         }
     }

@@ -14,8 +14,9 @@ use crate::inspect::scatter::{self, BounceReport};
 use crate::inspect::segments::RayKind;
 use crate::integrator::{Bounce, Path, PreviousVertex, SubsurfaceProbe};
 use crate::primitive::Primitives;
+use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::{Coefficients, Shading};
+use crate::shading::material::Shading;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -84,7 +85,7 @@ impl TraceLogBuilder<'_> {
         Some(Departure { lift: lift.map(|lift| lift.to_array()), step })
     }
 
-    pub(super) fn coefficients(&self, k: &Coefficients) -> CoefficientsReport {
+    pub(super) fn coefficients(&self, k: &WhittedCoefficients) -> CoefficientsReport {
         CoefficientsReport {
             ambient: self.factor(k.ambient),
             diffuse: self.factor(k.diffuse),

@@ -11,8 +11,8 @@ use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
 use crate::integrator::wavefront::{Behind, Interfaces};
 use crate::integrator::{Event, LightPaths, Probe, Queues};
+use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::Coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -172,7 +172,7 @@ impl ShadowLight {
             ShadowTransparency::AlphaTested | ShadowTransparency::Panes => Spectrum::BLACK,
             ShadowTransparency::Transparent => {
                 let point = world.texture_point(surface);
-                Coefficients::at(&material.whitted, &world.textures, &point, mode).transmission
+                WhittedCoefficients::at(&material.whitted, &world.textures, &point, mode).transmission
             }
         }
     }

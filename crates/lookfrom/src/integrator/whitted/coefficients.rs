@@ -1,8 +1,8 @@
-//! Whitted's coefficients at eight bare surfaces side by side. The bits are those of [`Coefficients::at`].
+//! Whitted's coefficients at eight bare surfaces side by side. The bits are those of [`WhittedCoefficients::at`].
 
 use glam::{Vec2, Vec3};
 use lookfrom_bvh::Hit;
-use lookfrom_simd::{Float, Simd, f32x8, f64x8, mask32x8, prelude::*};
+use lookfrom_simd::{Simd, f32x8, f64x8, mask32x8, prelude::*};
 
 use super::step::BareEight;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum, scatter, scatter_f64};
@@ -10,7 +10,9 @@ use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::integrator::wavefront::bare_hits::{self, BareHits};
 use crate::integrator::wavefront::{Modes, Surfaces};
-use crate::shading::material::{Coefficients, WhittedMaterial};
+use crate::shading::bsdf::lanes::RowBsdf;
+use crate::shading::bsdf::whitted::WhittedCoefficients;
+use crate::shading::material::WhittedMaterial;
 use crate::shading::texture::lanes::TexturePoints;
 use crate::shading::texture::{SpectrumTexture, TexturePoint};
 use crate::world::World;
@@ -33,7 +35,7 @@ fn side_by_side<S: Simd>(
     world.textures.spectra(simd, texture, &at)
 }
 
-impl<S: Simd> Coefficients<f32x8<S>> {
+impl<S: Simd> WhittedCoefficients<f32x8<S>> {
     /// The coefficients at eight surfaces.
     #[inline(always)]
     pub(super) fn at_eight(
@@ -107,19 +109,9 @@ impl<S: Simd> Coefficients<f32x8<S>> {
         let points = texture_points(world, eight, surfaces);
         let rows = by_lane!(lane => {
             let material = &world.materials[eight.materials[lane] as usize].whitted;
-            Coefficients::at(material, &world.textures, &points[lane], modes.lane(lane))
+            WhittedCoefficients::at(material, &world.textures, &points[lane], modes.lane(lane))
         });
-        let is_fresnel = by_lane!(lane => if rows[lane].fresnel { 1.0 } else { 0.0 });
-        Self {
-            ambient: gather_spectrum(simd, &by_lane!(lane => rows[lane].ambient)),
-            diffuse: gather_spectrum(simd, &by_lane!(lane => rows[lane].diffuse)),
-            specular: gather_spectrum(simd, &by_lane!(lane => rows[lane].specular)),
-            shininess: f32x8::load_array(simd, by_lane!(lane => rows[lane].shininess)),
-            mirror: gather_spectrum(simd, &by_lane!(lane => rows[lane].mirror)),
-            transmission: gather_spectrum(simd, &by_lane!(lane => rows[lane].transmission)),
-            ior: f32x8::load_array(simd, by_lane!(lane => rows[lane].ior)),
-            fresnel: f32x8::load_array(simd, is_fresnel).gt(f32x8::splat(simd, 0.0)),
-        }
+        WhittedCoefficients::gather(simd, &by_lane!(lane => &rows[lane]))
     }
 }
 

@@ -16,8 +16,9 @@ use crate::integrator::sample_streams::SampleStreams;
 use crate::integrator::wavefront::{BareHits, Eight, HitBatch, LightSamples, Modes, Receivers, Surfaces};
 use crate::integrator::{BatchStreams, Path, SampleStream, SpectralModes};
 use crate::light::IncompletePdf;
+use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::SurfaceInteraction;
-use crate::shading::material::{Coefficients, albedo_of_coefficients};
+use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
 use crate::world::World;
 
@@ -37,7 +38,7 @@ pub(super) struct Step<'a, W: Width> {
     width: W,
     world: &'a World,
     surfaces: &'a Surfaces<W::Real>,
-    coefficients: &'a Coefficients<W::Real>,
+    coefficients: &'a WhittedCoefficients<W::Real>,
     paths: [&'a Path; LANES],
     /// Path throughputs, after absorption on the way.
     beta: Spectrum<W::Real>,
@@ -177,7 +178,7 @@ pub(super) fn shade_one(
     (path, stream): (&Path, &SampleStream),
     (mode, time): (&SpectralMode, f32),
     surface: &SurfaceInteraction,
-    coefficients: &Coefficients,
+    coefficients: &WhittedCoefficients,
     wanted: Wanted<'_>,
     shaded: &mut Shaded,
 ) {
@@ -255,10 +256,10 @@ impl Kernel for BareKernel<'_> {
         // Of spheres they are costly.
         let wants_uvs = first.is_some() || !eight.bare.are_on_spheres;
         let surfaces = &Surfaces::of_eight(simd, world, &eight.bare, wants_uvs);
-        let coefficients = &Coefficients::at_eight(simd, world, eight, surfaces, modes);
+        let coefficients = &WhittedCoefficients::at_eight(simd, world, eight, surfaces, modes);
         if let Some(first) = first {
             surfaces.leave(first);
-            let Coefficients { diffuse, mirror, transmission, .. } = *coefficients;
+            let WhittedCoefficients { diffuse, mirror, transmission, .. } = *coefficients;
             let [r, g, b] = albedo_of_coefficients([diffuse, mirror, transmission]);
             first.albedo = [r.into(), g.into(), b.into()];
         }

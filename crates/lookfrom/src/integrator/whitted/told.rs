@@ -8,23 +8,23 @@ use crate::core::lanes::{LANES, row, store};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::LightSamples;
 use crate::integrator::{Branch, Event, Path};
-use crate::shading::material::{Branches, Coefficients};
+use crate::shading::bsdf::whitted::{Branches, WhittedCoefficients};
 
-/// Coefficients and events of the lanes of a group.
+/// WhittedCoefficients and events of the lanes of a group.
 #[derive(Clone, Debug)]
 pub(super) struct Told {
-    pub(super) coefficients: Vec<Coefficients>,
+    pub(super) coefficients: Vec<WhittedCoefficients>,
     /// The events of lights and branches, in their order.
     pub(super) events: [Vec<Event>; LANES],
 }
 
 impl Told {
     /// The events of a group with these coefficients: none yet.
-    pub(super) fn new<W: Width>(width: W, k: &Coefficients<W::Real>) -> Self {
+    pub(super) fn new<W: Width>(width: W, k: &WhittedCoefficients<W::Real>) -> Self {
         let [ambient, diffuse, specular, mirror, transmission] =
             [k.ambient, k.diffuse, k.specular, k.mirror, k.transmission].map(|k| width.spectra(k));
         let (shininess, ior, fresnel) = (k.shininess.column(), k.ior.column(), width.bits(k.fresnel));
-        let of = |lane: usize| Coefficients {
+        let of = |lane: usize| WhittedCoefficients {
             ambient: ambient[lane],
             diffuse: diffuse[lane],
             specular: specular[lane],

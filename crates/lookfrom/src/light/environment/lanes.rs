@@ -121,7 +121,7 @@ impl SkyImage {
         scatter(self.direction([u, v]).0)
     }
 
-    /// The radiance at (u, v): bilinear look-ups of one picture side by side, others one by one.
+    /// The radiance at (u, v): look-ups side by side, where spectra are not interpolated.
     #[inline(always)]
     fn lights<S: Simd>(
         &self,
@@ -130,16 +130,19 @@ impl SkyImage {
         uv: [f32x8<S>; 2],
         modes: &[&SpectralMode; LANES],
     ) -> [Spectrum; LANES] {
-        if self.layout == MapLayout::Octahedral || modes.iter().any(|mode| self.blends_apart(mode)) {
+        if modes.iter().any(|mode| self.blends_apart(mode)) {
             let [u, v]: [[f32; LANES]; 2] = uv.map(Into::into);
             return by_lane!(lane => self.radiance_at(textures, [u[lane], v[lane]], modes[lane]));
         }
-        let image = textures.image(self.image);
-        let texels = texture::look_up_lanes(simd, image, self.in_picture(uv), [Wrap::Repeat, Wrap::Clamp]);
-        by_lane!(lane => {
-            let [r, g, b, _] = texels[lane];
-            self.radiance([r, g, b], modes[lane])
-        })
+        let (image, uv) = (textures.image(self.image), self.in_picture(uv));
+        let texels = match self.layout {
+            MapLayout::LatitudeLongitude => {
+                let texels = texture::look_up_lanes(simd, image, uv, [Wrap::Repeat, Wrap::Clamp]);
+                texels.map(|[r, g, b, _]| [r, g, b])
+            }
+            MapLayout::Octahedral => texture::nearest_lanes(image, uv),
+        };
+        by_lane!(lane => self.radiance(texels[lane], modes[lane]))
     }
 
     /// The radiance from unit directions, and in the lanes of a mask their densities in [`SkyImage::sample_lanes`].
@@ -154,10 +157,8 @@ impl SkyImage {
         let MapPoints { uv, per_solid_angle, li } =
             dispatch(level(), Seen { sky: self, textures, directions: &wi, modes });
         let choice = self.choice(IncompletePdf::Allowed);
-        let pdf = by_lane!(lane => match with_density & 1 << lane {
-            0 => 0.0,
-            _ => finite(choice.pdf(uv[lane]) * per_solid_angle[lane]),
-        });
+        let pdf = choice.pdf_lanes(&uv, with_density);
+        let pdf = by_lane!(lane => finite(pdf[lane] * per_solid_angle[lane]));
         SkySamples { wi, li, pdf }
     }
 }

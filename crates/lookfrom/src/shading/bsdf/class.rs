@@ -15,7 +15,7 @@ use super::open_pbr::OpenPbrSurface;
 use super::plastic::Plastic;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
-use super::whitted::WhittedBsdf;
+use super::whitted::WhittedCoefficients;
 use super::{BsdfSample, MicrofacetFactors, Mode};
 use crate::core::spectrum::Spectrum;
 
@@ -123,6 +123,8 @@ macro_rules! bsdf_classes {
                 Hair(Hair),
                 /// A measured material.
                 Measured(Measured),
+                /// Whitted's model.
+                Whitted(WhittedCoefficients),
             }
             one_by_one {
                 /// Lambertian reflection and transmission.
@@ -131,8 +133,6 @@ macro_rules! bsdf_classes {
                 ThinDielectric(ThinDielectric),
                 /// Disney's principled surface.
                 Disney(Disney),
-                /// Whitted's model.
-                Whitted(WhittedBsdf),
                 /// The boundary of a medium in which light diffuses.
                 Subsurface(Subsurface),
                 /// Light that leaves such a medium.

@@ -6,7 +6,7 @@ mod clay;
 mod example;
 
 use super::microfacet::TrowbridgeReitz;
-use super::whitted::WhittedBsdf;
+use super::whitted::WhittedCoefficients;
 use super::*;
 use crate::core::hash;
 use crate::core::parallel;
@@ -137,8 +137,9 @@ pub(super) fn merl() -> Bsdf {
     Bsdf::Measured(measured::Measured::new(measured::MeasuredTables::kept(&written, &[]), None))
 }
 
-fn whitted() -> WhittedBsdf {
-    WhittedBsdf {
+fn whitted() -> WhittedCoefficients {
+    WhittedCoefficients {
+        ambient: Spectrum::BLACK,
         diffuse: Spectrum([0.5, 0.2, 0.1, 0.0]),
         specular: grey(0.4),
         shininess: 30.0,
@@ -189,7 +190,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("measured grain", measured(5)),
         ("half vectors", merl()),
         ("whitted", Bsdf::Whitted(whitted())),
-        ("whitted dull", Bsdf::Whitted(WhittedBsdf { shininess: 2.0, fresnel: false, ..whitted() })),
+        ("whitted dull", Bsdf::Whitted(WhittedCoefficients { shininess: 2.0, fresnel: false, ..whitted() })),
     ];
     subjects.extend(principled::tests::subjects());
     subjects.extend(open_pbr::tests::subjects());
@@ -774,7 +775,8 @@ fn numbers_of_any_size_never_become_nan() {
             estimate: lookfrom_scene::material::CoatEstimate::Unbiased,
             interior: None,
         };
-        let whitted = WhittedBsdf {
+        let whitted = WhittedCoefficients {
+            ambient: Spectrum::BLACK,
             diffuse: lanes(41),
             specular: lanes(42),
             shininess: any_size(43, trial, 20),

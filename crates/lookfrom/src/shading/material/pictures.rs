@@ -31,6 +31,12 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.color(&plastic.reflectance);
             walk.color(&plastic.specular_reflectance);
         }
+        MaterialKind::Whitted(whitted) => {
+            walk.color(&whitted.diffuse);
+            walk.color(&whitted.specular);
+            walk.color(&whitted.mirror);
+            walk.color(&whitted.transmission);
+        }
         MaterialKind::Principled(look) => {
             walk.color(&look.base_color);
             walk.number(look.metallic);

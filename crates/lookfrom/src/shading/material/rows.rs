@@ -12,6 +12,7 @@ use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{TexturePoint, Textures};
 
@@ -35,6 +36,7 @@ impl Material {
             MaterialKind::Plastic(_) => Some(BsdfClass::Plastic),
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             MaterialKind::Measured(_) => Some(BsdfClass::Measured),
+            MaterialKind::Whitted(_) => Some(BsdfClass::Whitted),
             _ => None,
         }
     }
@@ -190,6 +192,14 @@ impl MaterialRow for Plastic {
     fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
         let MaterialKind::Plastic(plastic) = kind else { return None };
         Some(evaluator.plastic(plastic))
+    }
+}
+
+impl MaterialRow for WhittedCoefficients {
+    #[inline]
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+        let MaterialKind::Whitted(whitted) = kind else { return None };
+        Some(evaluator.whitted(whitted))
     }
 }
 

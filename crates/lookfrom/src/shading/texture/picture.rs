@@ -5,8 +5,8 @@ mod lanes;
 use lookfrom_scene::image::{Image, Quad};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-pub(crate) use self::lanes::look_up_lanes;
 pub(super) use self::lanes::{look_up_each, signed_size};
+pub(crate) use self::lanes::{look_up_lanes, nearest_lanes};
 
 /// Coordinates are clamped to this many texels; floats of this size have long lost their fraction.
 const FARTHEST: f32 = 1_073_741_824.0;

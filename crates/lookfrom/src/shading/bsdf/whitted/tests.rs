@@ -3,12 +3,11 @@
 use super::*;
 use crate::shading::bsdf::tests::{direction, number, numbers, uniform_direction};
 use crate::shading::bsdf::{Bsdf, Mode};
-use crate::shading::material::Coefficients;
 
-fn pair(trial: u64) -> (WhittedBsdf, Coefficients) {
+fn coefficients(trial: u64) -> WhittedCoefficients {
     let spectrum = |k: u64| Spectrum(std::array::from_fn(|lane| number(80 + k, trial * 4 + lane as u64)));
     let black_or = |k: u64| if number(90 + k, trial) < 0.3 { Spectrum::BLACK } else { spectrum(k) };
-    let coefficients = Coefficients {
+    WhittedCoefficients {
         ambient: Spectrum::BLACK,
         diffuse: black_or(0),
         specular: black_or(1),
@@ -17,9 +16,7 @@ fn pair(trial: u64) -> (WhittedBsdf, Coefficients) {
         transmission: black_or(3),
         ior: 0.6 + 2.0 * number(85, trial),
         fresnel: trial.is_multiple_of(2),
-    };
-    let Coefficients { diffuse, specular, shininess, mirror, transmission, ior, fresnel, .. } = coefficients;
-    (WhittedBsdf { diffuse, specular, shininess, mirror, transmission, ior, fresnel }, coefficients)
+    }
 }
 
 fn close(a: Spectrum, b: Spectrum) -> bool {
@@ -29,13 +26,13 @@ fn close(a: Spectrum, b: Spectrum) -> bool {
 #[test]
 fn lit_as_the_tree_of_rays_is() {
     for trial in 0..5000 {
-        let (whitted, coefficients) = pair(trial);
+        let whitted = coefficients(trial);
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
         let wi = uniform_direction([number(3, trial), number(4, trial)]);
         let n = Vec3::new(0.0, 0.0, wo.z.signum());
         let expected = match n.dot(wi) > 0.0 {
             true => {
-                let (diffuse, specular) = coefficients.lit(n.into(), wo.into(), wi.into());
+                let (diffuse, specular) = whitted.lit(n.into(), wo.into(), wi.into());
                 (diffuse + specular) * FRAC_1_PI
             }
             false => Spectrum::BLACK,
@@ -51,12 +48,12 @@ fn matte_it_is_lambertian_reflection_bit_for_bit() {
     for trial in 0..5000 {
         let diffuse = Spectrum(std::array::from_fn(|lane| number(80, trial * 4 + lane as u64)));
         let black = Spectrum::BLACK;
-        let whitted = Bsdf::Whitted(WhittedBsdf {
+        let whitted = Bsdf::Whitted(WhittedCoefficients {
             diffuse,
             specular: black,
             mirror: black,
             transmission: black,
-            ..pair(trial).0
+            ..coefficients(trial)
         });
         let lambertian = Bsdf::diffuse(diffuse);
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
@@ -73,12 +70,11 @@ fn matte_it_is_lambertian_reflection_bit_for_bit() {
 fn branches_as_the_tree_of_rays_does() {
     let mut met = [0; 3];
     for trial in 0..3000 {
-        let (whitted, coefficients) = pair(trial);
+        let whitted = coefficients(trial);
         let bsdf = Bsdf::Whitted(whitted);
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
         let n = Vec3::new(0.0, 0.0, wo.z.signum());
-        let branches =
-            coefficients.has_branches().then(|| coefficients.branches(n.into(), wo.into(), wo.z > 0.0));
+        let branches = whitted.has_branches().then(|| whitted.branches(n.into(), wo.into(), wo.z > 0.0));
         // Restrict the sampling to one side at a time; a specular lobe's expectation is f cos.
         for side in [Lobes::REFLECTION, Lobes::TRANSMISSION] {
             let expected = match (&branches, side) {
@@ -112,15 +108,14 @@ fn branches_as_the_tree_of_rays_does() {
 
 #[test]
 fn ways_on_are_chosen_as_often_as_they_say() {
-    let (whitted, _) = pair(0);
-    let whitted = WhittedBsdf {
+    let whitted = WhittedCoefficients {
         diffuse: Spectrum([0.3; 4]),
         specular: Spectrum([0.5; 4]),
         shininess: 50.0,
         mirror: Spectrum([0.2; 4]),
         transmission: Spectrum([0.4; 4]),
         ior: 1.5,
-        ..whitted
+        ..coefficients(0)
     };
     let wo = direction(40.0, 20.0);
     let n = 100_000;

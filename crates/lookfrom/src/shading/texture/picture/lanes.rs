@@ -5,7 +5,7 @@ use lookfrom_scene::texture::Wrap;
 use lookfrom_simd::{Float, Real, Simd, f32x4, f32x8, prelude::*};
 
 use super::{FARTHEST, Footprint};
-use crate::core::lanes::{Columns, LANES, row, set_row};
+use crate::core::lanes::{Columns, LANES, by_lane, row, set_row};
 
 /// The colours and opacities at eight places of an image, bilinearly blended: as [`super::look_up`].
 #[inline(always)]
@@ -18,6 +18,19 @@ pub(crate) fn look_up_lanes<S: Simd>(
     let [width, height] = signed_size([image.width, image.height], wraps);
     let signed_size = [f32x8::splat(simd, width), f32x8::splat(simd, height)];
     look_up_each(simd, &[image; LANES], signed_size, &[wraps; LANES], st)
+}
+
+/// The colours of the texels at eight places of an image: as [`super::look_up`] of the nearest, where edges are continued.
+#[inline(always)]
+pub(crate) fn nearest_lanes<S: Simd>(image: &Image, [s, t]: [f32x8<S>; 2]) -> [[f32; 3]; LANES] {
+    let [width, height] = [image.width, image.height];
+    let (x, y): ([f32; LANES], [f32; LANES]) = ((s * width as f32).into(), (t * height as f32).into());
+    // All places are found before any texel is read, so that the waits for memory overlap.
+    let places = by_lane!(lane => {
+        let (column, row) = ((x[lane] as u32).min(width - 1), (y[lane] as u32).min(height - 1));
+        row as usize * width as usize + column as usize
+    });
+    by_lane!(lane => image.texel(places[lane]))
 }
 
 /// Texels at a place of each of eight images, by their [`signed_size`].
