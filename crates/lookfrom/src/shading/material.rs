@@ -28,7 +28,7 @@ use crate::core::points::Lift;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::plastic::Plastic;
@@ -355,11 +355,7 @@ impl Evaluator<'_> {
             MaterialKind::Whitted(whitted) => Bsdf::Whitted(self.whitted(whitted)),
             MaterialKind::Diffuse { reflectance } => Bsdf::Diffuse(self.diffuse(reflectance)),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
-                let [reflected, transmitted] = [reflectance, transmittance].map(|color| {
-                    let color = self.textures.spectrum(color, self.point, self.mode);
-                    (color * *scale).map(|lane| lane.clamp(0.0, 1.0))
-                });
-                Bsdf::diffuse_transmission(reflected, transmitted)
+                Bsdf::DiffuseTransmission(self.diffuse_transmission(reflectance, transmittance, scale))
             }
             MaterialKind::Conductor { metal, roughness, energy } => {
                 Bsdf::Conductor(self.conductor(metal, roughness, energy))
@@ -397,6 +393,18 @@ impl Evaluator<'_> {
             true => Diffuse { reflectance: self.textures.spectrum(reflectance, self.point, self.mode) },
             false => Diffuse::new(self.albedo(reflectance)),
         }
+    }
+
+    #[inline]
+    fn diffuse_transmission(
+        &self,
+        reflectance: &SpectrumTexture,
+        transmittance: &SpectrumTexture,
+        scale: &f32,
+    ) -> DiffuseTransmission {
+        let [reflected, transmitted] = [reflectance, transmittance]
+            .map(|color| self.textures.spectrum(color, self.point, self.mode) * *scale);
+        DiffuseTransmission::new(reflected, transmitted)
     }
 
     fn conductor(&self, metal: &Metal, roughness: &Roughness, &energy: &Energy) -> Conductor {

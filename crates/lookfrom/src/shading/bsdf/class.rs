@@ -125,10 +125,10 @@ macro_rules! bsdf_classes {
                 Measured(Measured),
                 /// Whitted's model.
                 Whitted(WhittedCoefficients),
-            }
-            one_by_one {
                 /// Lambertian reflection and transmission.
                 DiffuseTransmission(DiffuseTransmission),
+            }
+            one_by_one {
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
                 /// Disney's principled surface.

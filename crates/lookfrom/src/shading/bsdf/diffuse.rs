@@ -135,11 +135,11 @@ impl<R: Real> Base<R> for Diffuse<R> {
 
 /// Reflects the fraction `reflectance` of the light and transmits the fraction `transmittance`, both uniformly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiffuseTransmission {
+pub struct DiffuseTransmission<R = f32> {
     /// 0 … 1.
-    pub(crate) reflectance: Spectrum,
+    pub(crate) reflectance: Spectrum<R>,
     /// 0 … 1.
-    pub(crate) transmittance: Spectrum,
+    pub(crate) transmittance: Spectrum<R>,
 }
 
 impl DiffuseTransmission {
@@ -149,45 +149,104 @@ impl DiffuseTransmission {
             [reflectance, transmittance].map(|part| part.map(|lane| lane.clamp(0.0, 1.0)));
         Self { reflectance, transmittance }
     }
+}
 
-    /// The probability of reflection; `None` where no allowed side carries light.
-    #[inline]
-    fn reflection_probability(&self, lobes: Lobes) -> Option<f32> {
+impl<R: Real> DiffuseTransmission<R> {
+    /// The probability of reflection, and whether an allowed side carries light.
+    #[inline(always)]
+    fn reflection_probability(&self, lobes: Lobes) -> (R, R::Mask) {
         let [r, t] = lobes.allowed([self.reflectance.max_lane(), self.transmittance.max_lane()]);
-        (r + t > 0.0).then(|| r / (r + t))
+        let (sum, zero) = (r + t, r.like(0.0));
+        (R::select(sum.gt(zero), r / sum, zero), sum.gt(zero))
+    }
+
+    #[inline(always)]
+    fn value(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        let part = Spectrum::select(same_side(wo, wi), self.reflectance, self.transmittance);
+        let is_lit = !is_grazing(wo) & !is_grazing(wi);
+        Spectrum::select(is_lit, part * wo.z.like(FRAC_1_PI), Spectrum::splat(wo.z.like(0.0)))
+    }
+
+    #[inline(always)]
+    fn density(&self, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
+        let (reflection, is_lit) = self.reflection_probability(lobes);
+        let is_lit = is_lit & !is_grazing(wo) & !is_grazing(wi);
+        let probability = R::select(same_side(wo, wi), reflection, wo.z.like(1.0) - reflection);
+        R::select(is_lit, probability * warp::cosine_hemisphere_pdf(Float::abs(wi.z)), wo.z.like(0.0))
+    }
+
+    /// As [`super::Bsdf::sample`].
+    #[inline(always)]
+    fn sampled(&self, wo: Vector<R>, uc: R, u: [R; 2], lobes: Lobes) -> DirectionSample<R> {
+        let one = uc.like(1.0);
+        let (reflection, is_valid) = self.reflection_probability(lobes);
+        let is_transmission = !uc.lt(reflection);
+        let wi = cosine_direction(u, R::select(is_transmission, -wo.z, wo.z));
+        let probability = R::select(is_transmission, one - reflection, reflection);
+        let no = is_valid.like(false);
+        DirectionSample {
+            wi,
+            f: self.value(wo, wi),
+            pdf: probability * warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
+            eta: one,
+            is_specular: no,
+            is_diffuse: !no,
+            is_transmission,
+            is_valid,
+        }
+    }
+}
+
+impl<R: Real> LaneBsdf<R> for DiffuseTransmission<R> {
+    type Prepared = Vector<R>;
+
+    #[inline(always)]
+    fn traits(&self) -> ClassTraits {
+        ClassTraits::PLAIN
+    }
+
+    #[inline(always)]
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.value(wo, wi)
+    }
+
+    #[inline(always)]
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
+        self.density(wo, wi, Lobes::ALL)
+    }
+
+    #[inline(always)]
+    fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sampled(wo, uc, u, Lobes::ALL)
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        !(self.reflectance.is_black() & self.transmittance.is_black())
+    }
+
+    #[inline(always)]
+    fn diffuse_share(&self, wo: &Vector<R>, _: Vector<R>, _: Spectrum<R>) -> Spectrum<R> {
+        Spectrum::splat(wo.z.like(1.0))
     }
 }
 
 impl ScatteringFunction for DiffuseTransmission {
     fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        if is_grazing(wo) || is_grazing(wi) {
-            Spectrum::BLACK
-        } else if same_side(wo, wi) {
-            self.reflectance * FRAC_1_PI
-        } else {
-            self.transmittance * FRAC_1_PI
-        }
+        self.value(wo.into(), wi.into())
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        let Some(reflection) = self.reflection_probability(lobes) else { return 0.0 };
-        if is_grazing(wo) || is_grazing(wi) {
-            return 0.0;
-        }
-        let probability = if same_side(wo, wi) { reflection } else { 1.0 - reflection };
-        probability * warp::cosine_hemisphere_pdf(wi.z.abs())
+        self.density(wo.into(), wi.into(), lobes)
     }
 
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let reflection = self.reflection_probability(lobes)?;
-        let (side, probability, lobe) = if uc < reflection {
-            (wo.z, reflection, Lobes::REFLECTION)
-        } else {
-            (-wo.z, 1.0 - reflection, Lobes::TRANSMISSION)
-        };
-        let wi = Vec3::from(cosine_direction(u, side));
-        let pdf = probability * warp::cosine_hemisphere_pdf(wi.z.abs());
-        Some(BsdfSample::new(wi, self.f(wo, wi, mode), pdf, lobe | Lobes::DIFFUSE))
+    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
+        self.sampled(wo.into(), uc, u, lobes).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {

@@ -4,7 +4,7 @@ use lookfrom_simd::{Real, Simd, f32x8, prelude::*};
 
 use super::conductor::Conductor;
 use super::dielectric::Dielectric;
-use super::diffuse::Diffuse;
+use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, DiffuseInterior, Layered};
 use super::lobes::Lobes;
@@ -169,6 +169,18 @@ impl RowBsdf for Diffuse {
     #[inline(always)]
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         Diffuse { reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)) }
+    }
+}
+
+impl RowBsdf for DiffuseTransmission {
+    type Lanes<S: Simd> = DiffuseTransmission<f32x8<S>>;
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        DiffuseTransmission {
+            reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)),
+            transmittance: gather_spectrum(simd, &by_lane!(lane => rows[lane].transmittance)),
+        }
     }
 }
 

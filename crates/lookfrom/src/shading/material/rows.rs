@@ -4,7 +4,7 @@ use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, Relief, Shadi
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
@@ -25,6 +25,7 @@ impl Material {
         }
         match &self.kind {
             MaterialKind::Diffuse { .. } => Some(BsdfClass::Diffuse),
+            MaterialKind::DiffuseTransmission { .. } => Some(BsdfClass::DiffuseTransmission),
             MaterialKind::Conductor { .. } => Some(BsdfClass::Conductor),
             MaterialKind::Dielectric { .. } => Some(BsdfClass::Dielectric),
             MaterialKind::CoatedDiffuse { .. } => Some(BsdfClass::CoatedDiffuse),
@@ -220,6 +221,10 @@ macro_rules! material_row {
 }
 
 material_row!(Diffuse, Diffuse { reflectance } => diffuse);
+material_row!(
+    DiffuseTransmission,
+    DiffuseTransmission { reflectance, transmittance, scale } => diffuse_transmission
+);
 material_row!(Conductor, Conductor { metal, roughness, energy } => conductor);
 material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);

@@ -9,7 +9,7 @@ use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::Diffuse;
+use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::measured::Measured;
