@@ -201,11 +201,6 @@ impl<R: Real> LaneBsdf<R> for DiffuseTransmission<R> {
     type Prepared = Vector<R>;
 
     #[inline(always)]
-    fn traits(&self) -> ClassTraits {
-        ClassTraits::PLAIN
-    }
-
-    #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo
     }

@@ -12,7 +12,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
-use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
+use super::lanes::{LaneBsdf, RowBsdf};
 use super::{BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, fresnel, is_grazing};
 use crate::core::elementary::{angle_in_turns, exp, ln, sin_cos_of_turns};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
@@ -271,11 +271,6 @@ fn scaled_bessel<R: Real>(x: R) -> R {
 
 impl<R: Real> LaneBsdf<R> for Hair<R> {
     type Prepared = (Vector<R>, SeenHair<R>);
-
-    #[inline(always)]
-    fn traits(&self) -> ClassTraits {
-        ClassTraits::PLAIN
-    }
 
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> Self::Prepared {

@@ -40,7 +40,10 @@ pub trait LaneBsdf<R: Real> {
     type Prepared;
 
     /// The properties of the class.
-    fn traits(&self) -> ClassTraits;
+    #[inline(always)]
+    fn traits(&self) -> ClassTraits {
+        ClassTraits::PLAIN
+    }
     /// The BSDF prepared for the outgoing direction `wo`, which the other methods take.
     fn prepare(&self, wo: Vector<R>) -> Self::Prepared;
     /// As [`Bsdf::f`](super::Bsdf::f).
@@ -76,10 +79,6 @@ pub(crate) trait RowBsdf: Variant + ScatteringFunction {
 impl<R: Real> LaneBsdf<R> for Dielectric<R> {
     type Prepared = Vector<R>;
 
-    #[inline(always)]
-    fn traits(&self) -> ClassTraits {
-        ClassTraits::PLAIN
-    }
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> Vector<R> {
         wo

@@ -15,7 +15,7 @@ use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::conductor::half_vector;
 use super::diffuse::cosine_direction;
-use super::lanes::{ClassTraits, LaneBsdf, RowBsdf, gather_microfacets};
+use super::lanes::{LaneBsdf, RowBsdf, gather_microfacets};
 use super::microfacet::Microfacets;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
@@ -223,11 +223,6 @@ impl<R: Real, T: AsRef<[&'static Interface]>> Plastic<R, T> {
 
 impl<R: Real, T: AsRef<[&'static Interface]>> LaneBsdf<R> for Plastic<R, T> {
     type Prepared = SeenPlastic<R>;
-
-    #[inline(always)]
-    fn traits(&self) -> ClassTraits {
-        ClassTraits::PLAIN
-    }
 
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> SeenPlastic<R> {

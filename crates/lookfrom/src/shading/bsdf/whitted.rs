@@ -15,7 +15,7 @@ use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::conductor::half_vector;
 use super::diffuse::cosine_direction;
-use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
+use super::lanes::{LaneBsdf, RowBsdf};
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, is_grazing, same_side,
 };
@@ -262,11 +262,6 @@ impl<R: Real> WhittedCoefficients<R> {
 
 impl<R: Real> LaneBsdf<R> for WhittedCoefficients<R> {
     type Prepared = SeenWhitted<R>;
-
-    #[inline(always)]
-    fn traits(&self) -> ClassTraits {
-        ClassTraits::PLAIN
-    }
 
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> SeenWhitted<R> {
