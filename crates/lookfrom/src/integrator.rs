@@ -335,7 +335,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         self.set_transmittance(world, path, absorbed.beta);
         let length = || path.length_to(hit);
         self.probe.notice_some(|| {
-            (!path.interior.is_empty()).then(|| Event::Absorbed {
+            world.medium(path.interior).is_some().then(|| Event::Absorbed {
                 address: path.address,
                 interior: path.interior,
                 length: length(),

@@ -85,16 +85,42 @@ fn pinned_pictures_are_the_same_at_every_level_and_on_any_number_of_threads() {
 fn guides_are_the_same_at_every_level() {
     let stage = Stage::new("guides");
     let room = root().join("docs/benchmarks/portals/window.toml");
-    let picture = |level: &str, portals: &str| {
-        let settings = "--integrator path --width 16 --height 12 --samples 2 --denoise off";
-        let mut command = stage.command(&format!("render -q -o p.exr {settings} --portals {portals}"));
-        let output = command.arg(&room).env("LOOKFROM_SIMD", level).output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        hash(&pixels(&stage))
-    };
+    let picture = |level: &str, portals: &str| path_traced(&stage, &room, level, &["--portals", portals]);
     let guided = picture("sse2", "auto");
     assert_eq!(guided, picture("avx2", "auto"));
     assert_ne!(guided, picture("avx2", "named"));
+}
+
+/// Paths in the clear body are shaded together, those in the coloured one around it are not.
+#[test]
+fn bodies_in_bodies_are_the_same_at_every_level() {
+    let stage = Stage::new("bodies");
+    let scene = stage.path("bodies.toml");
+    let picture = |level: &str, absorption: f64| {
+        let written = format!(
+            "[camera]\nlookfrom = [0, 1, 5]\nlookat = [0, 0, 0]\nfov = 30\n\
+             [materials.drink]\ntype = \"principled\"\ntransmission = 1\nroughness = 0\nior = 1.33\n\
+             solid = true\nabsorption = [0.2, {absorption}, 0.4]\n\
+             [materials.glass]\ndiffuse = 0\ntransmission = 0.9\nior = 1.5\n\
+             [[sphere]]\nradius = 1\nmaterial = \"drink\"\n\
+             [[sphere]]\nradius = 0.5\nmaterial = \"glass\"\n\
+             [[light]]\ntype = \"environment\"\ncolor = 1\n"
+        );
+        stage.write("bodies.toml", &written);
+        path_traced(&stage, &scene, level, &[])
+    };
+    let mixed = picture("sse2", 1.5);
+    assert_eq!(mixed, picture("avx2", 1.5));
+    assert_ne!(mixed, picture("avx2", 0.5));
+}
+
+/// The hash of a small picture at a level.
+fn path_traced(stage: &Stage, scene: &Path, level: &str, more: &[&str]) -> u64 {
+    let settings = "--integrator path --width 16 --height 12 --samples 2 --denoise off";
+    let mut command = stage.command(&format!("render -q -o p.exr {settings}"));
+    let output = command.args(more).arg(scene).env("LOOKFROM_SIMD", level).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    hash(&pixels(stage))
 }
 
 /// The values of all channels of the picture, without the header, which names the version and the path.

@@ -4,6 +4,7 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 
 use super::World;
+use crate::core::elementary;
 use crate::core::spectrum::Spectrum;
 use crate::medium::{Cover, Medium, Way};
 use crate::shading::interior_stack::InteriorStack;
@@ -43,7 +44,7 @@ impl World {
             return mode.one();
         }
         let length = scale * length;
-        mode.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { libm::expf(-sigma * length) })
+        mode.one() * sigma.map(|sigma| if sigma == 0.0 { 1.0 } else { elementary::exp(-sigma * length) })
     }
 
     /// The extinction coefficient of a medium where its density is 1, what it absorbs and scatters, and a factor of it.
@@ -69,7 +70,11 @@ impl World {
     }
 
     /// The medium that a ray is in; `None` in a vacuum.
+    #[inline]
     pub(crate) fn medium(&self, media: InteriorStack) -> Option<&Medium> {
+        if media.is_empty() {
+            return None;
+        }
         media.medium(&self.materials).and_then(|index| self.media.get(index as usize))
     }
 }

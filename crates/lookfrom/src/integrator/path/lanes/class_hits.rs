@@ -26,7 +26,7 @@ impl<'a> HitBatch<'a> {
     #[inline]
     pub(in crate::integrator) fn is_in_vacuum(&self, index: usize) -> bool {
         let path = &self.paths[index];
-        path.interior.is_empty() && !path.state.is_catcher
+        self.world.medium(path.interior).is_none() && !path.state.is_catcher
     }
 
     /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, and is to go on from there.
@@ -119,10 +119,12 @@ impl PathTracer {
         let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
         let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
         ScatterKernel { world, surfaces: &points.surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+        let front = points.front;
         let departure = |lane: usize| {
-            let ClassHit { path, hit, .. } = hits[lane];
+            let ClassHit { path, hit, binding, .. } = hits[lane];
             let origin_primitive = OriginPrimitive::of(hit);
-            (Departure { path, origin_primitive, boundary: Boundary::None }, false)
+            let boundary = Boundary::Bare { material: binding.material, front: front & 1 << lane != 0 };
+            (Departure { path, origin_primitive, boundary }, false)
         };
         self.go_on(world, departure, active, scattered, output);
     }
