@@ -60,7 +60,7 @@ fn with_and_without_the_feature_parallel() {
     };
     assert_eq!(
         ["glass-and-mirror.toml", "soft-shadows.toml"].map(hash),
-        [0xab5e_f04a_409c_b972, 0x566c_fb31_c1f7_74d5]
+        [0x9fb1_66e5_afda_5882, 0x566c_fb31_c1f7_74d5]
     );
 }
 

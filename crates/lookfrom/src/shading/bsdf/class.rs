@@ -208,6 +208,13 @@ macro_rules! lane_classes {
             /// Number of classes.
             pub(crate) const COUNT: usize = Self::ALL.len();
 
+            /// Whether the bodies around a surface have an effect on it: on glTF's materials and OpenPBR's, whose index of
+            /// refraction is relative to theirs.
+            #[inline]
+            pub(crate) fn depends_on_surroundings(self) -> bool {
+                matches!(self, Self::Principled | Self::OpenPbr)
+            }
+
             /// The class of a BSDF, if it is computed in lanes.
             #[inline]
             pub(crate) fn of(bsdf: &Bsdf) -> Option<Self> {

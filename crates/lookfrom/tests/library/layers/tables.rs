@@ -56,7 +56,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("medium", "bsdf color elementary hash lanes light noise spectrum texture vector"),
     (
         "world",
-        "bsdf distribution footprint interior_stack light material math medium points primitive spectrum \
+        "bsdf distribution elementary footprint interior_stack light material math medium points primitive spectrum \
          interaction texture warp",
     ),
     (

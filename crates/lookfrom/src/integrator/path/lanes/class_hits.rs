@@ -29,11 +29,16 @@ impl<'a> HitBatch<'a> {
         self.world.medium(path.interior).is_none() && !path.state.is_catcher
     }
 
-    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, and is to go on from there.
+    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, the same in all bodies or met in none, and is
+    /// to go on from there.
     #[inline]
     pub(in crate::integrator) fn hit_class(&self, tracer: &PathTracer, index: usize) -> Option<HitClass> {
-        match self.paths[index].depth < tracer.depth {
-            true => self.world.hit_class(&self.hits[index]),
+        let path = &self.paths[index];
+        match path.depth < tracer.depth {
+            true => {
+                let class = self.world.hit_class(&self.hits[index]);
+                class.filter(|class| path.interior.is_empty() || !class.bsdf.depends_on_surroundings())
+            }
             false => None,
         }
     }
