@@ -1,5 +1,5 @@
-//! Whitted's model: its coefficients at a point, what they make of light and of rays, and the BSDF of which the same follows, so that
-//! scenes written for it can be path traced.
+//! Whitted's model at a point: its coefficients, the light that they reflect, the branches of the ray tree, and the same as a BSDF, so
+//! that scenes written for it can be path traced.
 //!
 //! Whitted 1980: `I = k_a I_a + k_d Σ (N·L_j) I_j + k_s Σ (N·H_j)ⁿ I_j + k_r S + k_t T`, with Blinn's half vector
 //! `H` between `L` and the viewing direction (Blinn 1977).

@@ -34,13 +34,11 @@ impl<'a> HitBatch<'a> {
     #[inline]
     pub(in crate::integrator) fn hit_class(&self, tracer: &PathTracer, index: usize) -> Option<HitClass> {
         let path = &self.paths[index];
-        match path.depth < tracer.depth {
-            true => {
-                let class = self.world.hit_class(&self.hits[index]);
-                class.filter(|class| path.interior.is_empty() || !class.bsdf.depends_on_surroundings())
-            }
-            false => None,
+        if path.depth >= tracer.depth {
+            return None;
         }
+        let class = self.world.hit_class(&self.hits[index])?;
+        (path.interior.is_empty() || !class.bsdf.depends_on_surroundings()).then_some(class)
     }
 }
 
