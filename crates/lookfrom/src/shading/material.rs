@@ -1,8 +1,8 @@
 //! Materials: from their parameters at a point to a BSDF in a shading frame.
 //!
 //! [`Shading`] is the scattering function of a material at a point, in the frame of the shading normal (with bump
-//! mapping): for path tracing. [`WhittedCoefficients`](crate::shading::bsdf::whitted::WhittedCoefficients) are those of Whitted's model, which ray casting and Whitted ray
-//! tracing use for every material.
+//! mapping): for path tracing. The coefficients of Whitted's model, which ray casting and Whitted ray tracing use for every
+//! material, are [`WhittedCoefficients`](crate::shading::bsdf::whitted::WhittedCoefficients).
 
 mod albedo;
 mod approximate;

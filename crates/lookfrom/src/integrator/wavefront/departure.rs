@@ -23,7 +23,7 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
 pub(in crate::integrator) enum Boundary<'a> {
     /// Those that the surface separates.
     Surface(&'a SurfaceInteraction),
-    /// A bare surface: the body of its material, if it is one, or out of it where the path has met it from inside.
+    /// A surface that declares no media: the body of its material, if it is one, or out of it where the path has met it from inside.
     Bare {
         /// Index into the world's materials.
         material: u32,

@@ -10,7 +10,7 @@ use crate::integrator::wavefront::LightSamples;
 use crate::integrator::{Branch, Event, Path};
 use crate::shading::bsdf::whitted::{Branches, WhittedCoefficients};
 
-/// WhittedCoefficients and events of the lanes of a group.
+/// Coefficients and events of the lanes of a group.
 #[derive(Clone, Debug)]
 pub(super) struct Told {
     pub(super) coefficients: Vec<WhittedCoefficients>,
