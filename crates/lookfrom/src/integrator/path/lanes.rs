@@ -7,6 +7,7 @@
 //! Binning by material: Laine, Karras & Aila 2013; Áfra et al. 2016 (local shading coherence on CPUs).
 
 mod bent_frames;
+mod by_class;
 mod class_hits;
 mod class_points;
 mod in_medium;
@@ -22,7 +23,7 @@ use lookfrom_simd::LaneMask;
 
 use class_points::ClassPoints;
 pub(super) use in_medium::MediumVertex;
-use kernel::{ScatterKernel, Scattered, Task};
+use kernel::{Scattered, Task};
 use medium::MediumKernel;
 use vertices::VertexColumns;
 pub(super) use waiting::Waiting;
@@ -33,11 +34,10 @@ use super::{LightSampling, PathTracer, PreviousVertex, Vertex};
 use crate::core::lanes::{LANES, by_lane, row};
 use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Boundary, LightSamples, Modes};
-use crate::integrator::{Bounce, Event, Probe, SampleStream, Shadow};
-use crate::shading::bsdf::lanes::RowBsdf;
+use crate::integrator::{Bounce, Event, Probe, Queues, SampleStream, Shadow};
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::subsurface::Subsurface;
-use crate::shading::bsdf::{BsdfSample, Uniform};
+use crate::shading::bsdf::{BsdfClass, BsdfSample, Uniform};
 use crate::world::World;
 
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
@@ -57,8 +57,9 @@ impl Vertex {
 
 impl PathTracer {
     /// Scatters up to eight paths by BSDFs of one class.
-    fn scatter_vertices<B: RowBsdf, P: Probe>(
+    fn scatter_vertices<P: Probe>(
         &self,
+        class: BsdfClass,
         world: &World,
         vertices: &[Vertex],
         scattered: &mut Scattered,
@@ -68,15 +69,13 @@ impl PathTracer {
         let active = (1 << vertices.len()) - 1;
         // Unused lanes repeat the last vertex.
         let vertices: [&Vertex; LANES] = by_lane!(lane => vertices.get(lane).unwrap_or(last));
-        let Some(last_bsdf) = B::of(&last.shading.bsdf) else { return };
-        let bsdfs = by_lane!(lane => B::of(&vertices[lane].shading.bsdf).unwrap_or(last_bsdf));
-        let surfaces = VertexColumns::of_vertices(&vertices);
         let task = &self.task(
             by_lane!(lane => &vertices[lane].path),
             by_lane!(lane => &vertices[lane].stream),
-            output,
+            &output.queues,
+            output.light_paths.is_some(),
         );
-        ScatterKernel { world, surfaces: &surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+        by_class::scatter_vertices(class, world, &vertices, task, scattered);
         let departure = |lane: usize| (vertices[lane].departure(), vertices[lane].is_catcher);
         self.go_on(world, departure, active, scattered, output);
     }
@@ -114,7 +113,8 @@ impl PathTracer {
         let task = &self.task(
             by_lane!(lane => &vertices[lane].path),
             by_lane!(lane => &vertices[lane].stream),
-            output,
+            &output.queues,
+            output.light_paths.is_some(),
         );
         let kernel = MediumKernel { world, vertices, active, task, scattered };
         match active {
@@ -135,7 +135,8 @@ impl PathTracer {
         output: &mut StepOutput<'_, P>,
     ) {
         let surfaces = VertexColumns::of_vertices(&[vertex]);
-        let task = self.task([&vertex.path; LANES], [&vertex.stream; LANES], output);
+        let wants_shares = output.light_paths.is_some();
+        let task = self.task([&vertex.path; LANES], [&vertex.stream; LANES], &output.queues, wants_shares);
         let bsdf = &vertex.shading.bsdf;
         match self.light_sampling {
             LightSampling::None => {
@@ -149,19 +150,15 @@ impl PathTracer {
     }
 
     #[inline(always)]
-    fn task<'a, P: Probe>(
+    fn task<'a>(
         &self,
         paths: [&'a Path; LANES],
         streams: [&'a SampleStream; LANES],
-        output: &'a StepOutput<'_, P>,
+        queues: &'a Queues,
+        wants_shares: bool,
     ) -> Task<'a> {
-        Task {
-            light_sampling: self.light_sampling,
-            wants_shares: output.light_paths.is_some(),
-            paths,
-            streams,
-            modes: Modes::of(&paths, &output.queues.modes, &output.queues.times),
-        }
+        let modes = Modes::of(&paths, &queues.modes, &queues.times);
+        Task { light_sampling: self.light_sampling, wants_shares, paths, streams, modes }
     }
 
     /// The shadow rays and further paths of scattered paths, in the lanes of a mask. `departure` also tells whether the surface

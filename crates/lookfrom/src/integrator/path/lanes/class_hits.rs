@@ -6,18 +6,19 @@ use lookfrom_scene::material::BackFace;
 use lookfrom_simd::LaneMask;
 
 use super::Memory;
+use super::by_class::MaterialHits;
 use super::class_points::{ClassPoints, PointsKernel};
-use super::kernel::ScatterKernel;
 use super::vertices::VertexColumns;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::{LANES, bitmask, by_lane, row, set_row};
 use crate::core::points::StoredPlacement;
-use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput, dimension};
+use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput};
 use crate::integrator::wavefront::{Boundary, Eight};
-use crate::integrator::{Event, Integrator, Probe, SampleStream};
+use crate::integrator::{Event, Integrator, Probe};
 use crate::primitive::{MaterialBinding, Mesh, SphereBinding};
+use crate::shading::bsdf::{Bsdf, BsdfClass};
 use crate::shading::footprint::PixelFootprint;
-use crate::shading::material::{self, Material, MaterialRow, Shading, ShadingContext};
+use crate::shading::material::{self, Material, Shading};
 use crate::shading::texture::{LookUps, TexturePoint};
 use crate::world::{HitClass, World};
 
@@ -80,8 +81,9 @@ pub(super) struct ClassHits<'a> {
 
 impl PathTracer {
     /// Scatters up to eight paths of a batch that met meshes, or spheres, of one class.
-    pub(super) fn scatter_hits<B: MaterialRow, P: Probe>(
+    pub(super) fn scatter_hits<P: Probe>(
         &self,
+        class: BsdfClass,
         batch: &HitBatch<'_>,
         eight: &Eight<'_>,
         memory: &mut Memory,
@@ -100,28 +102,28 @@ impl PathTracer {
             return;
         }
 
-        // Evaluate the materials, and bend the frames.
+        // Evaluate the materials, bend the frames, and scatter.
         let mut look_ups = None;
         let varying = class_hits.texture_points(world, points, &mut look_ups);
-        let varying = varying.as_ref();
-        let rows = self.rows::<B, P>(batch, hits, varying, points, output);
-        points.bent.bend(&mut points.surfaces, points.front);
+        let (varying, wants_shares) = (varying.as_ref(), output.light_paths.is_some());
+        let materials = MaterialHits { tracer: self, batch, hits, varying, wants_shares };
+        let mut told = [None; LANES];
+        let listener = P::LISTENS.then_some(&mut told);
+        let are_scattered = materials.scatter(class, points, &mut output.queues, scattered, listener);
         if P::LISTENS {
-            tell_of_shading(world, (hits, active), &rows, points, output);
+            tell_of_shading(world, (hits, active), &told, points, output);
         }
         if active & class_hits.are_first != 0 {
             let first = output.queues.first_surfaces.block();
             class_hits.leave(world, active, varying, points, first);
             output.queues.first_surfaces.leave_block();
         }
+        if !are_scattered {
+            return;
+        }
 
-        // Scatter, but for what is black from behind.
+        // Go on, but from what is black from behind.
         let active = active & !class_hits.are_black(&points.surfaces);
-        let Some(first) = &rows[0] else { return };
-        let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
-        let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
-        let task = &self.task(by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]), output);
-        ScatterKernel { world, surfaces: &points.surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
         let front = points.front;
         let departure = |lane: usize| {
             let ClassHit { path, hit, binding, .. } = hits[lane];
@@ -150,52 +152,6 @@ impl PathTracer {
             }
         }
         active
-    }
-
-    /// The rows of the materials' BSDFs. Frames that are bent alone are replaced; those that are bent together are noted.
-    #[inline(always)]
-    fn rows<B: MaterialRow, P: Probe>(
-        &self,
-        batch: &HitBatch<'_>,
-        hits: &[ClassHit<'_>; LANES],
-        varying: Option<&[TexturePoint<'_>; LANES]>,
-        points: &mut ClassPoints,
-        output: &mut StepOutput<'_, P>,
-    ) -> [Option<B>; LANES] {
-        let world = batch.world;
-        let &mut ClassPoints { ref mut surfaces, front, smooth, ref mut bent, .. } = points;
-        let mut rows = [None; LANES];
-        for (lane, hit) in hits.iter().enumerate() {
-            let ClassHit { path, material, .. } = hit;
-            let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
-            let mut throughput = path.beta;
-            let context = ShadingContext {
-                mode: &mut output.queues.modes[path.slot as usize],
-                throughput: &mut throughput,
-                interior: path.interior,
-                u: 0.0,
-                seed: seed_of_walks::<B>(&batch.streams.of(path)),
-            };
-            let mut row: Option<B> = if material.bends_in_lanes() {
-                if smooth & 1 << lane != 0 || material.has_bumps() {
-                    bent.note(lane, material.local_normal(&world.textures, point));
-                }
-                material.row(&world.textures, point, context)
-            } else if material.bends_frames() {
-                let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
-                material.bent_row(world.relief(), &geometry, point, context).map(|(row, axes)| {
-                    surfaces.set_frame(lane, axes);
-                    row
-                })
-            } else {
-                material.row(&world.textures, point, context)
-            };
-            if self.regularize && path.blurred {
-                row.iter_mut().for_each(B::regularize);
-            }
-            rows[lane] = row;
-        }
-        rows
     }
 }
 
@@ -303,27 +259,21 @@ impl<'a> ClassHits<'a> {
 
 /// Tells a probe of the surfaces and their BSDFs, in the frames of the lanes.
 #[cold]
-fn tell_of_shading<B: MaterialRow, P: Probe>(
+fn tell_of_shading<P: Probe>(
     world: &World,
     (hits, active): (&[ClassHit<'_>; LANES], u32),
-    rows: &[Option<B>; LANES],
+    bsdfs: &[Option<Bsdf>; LANES],
     points: &ClassPoints,
     output: &mut StepOutput<'_, P>,
 ) {
     for lane in LaneMask(active) {
-        let (ClassHit { path, hit, .. }, Some(row)) = (&hits[lane], rows[lane]) else { continue };
+        let (ClassHit { path, hit, .. }, Some(bsdf)) = (&hits[lane], bsdfs[lane]) else { continue };
         let surface = world.surface_at(&path.ray, hit, output.time(path));
         output.probe.notice(|| Event::Shaded {
             address: path.address,
-            shading: Box::new(Shading::in_frame(&surface, points.surfaces.axes(lane), row.bsdf())),
+            shading: Box::new(Shading::in_frame(&surface, points.surfaces.axes(lane), bsdf)),
             surface: Box::new(surface),
             beta: path.beta,
         });
     }
-}
-
-/// [`ShadingContext::seed`], where BSDFs of a class take one.
-#[inline]
-fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
-    if B::TAKES_SEED { stream.two(dimension::WALK)[0] } else { 0.0 }
 }

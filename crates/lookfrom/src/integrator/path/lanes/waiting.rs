@@ -7,17 +7,7 @@ use crate::core::lanes::LANES;
 use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
-use crate::shading::bsdf::conductor::Conductor;
-use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
-use crate::shading::bsdf::hair::Hair;
-use crate::shading::bsdf::layered::Layered;
-use crate::shading::bsdf::measured::Measured;
-use crate::shading::bsdf::open_pbr::OpenPbrSurface;
-use crate::shading::bsdf::plastic::Plastic;
-use crate::shading::bsdf::principled::Principled;
-use crate::shading::bsdf::whitted::WhittedCoefficients;
-use crate::shading::bsdf::{Bsdf, BsdfClass, bsdf_classes};
+use crate::shading::bsdf::{Bsdf, BsdfClass};
 use crate::world::{HitClass, World};
 
 /// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
@@ -43,31 +33,6 @@ const ESCAPED: usize = BsdfClass::COUNT;
 /// The bin of the first class of paths that hit spheres.
 const ON_SPHERES: usize = ESCAPED + 1;
 const _: () = assert!(ON_SPHERES + BsdfClass::COUNT <= Bins::COUNT, "bins of other kinds");
-
-/// Calls a generic method of a path tracer with the BSDF of a class.
-macro_rules! with_class {
-    ($class:expr, $tracer:ident.$method:ident $arguments:tt) => {
-        bsdf_classes!(call_with_class($class, $tracer, $method, $arguments))
-    };
-}
-
-macro_rules! call_with_class {
-    (
-        ($class:expr, $tracer:ident, $method:ident, $arguments:tt)
-        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
-        one_by_one { $($rest:tt)* }
-    ) => {
-        match $class {
-            $(BsdfClass::$lane => call!($tracer, $method, $type, $arguments),)*
-        }
-    };
-}
-
-macro_rules! call {
-    ($tracer:ident, $method:ident, $type:ty, ($($argument:expr),*)) => {
-        $tracer.$method::<$type, P>($($argument),*)
-    };
-}
 
 impl Waiting {
     /// None yet; to be scattered in lanes or alone.
@@ -99,7 +64,7 @@ impl Waiting {
         let memory = &mut self.memory;
         let first = if is_sphere { ON_SPHERES } else { 0 };
         self.bins.push(first + bsdf as usize, index as u32, 0, |eight| {
-            with_class!(bsdf, tracer.scatter_hits(batch, eight, memory, output));
+            tracer.scatter_hits(bsdf, batch, eight, memory, output);
         });
     }
 
@@ -123,7 +88,7 @@ impl Waiting {
         };
         let vertices = &mut self.vertices[class as usize];
         if fills_lanes(vertices, vertex) {
-            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
+            tracer.scatter_vertices(class, world, vertices, scattered, output);
             vertices.clear();
         }
     }
@@ -203,11 +168,11 @@ impl Waiting {
             let memory = &mut self.memory;
             for first in [0, ON_SPHERES] {
                 self.bins.flush(1 << (first + class as usize), |eight| {
-                    with_class!(class, tracer.scatter_hits(batch, eight, memory, output));
+                    tracer.scatter_hits(class, batch, eight, memory, output);
                 });
             }
             let (world, scattered) = (batch.world, &mut memory.scattered);
-            with_class!(class, tracer.scatter_vertices(world, vertices, scattered, output));
+            tracer.scatter_vertices(class, world, vertices, scattered, output);
         }
     }
 }

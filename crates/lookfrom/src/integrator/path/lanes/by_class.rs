@@ -1,0 +1,167 @@
+//! What is compiled for each class of BSDFs: the rows of eight materials, and the kernel that scatters by them.
+
+use super::class_hits::ClassHit;
+use super::class_points::ClassPoints;
+use super::kernel::{ScatterKernel, Scattered, Task};
+use super::vertices::VertexColumns;
+use crate::core::lanes::{LANES, by_lane};
+use crate::integrator::path::{HitBatch, PathTracer, Vertex, dimension};
+use crate::integrator::{Queues, SampleStream};
+use crate::shading::bsdf::conductor::Conductor;
+use crate::shading::bsdf::dielectric::Dielectric;
+use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
+use crate::shading::bsdf::hair::Hair;
+use crate::shading::bsdf::lanes::RowBsdf;
+use crate::shading::bsdf::layered::Layered;
+use crate::shading::bsdf::measured::Measured;
+use crate::shading::bsdf::open_pbr::OpenPbrSurface;
+use crate::shading::bsdf::plastic::Plastic;
+use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::whitted::WhittedCoefficients;
+use crate::shading::bsdf::{Bsdf, BsdfClass, bsdf_classes};
+use crate::shading::material::{MaterialRow, ShadingContext};
+use crate::shading::texture::TexturePoint;
+use crate::world::World;
+
+/// Calls a generic function with the type of a class.
+macro_rules! with_class {
+    ($class:expr, $function:ident $arguments:tt) => {
+        bsdf_classes!(call_with_class($class, $function, $arguments))
+    };
+}
+
+macro_rules! call_with_class {
+    (
+        ($class:expr, $function:ident, $arguments:tt)
+        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
+        one_by_one { $($rest:tt)* }
+    ) => {
+        match $class {
+            $(BsdfClass::$lane => call!($function, $type, $arguments),)*
+        }
+    };
+}
+
+macro_rules! call {
+    ($function:ident, $type:ty, ($($argument:expr),*)) => {
+        $function::<$type>($($argument),*)
+    };
+}
+
+/// Scatters vertices by the BSDFs of their class.
+pub(super) fn scatter_vertices(
+    class: BsdfClass,
+    world: &World,
+    vertices: &[&Vertex; LANES],
+    task: &Task<'_>,
+    scattered: &mut Scattered,
+) {
+    with_class!(class, scatter_by(world, vertices, task, scattered));
+}
+
+fn scatter_by<B: RowBsdf>(
+    world: &World,
+    vertices: &[&Vertex; LANES],
+    task: &Task<'_>,
+    scattered: &mut Scattered,
+) {
+    let Some(first) = B::of(&vertices[0].shading.bsdf) else { return };
+    let bsdfs = by_lane!(lane => B::of(&vertices[lane].shading.bsdf).unwrap_or(first));
+    let surfaces = &VertexColumns::of_vertices(vertices);
+    ScatterKernel { world, surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+}
+
+/// Hits on shapes whose materials have BSDFs of one class.
+pub(super) struct MaterialHits<'a> {
+    pub(super) tracer: &'a PathTracer,
+    pub(super) batch: &'a HitBatch<'a>,
+    pub(super) hits: &'a [ClassHit<'a>; LANES],
+    /// The texture points, if any material varies.
+    pub(super) varying: Option<&'a [TexturePoint<'a>; LANES]>,
+    /// As [`Task::wants_shares`].
+    pub(super) wants_shares: bool,
+}
+
+impl MaterialHits<'_> {
+    /// Evaluates the materials, bends the frames of the points, and scatters. The BSDFs are left in `told` if somebody listens. False if
+    /// there are none.
+    pub(super) fn scatter(
+        &self,
+        class: BsdfClass,
+        points: &mut ClassPoints,
+        queues: &mut Queues,
+        scattered: &mut Scattered,
+        told: Option<&mut [Option<Bsdf>; LANES]>,
+    ) -> bool {
+        with_class!(class, scatter_hits_by(self, points, queues, scattered, told))
+    }
+
+    /// The rows of the materials' BSDFs. Frames that are bent alone are replaced; those that are bent together are noted.
+    #[inline(always)]
+    fn rows<B: MaterialRow>(&self, points: &mut ClassPoints, queues: &mut Queues) -> [Option<B>; LANES] {
+        let Self { tracer, batch, hits, varying, .. } = *self;
+        let world = batch.world;
+        let &mut ClassPoints { ref mut surfaces, front, smooth, ref mut bent, .. } = points;
+        let mut rows = [None; LANES];
+        for (lane, hit) in hits.iter().enumerate() {
+            let ClassHit { path, material, .. } = hit;
+            let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);
+            let mut throughput = path.beta;
+            let context = ShadingContext {
+                mode: &mut queues.modes[path.slot as usize],
+                throughput: &mut throughput,
+                interior: path.interior,
+                u: 0.0,
+                seed: seed_of_walks::<B>(&batch.streams.of(path)),
+            };
+            let mut row: Option<B> = if material.bends_in_lanes() {
+                if smooth & 1 << lane != 0 || material.has_bumps() {
+                    bent.note(lane, material.local_normal(&world.textures, point));
+                }
+                material.row(&world.textures, point, context)
+            } else if material.bends_frames() {
+                let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
+                material.bent_row(world.relief(), &geometry, point, context).map(|(row, axes)| {
+                    surfaces.set_frame(lane, axes);
+                    row
+                })
+            } else {
+                material.row(&world.textures, point, context)
+            };
+            if tracer.regularize && path.blurred {
+                row.iter_mut().for_each(B::regularize);
+            }
+            rows[lane] = row;
+        }
+        rows
+    }
+}
+
+fn scatter_hits_by<B: MaterialRow>(
+    hits: &MaterialHits<'_>,
+    points: &mut ClassPoints,
+    queues: &mut Queues,
+    scattered: &mut Scattered,
+    told: Option<&mut [Option<Bsdf>; LANES]>,
+) -> bool {
+    let rows = hits.rows::<B>(points, queues);
+    points.bent.bend(&mut points.surfaces, points.front);
+    if let Some(told) = told {
+        *told = rows.map(|row| row.map(B::bsdf));
+    }
+    let Some(first) = &rows[0] else { return false };
+    let bsdfs = by_lane!(lane => rows[lane].as_ref().unwrap_or(first));
+    let MaterialHits { tracer, batch, hits, wants_shares, .. } = *hits;
+    let streams = by_lane!(lane => batch.streams.of(hits[lane].path));
+    let (paths, streams) = (by_lane!(lane => hits[lane].path), by_lane!(lane => &streams[lane]));
+    let task = &tracer.task(paths, streams, queues, wants_shares);
+    let (world, surfaces) = (batch.world, &points.surfaces);
+    ScatterKernel { world, surfaces, bsdfs: &bsdfs, task, scattered }.scatter();
+    true
+}
+
+/// [`ShadingContext::seed`], where BSDFs of a class take one.
+#[inline]
+fn seed_of_walks<B: MaterialRow>(stream: &SampleStream) -> f32 {
+    if B::TAKES_SEED { stream.two(dimension::WALK)[0] } else { 0.0 }
+}
