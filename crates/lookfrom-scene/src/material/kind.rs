@@ -38,6 +38,8 @@ pub enum MaterialKind {
         roughness: Roughness,
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
+        /// Multiplies what is reflected; not 1 is not in nature.
+        specular_reflectance: Color,
     },
     /// A dielectric such as glass or water, which encloses an interior.
     Dielectric {
@@ -114,7 +116,7 @@ impl MaterialKind {
     /// Its colours.
     pub fn colors(&self) -> Vec<Color> {
         let of_metal = |metal: &Metal| match *metal {
-            Metal::Indices { eta, k } => vec![eta, k],
+            Metal::Indices { eta, k, .. } => vec![eta, k],
             Metal::Reflectance(color) => vec![color],
         };
         match self {
@@ -127,7 +129,11 @@ impl MaterialKind {
             Self::DiffuseTransmission { reflectance, transmittance, .. } => {
                 vec![*reflectance, *transmittance]
             }
-            Self::Conductor { metal, .. } => of_metal(metal),
+            Self::Conductor { metal, specular_reflectance, .. } => {
+                let mut colors = of_metal(metal);
+                colors.push(*specular_reflectance);
+                colors
+            }
             Self::CoatedDiffuse { reflectance, coat } => vec![*reflectance, coat.albedo],
             Self::Plastic(plastic) => vec![plastic.reflectance, plastic.specular_reflectance],
             Self::CoatedConductor { metal, coat, .. } => {
@@ -172,8 +178,12 @@ impl MaterialKind {
                 ("reflectance", plastic.reflectance),
                 ("specular_reflectance", plastic.specular_reflectance),
             ],
-            Self::Conductor { metal: Metal::Reflectance(reflectance), .. } => {
-                vec![("reflectance", *reflectance)]
+            Self::Conductor { metal, specular_reflectance, .. } => {
+                let mut colors = vec![("specular_reflectance", *specular_reflectance)];
+                if let Metal::Reflectance(reflectance) = metal {
+                    colors.push(("reflectance", *reflectance));
+                }
+                colors
             }
             Self::CoatedConductor { metal, coat, .. } => {
                 let mut colors = vec![("coat_albedo", coat.albedo)];
@@ -197,8 +207,7 @@ impl MaterialKind {
                 Pigment::Reflectance(reflectance) => vec![("reflectance", reflectance)],
                 Pigment::Absorption(_) | Pigment::Melanin { .. } => Vec::new(),
             },
-            Self::Conductor { metal: Metal::Indices { .. }, .. }
-            | Self::Dielectric { .. }
+            Self::Dielectric { .. }
             | Self::ThinDielectric { .. }
             | Self::Mix { .. }
             | Self::Measured(_)

@@ -101,6 +101,16 @@ pub struct Anisotropy {
     pub texture: Option<TextureId>,
 }
 
+/// The light that has the colour (1, 1, 1) where a curve becomes a colour of Rec. 709.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ReferenceWhite {
+    /// Daylight: a constant curve is grey.
+    #[default]
+    D65,
+    /// Light of equal energy at all wavelengths, whose colours are not adapted: a constant curve is reddish. Mitsuba's metals have them.
+    EqualEnergy,
+}
+
 /// The optical constants of a metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Metal {
@@ -110,6 +120,8 @@ pub enum Metal {
         eta: Color,
         /// k.
         k: Color,
+        /// The light under which curves have their colours in RGB mode.
+        reference_white: ReferenceWhite,
     },
     /// The reflectance at normal incidence: η = 1 and the k that gives it.
     Reflectance(Color),

@@ -8,7 +8,7 @@ use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
     BackFace, BumpGuard, BumpMapping, Color, Disney, Distribution, Energy, Hair, Ior, Masking, Material,
-    MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
+    MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, ReferenceWhite, Roughness, Scalar,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -219,19 +219,15 @@ impl Reader<'_, '_> {
     }
 
     fn kind(&mut self, plugin: &Plugin) -> Result<MaterialKind> {
+        plugin.ignore_ones(&["specular_reflectance", "specular_transmittance"]);
         Ok(match &*plugin.kind {
             "diffuse" => MaterialKind::Diffuse { reflectance: self.reflectance(plugin, "reflectance", 0.5)? },
             "null" => MaterialKind::Interface,
-            "conductor" => MaterialKind::Conductor {
-                metal: self.metal(plugin)?,
-                roughness: SMOOTH,
-                energy: Energy::SingleScattering,
-            },
-            "roughconductor" => MaterialKind::Conductor {
-                metal: self.metal(plugin)?,
-                roughness: self.roughness(plugin)?,
-                energy: Energy::SingleScattering,
-            },
+            "conductor" => self.conductor(plugin, SMOOTH)?,
+            "roughconductor" => {
+                let roughness = self.roughness(plugin)?;
+                self.conductor(plugin, roughness)?
+            }
             "dielectric" => MaterialKind::Dielectric {
                 eta: index(plugin, "bk7")?,
                 roughness: SMOOTH,
@@ -319,6 +315,15 @@ impl Reader<'_, '_> {
         Scalar::Texture(self.push_texture(plugin, kind))
     }
 
+    fn conductor(&mut self, plugin: &Plugin, roughness: Roughness) -> Result<MaterialKind> {
+        Ok(MaterialKind::Conductor {
+            metal: self.metal(plugin)?,
+            roughness,
+            energy: Energy::SingleScattering,
+            specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0)?,
+        })
+    }
+
     fn metal(&mut self, plugin: &Plugin) -> Result<Metal> {
         let name = plugin.string("material")?;
         match name {
@@ -330,6 +335,7 @@ impl Reader<'_, '_> {
                 return Ok(Metal::Indices {
                     eta: self.color(plugin, "eta", 0.0)?,
                     k: self.color(plugin, "k", 1.0)?,
+                    reference_white: ReferenceWhite::D65,
                 });
             }
             Some(_) => {}
@@ -345,7 +351,8 @@ impl Reader<'_, '_> {
             let hint = format!("there are: {}, or give `eta` and `k`", known.join(", "));
             return Err(Error::new(ErrorKind::Unsupported, at, message).hint(hint));
         };
-        Ok(Metal::Indices { eta: Color::Curve(self.push_curve(eta)), k: Color::Curve(self.push_curve(k)) })
+        let [eta, k] = [eta, k].map(|curve| Color::Curve(self.push_curve(curve)));
+        Ok(Metal::Indices { eta, k, reference_white: ReferenceWhite::EqualEnergy })
     }
 
     /// The roughness α of a BSDF.

@@ -12,10 +12,11 @@ use super::serialized;
 use super::xml::blame;
 use super::{Attribute, Slots};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::material::Color;
+use crate::material::{Color, Scalar};
 use crate::model;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
-use crate::shape::{Geometry, Mesh, Part, Shape};
+use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
+use crate::texture::TextureKind;
 
 const KINDS: &[&str] = &[
     "bsplinecurve",
@@ -131,6 +132,7 @@ impl Reader<'_, '_> {
             None if emission.is_some() => Surface::opaque(Self::BLACK),
             None => Surface::opaque(Self::DEFAULT),
         };
+        let emission = emission.map(|emission| self.unmasked(plugin, emission, surface.alpha));
         let sides = self.sides(plugin)?;
         if plugin.kind == "disk" && self.has_texture(surface) {
             let message =
@@ -148,6 +150,21 @@ impl Reader<'_, '_> {
             ..Shape::new(plugin.at.clone(), geometry, surface.material)
         };
         Ok(geometries.into_iter().map(shape).collect())
+    }
+
+    /// What a surface emits, which here its opacity would thin, and in Mitsuba does not.
+    fn unmasked(&mut self, plugin: &Plugin, mut emission: Emission, alpha: Option<Scalar>) -> Emission {
+        match alpha {
+            Some(Scalar::Value(alpha)) if alpha > 0.0 => emission.power.scale /= alpha,
+            Some(alpha @ Scalar::Texture(_)) => {
+                let inverse = TextureKind::Quotient { a: Scalar::Value(1.0), b: alpha };
+                let by = Scalar::Texture(self.push_texture(plugin, inverse));
+                let kind = TextureKind::Scale { color: emission.radiance, by };
+                emission.radiance = Color::Texture(self.push_texture(plugin, kind));
+            }
+            _ => {}
+        }
+        emission
     }
 
     /// Whether meshes have the normals of their file.

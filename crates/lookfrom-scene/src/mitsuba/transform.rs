@@ -42,9 +42,12 @@ fn step(reading: &mut Reading<'_, '_>, node: Node<'_, '_>, text: &Text) -> Resul
         "translate" => DMat4::from_translation(components(reading, node, text, 0.0)?),
         "scale" => DMat4::from_scale(components(reading, node, text, 1.0)?),
         "rotate" => {
-            let axis = components(reading, node, text, 0.0)?.try_normalize();
-            let axis =
-                axis.ok_or_else(|| Error::invalid(&at, "the axis of this rotation has no direction"))?;
+            let axis = components(reading, node, text, 0.0)?;
+            let unit = axis
+                .try_normalize()
+                .ok_or_else(|| Error::invalid(&at, "the axis of this rotation has no direction"))?;
+            // Versions from 2 on take the axis as it is.
+            let axis = if reading.is_old() { unit } else { axis };
             let angle = match reading.attribute(node, "angle", text)? {
                 Some((angle, at)) => value::float(&angle, &at)?,
                 None => return Err(Error::invalid(&at, "this rotation has no `angle` (in degrees)")),
@@ -93,7 +96,7 @@ fn step(reading: &mut Reading<'_, '_>, node: Node<'_, '_>, text: &Text) -> Resul
     })
 }
 
-/// Rotation around a unit axis, by an angle in degrees (Rodrigues 1840).
+/// Rotation around an axis, by an angle in degrees (Rodrigues 1840): around one that is not of unit length it scales and shears, too.
 fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
     let (sin, cos) = match degrees.rem_euclid(360.0) {
         0.0 => (0.0, 1.0),

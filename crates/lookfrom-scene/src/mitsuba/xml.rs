@@ -83,7 +83,7 @@ pub(super) struct Reading<'c, 'f> {
     bytes: u64,
     /// Bytes that parameters were replaced by.
     expanded: usize,
-    /// Whether the names of properties are those of versions before 2.
+    /// Whether the file is of a version before 2: the names of properties are others.
     is_old: bool,
 }
 
@@ -376,6 +376,11 @@ impl<'c, 'f> Reading<'c, 'f> {
         let bytes = self.context.read(&path).map_err(|error| blame(error, at))?;
         self.file(&bytes, &path, includes + 1, properties)?;
         Ok(())
+    }
+
+    /// Whether the file is of a version before 2.
+    pub(super) fn is_old(&self) -> bool {
+        self.is_old
     }
 
     /// The name of a property, in the spelling of version 2 and later.

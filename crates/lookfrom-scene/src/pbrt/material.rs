@@ -7,7 +7,8 @@ use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Roughness,
+    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, ReferenceWhite,
+    Roughness,
 };
 use crate::scene::{ImageId, MaterialId};
 
@@ -94,6 +95,7 @@ impl Reader<'_, '_> {
                 metal: self.metal(p, ["eta", "k", "reflectance"])?,
                 roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
                 energy: Energy::SingleScattering,
+                specular_reflectance: Color::gray(1.0),
             },
             "dielectric" => MaterialKind::Dielectric {
                 eta: self.index_of_refraction(p, "eta", Ior::GLASS)?,
@@ -167,7 +169,7 @@ impl Reader<'_, '_> {
             Some(k) => k,
             None => Color::Curve(self.named_curve("metal-Cu-k", &p.place)?),
         };
-        Ok(Metal::Indices { eta, k })
+        Ok(Metal::Indices { eta, k, reference_white: ReferenceWhite::D65 })
     }
 
     pub(super) fn roughness(

@@ -13,7 +13,7 @@ use super::value::{Value, unit};
 use crate::error::Result;
 use crate::material::{
     Coat, CoatEstimate, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic,
-    Roughness, Scalar,
+    ReferenceWhite, Roughness, Scalar,
 };
 use crate::measured::Measured;
 
@@ -27,6 +27,10 @@ pub(super) const ENERGIES: &[(&str, Energy)] =
 /// The words for distributions of microfacet normals.
 pub(super) const DISTRIBUTIONS: &[(&str, Distribution)] =
     &[("trowbridge_reitz", Distribution::TrowbridgeReitz), ("beckmann", Distribution::Beckmann)];
+
+/// The words for the light under which curves of metals have their colours.
+pub(super) const REFERENCE_WHITES: &[(&str, ReferenceWhite)] =
+    &[("d65", ReferenceWhite::D65), ("equal_energy", ReferenceWhite::EqualEnergy)];
 
 /// The words for masking-shadowing functions.
 pub(super) const MASKINGS: &[(&str, Masking)] =
@@ -84,6 +88,7 @@ impl Reader<'_, '_> {
                     metal: self.metal_of(table),
                     roughness,
                     energy: energy_of_metal(table, roughness.microfacets),
+                    specular_reflectance: self.color_or(table, "specular_reflectance", 1.0),
                 }
             }
             "dielectric" => MaterialKind::Dielectric {
@@ -142,9 +147,12 @@ impl Reader<'_, '_> {
         table.one_of(&["metal", "reflectance", "k"]);
         table.one_of(&["metal", "reflectance", "eta"]);
         let stand_in = Metal::Reflectance(Color::gray(1.0));
+        let reference_white =
+            table.or("reference_white", ReferenceWhite::default(), |value| value.choice(REFERENCE_WHITES));
         if table.has("metal") {
-            return table
-                .or("metal", stand_in, |value| self.metal(value).map(|[eta, k]| Metal::Indices { eta, k }));
+            return table.or("metal", stand_in, |value| {
+                self.metal(value).map(|[eta, k]| Metal::Indices { eta, k, reference_white })
+            });
         }
         if table.has("reflectance") {
             return table.or("reflectance", stand_in, |value| self.color(value).map(Metal::Reflectance));
@@ -161,6 +169,7 @@ impl Reader<'_, '_> {
         Metal::Indices {
             eta: table.or("eta", Color::gray(1.0), |value| self.optical_color(value)),
             k: table.need("k", "[3, 2.5, 2]", Color::gray(1.0), |value| self.optical_color(value)),
+            reference_white,
         }
     }
 

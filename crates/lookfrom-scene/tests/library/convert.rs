@@ -301,6 +301,7 @@ proptest! {
                 ..Roughness::of_alphas(Scalar::Value(alpha[0]), Scalar::Value(alpha[1]))
             },
             energy: Default::default(),
+            specular_reflectance: Color::Value(color.map(|channel| channel.abs().min(1.0))),
         };
         let rows = [&matrix[..4], &matrix[4..8], &matrix[8..], &[0.0, 0.0, 0.0, 1.0]].concat();
         let rows: [f64; 16] = rows.try_into().expect("16 numbers");

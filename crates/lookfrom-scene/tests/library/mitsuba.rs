@@ -14,7 +14,7 @@ use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::light::{Edge, LightKind, MapRows, Projected, Sky};
 use lookfrom_scene::material::{
     BackFace, BumpGuard, BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets,
-    Plastic, Scalar,
+    Plastic, ReferenceWhite, Scalar,
 };
 use lookfrom_scene::medium::{Density, Extinction, Medium};
 use lookfrom_scene::scene::TextureId;
@@ -130,8 +130,10 @@ fn transforms_apply_in_the_order_of_the_file() {
     let first = point("<translate x=\"1\"/><scale value=\"2\"/>", [1.0, 0.0, 0.0]);
     let other = point("<scale value=\"2, 2, 2\"/><translate value=\"1 0 0\"/>", [1.0, 0.0, 0.0]);
     assert_eq!((first, other), (DVec3::new(4.0, 0.0, 0.0), DVec3::new(3.0, 0.0, 0.0)));
-    assert_eq!(point("<rotate z=\"2\" angle=\"90\"/>", [1.0, 0.0, 0.0]), DVec3::Y);
-    assert!(near(point("<rotate value=\"1 1 1\" angle=\"-120\"/>", [1.0, 0.0, 0.0]), DVec3::Z));
+    assert_eq!(point("<rotate z=\"1\" angle=\"90\"/>", [1.0, 0.0, 0.0]), DVec3::Y);
+    // The axis as it is, as Mitsuba takes it: ScalarTransform4f().rotate([1, 1, 0], 40).
+    let sheared = point("<rotate value=\"1 1 0\" angle=\"40\"/>", [1.0, 0.0, 0.0]);
+    assert!((sheared - DVec3::new(1.0, 0.233956, -0.642788)).length() < 1e-6, "{sheared}");
     let rows = "<matrix value=\"1 0 0 5  0 2 0 6  0 0 3 7  0 0 0 1\"/>";
     assert_eq!(point(rows, [1.0; 3]), DVec3::new(6.0, 8.0, 10.0));
     assert_eq!(point("<matrix value=\"0 1 0 1 0 0 0 0 1\"/>", [1.0, 2.0, 3.0]), DVec3::new(2.0, 1.0, 3.0));
@@ -146,9 +148,13 @@ fn transforms_apply_in_the_order_of_the_file() {
 fn names_of_old_versions_are_understood() {
     let text = r#"<scene version="0.6.0"><sensor type="perspective"><float name="fov" value="90"/>
         <string name="fovAxis" value="y"/><transform name="toWorld"><lookAt origin="0 0 1" target="0 0 0" up="0 1 0"/>
-        </transform></sensor></scene>"#;
+        </transform></sensor><shape type="cube"><transform name="toWorld"><rotate x="1" y="1" z="1" angle="-120"/></transform>
+        </shape></scene>"#;
     let (scene, warnings) = read_of(&files(&[("s/a.xml", text)]), &[]);
-    let camera = scene.unwrap_or_else(|error| panic!("{error}")).camera.expect("a camera");
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    // Axes were of unit length.
+    assert!(near(scene.shapes[0].world_from_object.x_axis.truncate(), DVec3::Z));
+    let camera = scene.camera.expect("a camera");
     assert_eq!(camera.view.lookfrom(), DVec3::Z);
     let Projection::Perspective { fov } = camera.projection else { panic!("{:?}", camera.projection) };
     assert!((fov - 90.0).abs() < 1e-12 && warnings.is_empty(), "{fov} {warnings:?}");
@@ -293,16 +299,29 @@ fn instances_place_groups() {
 
 #[test]
 fn bsdfs_become_materials() {
-    let glass = material("<bsdf type=\"dielectric\"/>").0;
+    let (glass, _, warnings) = material(
+        "<bsdf type=\"dielectric\"><rgb name=\"specular_reflectance\" value=\"1\"/><float name=\"specular_transmittance\" value=\"0.5\"/></bsdf>",
+    );
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(warning.contains("specular_transmittance"), "{warning}");
     let MaterialKind::Dielectric { eta: Ior::Value(eta), .. } = glass else { panic!("{glass:?}") };
     assert!((eta - 1.5046 / 1.000_277).abs() < 1e-6);
     let (metal, _, warnings) = material(
         "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Al\"/><float name=\"alpha_u\" value=\"0.25\"/></bsdf>",
     );
-    let MaterialKind::Conductor { metal: Metal::Indices { eta: Color::Curve(_), .. }, roughness, .. } = metal
-    else {
+    let MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } = metal else {
         panic!("{metal:?}")
     };
+    assert!(matches!(metal, Metal::Indices { reference_white: ReferenceWhite::EqualEnergy, .. }));
+    assert_eq!(specular_reflectance, Color::gray(1.0));
+    let tinted = material(
+        "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"specular_reflectance\" value=\"0.5\"/></bsdf>",
+    );
+    let MaterialKind::Conductor { metal, specular_reflectance, .. } = tinted.0 else {
+        panic!("{:?}", tinted.0)
+    };
+    assert!(matches!(metal, Metal::Indices { reference_white: ReferenceWhite::D65, .. }));
+    assert_eq!((specular_reflectance, tinted.2.len()), (Color::gray(0.5), 0));
     assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.1), false));
     let separable = |distribution| Microfacets { distribution, masking: Masking::Separable };
     assert_eq!(roughness.microfacets, separable(Distribution::Beckmann));
@@ -675,6 +694,27 @@ fn integrators_for_derivatives_make_pictures_of_others() {
     let direct = render("<integrator type=\"direct_projective\"/>");
     assert_eq!((direct.integrator, direct.depth), (Integrator::Path, 1));
     assert_eq!(render("<integrator type=\"depth\"/>").integrator, Integrator::Depth);
+}
+
+#[test]
+fn masks_do_not_thin_what_emitters_emit() {
+    let lamp = |opacity: &str| {
+        let mask = format!("<bsdf type=\"mask\">{opacity}<bsdf type=\"diffuse\"/></bsdf>");
+        let emitter = "<emitter type=\"area\"><rgb name=\"radiance\" value=\"1 2 3\"/></emitter>";
+        let read = scene(&format!("<shape type=\"rectangle\">{mask}{emitter}</shape>"));
+        let emission = read.shapes[0].emission.expect("a lamp");
+        (read, emission)
+    };
+    let (_, quarter) = lamp("<float name=\"opacity\" value=\"0.25\"/>");
+    assert_eq!((quarter.radiance, quarter.power.scale), (Color::Value([1.0, 2.0, 3.0]), 4.0));
+    let (read, checks) = lamp("<texture name=\"opacity\" type=\"checkerboard\"/>");
+    let Color::Texture(id) = checks.radiance else { panic!("{checks:?}") };
+    let TextureKind::Scale { color, by: Scalar::Texture(by) } = read.textures[id.index()].kind else {
+        panic!("{:?}", read.textures)
+    };
+    assert_eq!(color, Color::Value([1.0, 2.0, 3.0]));
+    let opacity = read.shapes[0].alpha.expect("an opacity");
+    assert_eq!(read.textures[by.index()].kind, TextureKind::Quotient { a: Scalar::Value(1.0), b: opacity });
 }
 
 #[test]

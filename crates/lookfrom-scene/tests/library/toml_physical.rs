@@ -8,7 +8,7 @@ use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
     BumpMapping, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, OpenPbr,
-    Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent,
+    Plastic, ReferenceWhite, Roughness, Scalar, SubsurfaceMedium, Tangent,
 };
 use lookfrom_scene::medium::{Density, Extinction};
 use lookfrom_scene::scene::MediumId;
@@ -94,10 +94,12 @@ fn materials_are_what_they_say() {
 [materials.gold]
 type = "conductor"
 metal = "gold"
+reference_white = "equal_energy"
 roughness = 0.5
 [materials.tin]
 type = "conductor"
 reflectance = "#808080"
+specular_reflectance = 0.5
 roughness = [0.1, "spots"]
 energy = "single_scattering"
 [materials.salt]
@@ -141,11 +143,12 @@ type = "dots"
         Color::Curve(id) => &scene.curves[id.index()],
         other => panic!("{other:?} is no curve"),
     };
-    let MaterialKind::Conductor { metal: Metal::Indices { eta, k }, roughness, energy } =
-        *kind(&scene, "gold")
+    let MaterialKind::Conductor { metal, roughness, energy, specular_reflectance } = *kind(&scene, "gold")
     else {
         panic!("a conductor")
     };
+    let Metal::Indices { eta, k, reference_white } = metal else { panic!("{metal:?}") };
+    assert_eq!((reference_white, specular_reflectance), (ReferenceWhite::EqualEnergy, Color::gray(1.0)));
     assert_eq!(*curve(eta), spectrum::named("metal-Au-eta").expect("gold"));
     assert_eq!(*curve(k), spectrum::named("metal-Au-k").expect("gold"));
     assert_eq!(energy, Energy::Conserved);
@@ -154,7 +157,12 @@ type = "dots"
     assert_eq!(roughness, Roughness::of_alphas(quarter, quarter));
 
     // A texture is squared as a number is.
-    let MaterialKind::Conductor { metal: Metal::Reflectance(_), roughness, energy } = *kind(&scene, "tin")
+    let MaterialKind::Conductor {
+        metal: Metal::Reflectance(_),
+        roughness,
+        energy,
+        specular_reflectance: Color::Value([0.5, 0.5, 0.5]),
+    } = *kind(&scene, "tin")
     else {
         panic!("a conductor")
     };

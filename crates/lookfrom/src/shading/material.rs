@@ -357,8 +357,8 @@ impl Evaluator<'_> {
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 Bsdf::DiffuseTransmission(self.diffuse_transmission(reflectance, transmittance, scale))
             }
-            MaterialKind::Conductor { metal, roughness, energy } => {
-                Bsdf::Conductor(self.conductor(metal, roughness, energy))
+            MaterialKind::Conductor { metal, roughness, energy, specular_reflectance } => {
+                Bsdf::Conductor(self.conductor(metal, roughness, energy, specular_reflectance))
             }
             MaterialKind::Dielectric { eta, roughness, energy } => {
                 Bsdf::Dielectric(self.dielectric(eta, roughness, energy))
@@ -407,9 +407,17 @@ impl Evaluator<'_> {
         DiffuseTransmission::new(reflected, transmitted)
     }
 
-    fn conductor(&self, metal: &Metal, roughness: &Roughness, &energy: &Energy) -> Conductor {
+    fn conductor(
+        &self,
+        metal: &Metal,
+        roughness: &Roughness,
+        &energy: &Energy,
+        specular_reflectance: &SpectrumTexture,
+    ) -> Conductor {
         let (eta, k) = self.indices(metal);
-        Conductor::new(eta, k, roughness.at(self.textures, self.point)).with_energy(energy)
+        Conductor::new(eta, k, roughness.at(self.textures, self.point))
+            .with_energy(energy)
+            .with_specular_reflectance(self.albedo(specular_reflectance))
     }
 
     fn dielectric(&mut self, eta: &Ior, roughness: &Roughness, &energy: &Energy) -> Dielectric {

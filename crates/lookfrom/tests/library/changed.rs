@@ -75,6 +75,7 @@ fn changed_materials_and_lights_have_the_bits_of_a_scene_compiled_anew() {
         metal: Metal::Reflectance(Color::Value([0.9, 0.6, 0.3])),
         roughness: Roughness { u: Scalar::Value(0.1), v: Scalar::Value(0.4), ..Roughness::SMOOTH },
         energy: Energy::Conserved,
+        specular_reflectance: Color::gray(1.0),
     };
     let tinted = MaterialKind::Whitted(Whitted {
         transmission: Color::gray(1.0),

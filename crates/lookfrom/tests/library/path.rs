@@ -178,8 +178,12 @@ fn furnace(kind: MaterialKind) -> Scene {
 fn a_white_furnace_hides_what_keeps_all_light() {
     let rough = |alpha: f32| Roughness::of_alphas(Scalar::Value(alpha), Scalar::Value(alpha));
     let white = Color::gray(1.0);
-    let metal =
-        |roughness, energy| MaterialKind::Conductor { metal: Metal::Reflectance(white), roughness, energy };
+    let metal = |roughness, energy| MaterialKind::Conductor {
+        metal: Metal::Reflectance(white),
+        roughness,
+        energy,
+        specular_reflectance: white,
+    };
     let glass = |roughness, energy| MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness, energy };
     let plastic = MaterialKind::Plastic(Box::new(Plastic {
         reflectance: white,

@@ -237,6 +237,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
         metal: lookfrom_scene::material::Metal::Reflectance(Color::gray(0.5)),
         roughness: lookfrom_scene::material::Roughness::of_alphas(Scalar::Value(0.1), Scalar::Value(0.5)),
         energy: lookfrom_scene::material::Energy::SingleScattering,
+        specular_reflectance: Color::gray(1.0),
     };
     scene.materials.push(Material::new("brushed", nowhere(), kind));
     let mixed = MaterialKind::Mix { materials: [MaterialId(0), MaterialId(1)], amount: Scalar::Value(0.5) };

@@ -210,7 +210,7 @@ impl<'a> Places<'a> {
 
     fn metal(&mut self, metal: &'a mut Metal) {
         match metal {
-            Metal::Indices { eta, k } => [eta, k].into_iter().for_each(|color| self.color(color)),
+            Metal::Indices { eta, k, .. } => [eta, k].into_iter().for_each(|color| self.color(color)),
             Metal::Reflectance(color) => self.color(color),
         }
     }
@@ -227,8 +227,9 @@ impl<'a> Places<'a> {
                 self.color(transmittance);
                 self.single.push(scale);
             }
-            MaterialKind::Conductor { metal, roughness, .. } => {
+            MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } => {
                 self.metal(metal);
+                self.color(specular_reflectance);
                 self.roughness(roughness);
             }
             MaterialKind::Dielectric { eta, roughness, .. } => {

@@ -8,11 +8,11 @@ use super::text::{Fields, Item};
 use crate::error::Result;
 use crate::material::{
     BackFace, BumpGuard, BumpMapping, Coat, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal,
-    Pigment, Plastic, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
+    Pigment, Plastic, ReferenceWhite, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
 };
 use crate::measured::Measured;
 use crate::toml::material::BACK_FACES;
-use crate::toml::physical::{ENERGIES, ESTIMATES, REFLECTANCE};
+use crate::toml::physical::{ENERGIES, ESTIMATES, REFERENCE_WHITES, REFLECTANCE};
 use crate::toml::word_of;
 
 impl Writer<'_> {
@@ -31,10 +31,11 @@ impl Writer<'_> {
                 self.put_color(&mut fields, "transmittance", *transmittance, usual)?;
                 fields.put_unless("scale", *scale, 1.0);
             }
-            MaterialKind::Conductor { metal, roughness, energy } => {
+            MaterialKind::Conductor { metal, roughness, energy, specular_reflectance } => {
                 self.metal(&mut fields, metal)?;
                 self.roughness(&mut fields, "roughness", roughness);
                 put_energy(&mut fields, *energy);
+                self.put_color(&mut fields, "specular_reflectance", *specular_reflectance, 1.0)?;
             }
             MaterialKind::Dielectric { eta, roughness, energy } => {
                 self.ior(&mut fields, *eta);
@@ -122,14 +123,19 @@ impl Writer<'_> {
 
     fn metal(&mut self, fields: &mut Fields, metal: &Metal) -> Result<()> {
         match *metal {
-            Metal::Indices { eta, k } => match self.metal_symbol(eta, k) {
-                Some(symbol) => fields.put("metal", symbol),
-                None => {
-                    let [eta, k] = [self.color(eta, Of::Optics)?, self.color(k, Of::Optics)?];
-                    fields.put("eta", eta);
-                    fields.put("k", k);
+            Metal::Indices { eta, k, reference_white } => {
+                match self.metal_symbol(eta, k) {
+                    Some(symbol) => fields.put("metal", symbol),
+                    None => {
+                        let [eta, k] = [self.color(eta, Of::Optics)?, self.color(k, Of::Optics)?];
+                        fields.put("eta", eta);
+                        fields.put("k", k);
+                    }
                 }
-            },
+                if reference_white != ReferenceWhite::default() {
+                    fields.put("reference_white", word_of(REFERENCE_WHITES, &reference_white));
+                }
+            }
             Metal::Reflectance(color) => {
                 let item = self.color(color, Of::Color)?;
                 fields.put("reflectance", item);

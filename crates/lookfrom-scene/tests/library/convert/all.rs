@@ -11,7 +11,7 @@ use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Pro
 use lookfrom_scene::material::{
     Anisotropy, BackFace, BumpGuard, BumpMapping, Coat, CoatEstimate, Color, Disney, Distribution, Energy,
     Hair, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr, Pigment, Plastic,
-    Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
+    Principled, ReferenceWhite, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
 };
 use lookfrom_scene::medium::{Density, DraineLobe, Extinction, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -157,8 +157,22 @@ fn materials() -> Vec<(String, Scene)> {
         samples: 3,
         estimate: CoatEstimate::Pbrt,
     };
-    let gold = Metal::Indices { eta: Color::Curve(CurveId(5)), k: Color::Curve(CurveId(6)) };
-    let odd = Metal::Indices { eta: Color::Curve(TABLE), k: Color::Curve(CurveId(1)) };
+    let gold = Metal::Indices {
+        eta: Color::Curve(CurveId(5)),
+        k: Color::Curve(CurveId(6)),
+        reference_white: ReferenceWhite::EqualEnergy,
+    };
+    let odd = Metal::Indices {
+        eta: Color::Curve(TABLE),
+        k: Color::Curve(CurveId(1)),
+        reference_white: ReferenceWhite::D65,
+    };
+    let conductor = |metal, roughness, energy, specular_reflectance| MaterialKind::Conductor {
+        metal,
+        roughness,
+        energy,
+        specular_reflectance,
+    };
     let below = |medium| {
         MaterialKind::Subsurface(Box::new(Subsurface {
             medium,
@@ -278,9 +292,9 @@ fn materials() -> Vec<(String, Scene)> {
         MaterialKind::Whitted(whitted),
         MaterialKind::Diffuse { reflectance: Color::Curve(CurveId(3)) },
         MaterialKind::DiffuseTransmission { reflectance: value, transmittance: COLOR, scale: 0.5 },
-        MaterialKind::Conductor { metal: gold, roughness: rough, energy: single },
-        MaterialKind::Conductor { metal: odd, roughness: alpha, energy: conserved },
-        MaterialKind::Conductor { metal: Metal::Reflectance(value), roughness: alpha, energy: single },
+        conductor(gold, rough, single, Color::gray(1.0)),
+        conductor(odd, alpha, conserved, value),
+        conductor(Metal::Reflectance(value), alpha, single, COLOR),
         MaterialKind::Dielectric { eta: Ior::Curve(TABLE), roughness: alpha, energy: single },
         MaterialKind::Dielectric { eta: Ior::Curve(CurveId(3)), roughness: rough, energy: conserved },
         MaterialKind::ThinDielectric { eta: Ior::Value(1.25) },
@@ -302,7 +316,7 @@ fn materials() -> Vec<(String, Scene)> {
         MaterialKind::Disney(Box::new(Disney { is_thin: true, diff_trans: TEXTURE, ..Disney::default() })),
         MaterialKind::Plastic(Box::new(plastic)),
         MaterialKind::Plastic(Box::new(Plastic { alpha: 0.25, is_nonlinear: true, ..plastic })),
-        MaterialKind::Conductor { metal: gold, roughness: beckmann, energy: single },
+        conductor(gold, beckmann, single, Color::gray(1.0)),
         MaterialKind::Dielectric { eta: Ior::Value(1.3), roughness: beckmann, energy: single },
         MaterialKind::Unlit { color: value },
         MaterialKind::ShadowCatcher { normal: unit() },

@@ -33,6 +33,8 @@ pub struct Conductor<R = f32> {
     pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
     pub(crate) roughness: Microfacets<R>,
+    /// Multiplies what is reflected.
+    pub(crate) specular: Spectrum<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
 }
@@ -68,7 +70,14 @@ impl<R: Real> MultipleScattering<R> {
 impl Conductor {
     /// By index and extinction over the surrounding index, with single scattering.
     pub fn new(eta: Spectrum, k: Spectrum, roughness: impl Into<Microfacets>) -> Self {
-        Self { eta, k, roughness: roughness.into(), conserves: 0.0 }
+        let specular = Spectrum([1.0; 4]);
+        Self { eta, k, roughness: roughness.into(), specular, conserves: 0.0 }
+    }
+
+    /// This conductor with a factor of what it reflects.
+    #[must_use]
+    pub fn with_specular_reflectance(self, specular: Spectrum) -> Self {
+        Self { specular, ..self }
     }
 
     /// This conductor with the light between its facets or without it; its table is that of Trowbridge and Reitz's, with correlated
@@ -105,6 +114,11 @@ impl ScatteringFunction for Conductor {
     }
 
     fn description(&self) -> Description {
+        let mut numbers =
+            vec![("eta", self.eta.into()), ("k", self.k.into()), ("alpha", self.roughness.into())];
+        if self.specular != Spectrum([1.0; 4]) {
+            numbers.push(("specular reflectance", self.specular.into()));
+        }
         Description {
             kind: "conductor",
             does: match (self.roughness.is_smooth(), self.roughness.is_beckmann()) {
@@ -112,16 +126,22 @@ impl ScatteringFunction for Conductor {
                 (false, false) => "rough metal: microfacets of roughness alpha",
                 (false, true) => "rough metal: Beckmann's microfacets of roughness alpha",
             },
-            numbers: vec![("eta", self.eta.into()), ("k", self.k.into()), ("alpha", self.roughness.into())],
+            numbers,
         }
     }
 }
 
 impl<R: Real> Conductor<R> {
+    /// What facets reflect at a cosine.
+    #[inline(always)]
+    pub(super) fn reflectance(&self, cos: R) -> Spectrum<R> {
+        fresnel::conductor(cos, self.eta, self.k) * self.specular
+    }
+
     /// `f` with the half vector `wm`; both directions on one side, neither grazing; `seen` is D G.
     #[inline(always)]
     fn rough_f(&self, [wo, wi, wm]: [Vector<R>; 3], seen: R) -> Spectrum<R> {
-        let fresnel = fresnel::conductor(Float::abs(wo.dot(wm)), self.eta, self.k);
+        let fresnel = self.reflectance(Float::abs(wo.dot(wm)));
         let once = fresnel * (seen / (wo.z * 4.0 * wi.z));
         let conserves = self.conserves.gt(wo.z.like(0.0));
         if !conserves.any() {
@@ -139,7 +159,7 @@ impl<R: Real> Conductor<R> {
         MultipleScattering {
             albedo: albedo::reflector(up, roughness, alpha).all(),
             mean_albedo: albedo::reflector_mean(roughness, alpha).all(),
-            mean_fresnel: fresnel::conductor(wo.z.like(MEAN_COSINE), self.eta, self.k),
+            mean_fresnel: self.reflectance(wo.z.like(MEAN_COSINE)),
         }
     }
 
@@ -148,7 +168,7 @@ impl<R: Real> Conductor<R> {
         let is_valid = !is_grazing(wo);
         let wi = Vector { x: -wo.x, y: -wo.y, z: wo.z };
         let cos = Float::abs(wi.z);
-        let f = fresnel::conductor(cos, self.eta, self.k) / cos;
+        let f = self.reflectance(cos) / cos;
         let (is_specular, no) = (is_valid.like(true), is_valid.like(false));
         DirectionSample {
             wi,

@@ -220,7 +220,7 @@ impl Disney {
             Form::Thin { .. } => {
                 let Some(choice) = self.choice(is_inside, 0.0, lobes) else { return 0.0 };
                 let mut pdf = choice.diffuse_transmission * cosine;
-                if let Some(wm) = try_half_vector(wo, mirrored(wi))
+                if let Some(wm) = thin_facet(wo, wi)
                     && choice.transmission > 0.0
                 {
                     let facets = self.facets_of_thin_transmission();
@@ -235,6 +235,11 @@ impl Disney {
 /// The direction on the other side of the surface.
 fn mirrored(w: Vec3) -> Vec3 {
     Vec3::new(w.x, w.y, -w.z)
+}
+
+/// The facet that lets light from `wi` pass a thin sheet to `wo`, if `wi` is behind it.
+fn thin_facet(wo: Vec3, wi: Vec3) -> Option<Vec3> {
+    try_half_vector(wo, mirrored(wi)).filter(|wm| wi.dot(*wm) < 0.0)
 }
 
 /// `D` of Burley's distribution GTR1 with the roughness α for the cosine of a facet's normal.
@@ -303,7 +308,9 @@ impl ScatteringFunction for Disney {
                 }
                 Form::Thin { .. } => {
                     let wm = self.facets_of_thin_transmission().sample(wo_front.into(), u);
-                    mirrored(optics::reflect(wo_front.into(), wm).into())
+                    let wi = mirrored(optics::reflect(wo_front.into(), wm).into());
+                    thin_facet(wo_front, wi)?;
+                    wi
                 }
             };
             (wi, Lobes::TRANSMISSION | Lobes::GLOSSY)

@@ -115,10 +115,11 @@ impl Conductor {
         }
         let wm = if is_smooth { Vec3::Z } else { try_half_vector(wo, wi)? };
         let plain = MicrofacetFactors::of_boundary("conductor", self.roughness, is_smooth, [wo, wi, wm]);
-        let fresnel = fresnel::conductor(plain.cos_m[0].abs(), self.eta, self.k);
+        let cos = plain.cos_m[0].abs();
+        let (fresnel, part) = (fresnel::conductor(cos, self.eta, self.k), self.reflectance(cos));
         let multiple_scattering =
             (self.conserves > 0.0 && !is_smooth).then(|| self.multiple_scattering(wo.into()));
-        Some(MicrofacetFactors { fresnel, part: fresnel, multiple_scattering, ..plain })
+        Some(MicrofacetFactors { fresnel, part, multiple_scattering, ..plain })
     }
 }
 

@@ -192,6 +192,7 @@ impl RowBsdf for Conductor {
             eta: gather_spectrum(simd, &by_lane!(lane => rows[lane].eta)),
             k: gather_spectrum(simd, &by_lane!(lane => rows[lane].k)),
             roughness: gather_microfacets(simd, &by_lane!(lane => rows[lane].roughness)),
+            specular: gather_spectrum(simd, &by_lane!(lane => rows[lane].specular)),
             conserves: f32x8::load_array(simd, by_lane!(lane => rows[lane].conserves)),
         }
     }

@@ -161,6 +161,13 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
         ("gold 0.1", of_gold(0.1, 0.1)),
         ("gold 0.4 × 0.1", of_gold(0.4, 0.1)),
         ("gold 1 × 0.3", of_gold(1.0, 0.3)),
+        (
+            "green gold 0.5",
+            Bsdf::Conductor(
+                Conductor::new(eta, k, rough(0.5, 0.5))
+                    .with_specular_reflectance(Spectrum([0.3, 0.9, 0.2, 0.5])),
+            ),
+        ),
         ("glass 0.5", Bsdf::dielectric(1.5, rough(0.5, 0.5))),
         ("glass 0.15", Bsdf::dielectric(1.5, rough(0.15, 0.15))),
         ("glass 0.3 × 0.6", Bsdf::dielectric(1.5, rough(0.3, 0.6))),
@@ -370,7 +377,7 @@ fn samples_carry_the_values_of_f_and_pdf() {
 fn light_goes_both_ways() {
     let mut non_zero = 0;
     // Not reciprocal: tables of numbers, hair, Whitted's highlight, a coat with a normal of its own (whose cosines are to another normal),
-    // OpenPBR's fuzz and the darkening by its coat, and rough surfaces that conserve energy, as the glass of principled bodies does.
+    // OpenPBR's fuzz and the darkening by its coat, the facets of Disney's sheet, which face light as Mitsuba has it, and rough surfaces that conserve energy, as the glass of principled bodies does.
     let is_not = |name: &str| {
         name.starts_with("whitted")
             || name.starts_with("conserving")
@@ -379,7 +386,7 @@ fn light_goes_both_ways() {
             || name.contains("tilted")
             || name.contains("fuzz")
             || name.contains("darkened")
-            || ["principled body", "principled everything", "openpbr body"].contains(&name)
+            || ["principled body", "principled everything", "openpbr body", "disney thin"].contains(&name)
     };
     for (name, bsdf) in with_density().into_iter().filter(|(name, _)| !is_not(name)) {
         for index in 0..4000 {
@@ -485,6 +492,15 @@ fn rough_surfaces_that_conserve_energy_stay_white() {
         let bsdf = Bsdf::conductor(eta, k, rough(0.9, 0.9)).with_energy(energy);
         bsdf.f(direction(40.0, 0.0), direction(20.0, 180.0), Mode::Radiance)
     };
+    // A factor of what facets reflect is one of all light that they reflect once.
+    let (eta, k) = gold();
+    let factor = Spectrum([0.3, 0.9, 0.2, 0.5]);
+    let [plain, tinted] = [Spectrum([1.0; 4]), factor].map(|factor| {
+        let bsdf = Bsdf::Conductor(Conductor::new(eta, k, rough(0.9, 0.9)).with_specular_reflectance(factor));
+        bsdf.f(direction(40.0, 0.0), direction(20.0, 180.0), Mode::Radiance)
+    });
+    let close = |lane: usize| (tinted.0[lane] - plain.0[lane] * factor.0[lane]).abs() < 1e-6 * plain.0[lane];
+    assert!((0..4).all(close), "{tinted:?} {plain:?}");
     // What facets reflect twice is twice coloured.
     let gains = [0, 2].map(|lane| dark(Energy::Conserved).0[lane] / dark(Energy::SingleScattering).0[lane]);
     assert!(gains[0] > gains[1] && gains[1] > 1.0, "{gains:?}");

@@ -53,10 +53,10 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
         MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
             reflectance.varies() || transmittance.varies()
         }
-        MaterialKind::Conductor { metal, .. } | MaterialKind::CoatedConductor { metal, .. } => match metal {
-            Metal::Reflectance(reflectance) => reflectance.varies(),
-            Metal::Indices { eta, k } => eta.varies() || k.varies(),
-        },
+        MaterialKind::Conductor { metal, specular_reflectance, .. } => {
+            metal.varies() || specular_reflectance.varies()
+        }
+        MaterialKind::CoatedConductor { metal, .. } => metal.varies(),
         MaterialKind::Subsurface(below) => match &below.medium {
             SubsurfaceMedium::Coefficients { absorption, scattering } => {
                 absorption.varies() || scattering.varies()
@@ -83,6 +83,23 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
     (!varies).then(|| shown(of_kind(kind, &[], textures, &TexturePoint::NOWHERE)))
 }
 
+impl Metal {
+    fn varies(&self) -> bool {
+        match self {
+            Self::Reflectance(reflectance) => reflectance.varies(),
+            Self::Indices { eta, k } => eta.varies() || k.varies(),
+        }
+    }
+
+    /// At normal incidence.
+    fn reflectance(&self, color: impl Fn(&SpectrumTexture) -> Spectrum) -> Spectrum {
+        match self {
+            Self::Reflectance(reflectance) => color(reflectance),
+            Self::Indices { eta, k } => fresnel::conductor(1.0, color(eta), color(k)),
+        }
+    }
+}
+
 fn shown(color: Spectrum) -> [f32; 3] {
     color.rgb().map(|c| c.max(0.0))
 }
@@ -107,10 +124,10 @@ fn of_kind(
         MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
             (color(reflectance) + color(transmittance)) * *scale
         }
-        MaterialKind::Conductor { metal, .. } | MaterialKind::CoatedConductor { metal, .. } => match metal {
-            Metal::Reflectance(reflectance) => color(reflectance),
-            Metal::Indices { eta, k } => fresnel::conductor(1.0, color(eta), color(k)),
-        },
+        MaterialKind::Conductor { metal, specular_reflectance, .. } => {
+            metal.reflectance(color) * color(specular_reflectance)
+        }
+        MaterialKind::CoatedConductor { metal, .. } => metal.reflectance(color),
         MaterialKind::Subsurface(below) => below.effective_albedo(color),
         MaterialKind::Hair(hair) => hair.reflectance(textures, point),
         MaterialKind::Measured(tables) => Spectrum::from_rgb(tables.albedo()),

@@ -7,7 +7,7 @@ use lookfrom_scene::material::{
 
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
-use crate::shading::texture::{SpectralMode, SpectrumType, TexturePoint, Textures};
+use crate::shading::texture::{SpectralMode, TexturePoint, Textures};
 
 /// Reflectance of a dielectric coat at most angles.
 const COAT: f32 = 0.04;
@@ -25,7 +25,9 @@ pub(super) fn in_whitteds_model(
         MaterialKind::Whitted(whitted) => whitted.clone(),
         MaterialKind::Diffuse { reflectance } => Whitted { diffuse: *reflectance, ..plain },
         MaterialKind::DiffuseTransmission { reflectance, .. } => Whitted { diffuse: *reflectance, ..plain },
-        MaterialKind::Conductor { metal, roughness, .. } => metallic(metal, roughness, textures),
+        MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } => {
+            metallic(metal, *specular_reflectance, roughness, textures)
+        }
         MaterialKind::Dielectric { eta, .. } => {
             Whitted { transmission: Color::gray(1.0), fresnel: true, ior: ior(eta, textures), ..plain }
         }
@@ -57,7 +59,9 @@ pub(super) fn in_whitteds_model(
             shininess: 50.0,
             ..plain
         },
-        MaterialKind::CoatedConductor { metal, roughness, .. } => metallic(metal, roughness, textures),
+        MaterialKind::CoatedConductor { metal, roughness, .. } => {
+            metallic(metal, Color::gray(1.0), roughness, textures)
+        }
         MaterialKind::Mix { materials: [first, second], amount } => {
             let greater = match amount {
                 Scalar::Value(amount) if *amount > 0.5 => second,
@@ -124,7 +128,7 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let roughness = look.roughness;
     if number(look.metallic) > 0.5 {
         let roughness = Roughness::of_alphas(squared(roughness), squared(roughness));
-        return metallic(&Metal::Reflectance(look.base_color), &roughness, textures);
+        return metallic(&Metal::Reflectance(look.base_color), Color::gray(1.0), &roughness, textures);
     }
     let plain = Whitted {
         diffuse: Color::BLACK,
@@ -156,16 +160,28 @@ fn squared(roughness: Scalar) -> Scalar {
     }
 }
 
-fn metallic(metal: &Metal, roughness: &Roughness, textures: &Textures) -> Whitted {
+/// A metal, whose reflectance is multiplied by another where both are constant.
+fn metallic(
+    metal: &Metal,
+    specular_reflectance: Color,
+    roughness: &Roughness,
+    textures: &Textures,
+) -> Whitted {
     let color = match metal {
         Metal::Reflectance(color) => *color,
-        Metal::Indices { eta, k } => {
+        Metal::Indices { eta, k, reference_white } => {
             let of = |color| {
-                let texture = textures.spectrum_texture(color, SpectrumType::Unbounded);
+                let texture = textures.index_of_refraction(color, *reference_white);
                 Spectrum::from_rgb(textures.rgb(&texture, &TexturePoint::NOWHERE))
             };
             Color::Value(fresnel::conductor(1.0, of(*eta), of(*k)).rgb())
         }
+    };
+    let color = match (color, specular_reflectance) {
+        (Color::Value(color), Color::Value(factor)) => {
+            Color::Value([0, 1, 2].map(|channel| color[channel] * factor[channel]))
+        }
+        _ => color,
     };
     let shininess = shininess(roughness);
     // A rough metal reflects lights only, as highlights; a smooth one reflects everything.

@@ -91,8 +91,13 @@ impl<'a> Compiler<'a> {
                     scale: *scale,
                 }
             }
-            &Written::Conductor { ref metal, ref roughness, energy } => {
-                MaterialKind::Conductor { metal: self.metal(metal), roughness: rough(roughness), energy }
+            &Written::Conductor { ref metal, ref roughness, energy, specular_reflectance } => {
+                MaterialKind::Conductor {
+                    metal: self.metal(metal),
+                    roughness: rough(roughness),
+                    energy,
+                    specular_reflectance: self.albedo(specular_reflectance),
+                }
             }
             &Written::Dielectric { eta, ref roughness, energy } => {
                 MaterialKind::Dielectric { eta: index(eta), roughness: rough(roughness), energy }
@@ -142,8 +147,10 @@ impl<'a> Compiler<'a> {
 
     fn metal(&self, metal: &written::Metal) -> Metal {
         match *metal {
-            written::Metal::Indices { eta, k } => {
-                Metal::Indices { eta: self.unbounded(eta), k: self.unbounded(k) }
+            written::Metal::Indices { eta, k, reference_white } => {
+                let [eta, k] =
+                    [eta, k].map(|color| self.textures.index_of_refraction(color, reference_white));
+                Metal::Indices { eta, k }
             }
             written::Metal::Reflectance(color) => Metal::Reflectance(self.albedo(color)),
         }

@@ -46,6 +46,8 @@ pub enum MaterialKind {
         roughness: Roughness,
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
+        /// Multiplies what is reflected.
+        specular_reflectance: SpectrumTexture,
     },
     /// A dielectric such as glass or water: the inside is a body.
     Dielectric {

@@ -13,9 +13,10 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.color(reflectance);
             walk.color(transmittance);
         }
-        MaterialKind::Conductor { metal, roughness, .. } => {
+        MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } => {
             walk.metal(metal);
             walk.roughness(roughness);
+            walk.color(specular_reflectance);
         }
         MaterialKind::Dielectric { roughness, .. } => walk.roughness(roughness),
         MaterialKind::CoatedDiffuse { reflectance, coat } => {

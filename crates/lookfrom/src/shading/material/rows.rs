@@ -225,7 +225,7 @@ material_row!(
     DiffuseTransmission,
     DiffuseTransmission { reflectance, transmittance, scale } => diffuse_transmission
 );
-material_row!(Conductor, Conductor { metal, roughness, energy } => conductor);
+material_row!(Conductor, Conductor { metal, roughness, energy, specular_reflectance } => conductor);
 material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
 material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);

@@ -296,6 +296,33 @@ fn spectra_are_blended_and_curves_read() {
 }
 
 #[test]
+fn metals_under_light_of_equal_energy_have_the_colors_of_mitsuba() {
+    // Of Mitsuba 3.9 (`scalar_rgb`): the parameters `eta` and `k` of a conductor.
+    for (name, of_mitsuba) in [
+        ("metal-Ag-eta", [0.155276, 0.116728, 0.138388]),
+        ("metal-Au-eta", [0.143036, 0.375307, 1.442045]),
+        ("metal-Au-k", [3.982997, 2.385556, 1.603359]),
+        ("metal-MgO-eta", [2.089584, 1.650723, 1.594879]),
+        ("metal-MgO-k", [0.0, 0.0, 0.0]),
+    ] {
+        let curve = lookfrom_scene::spectrum::named(name).expect("a metal");
+        let textures = Textures::new(&[], vec![], vec![curve], ColorMode::Rgb);
+        let color = |white| {
+            let texture = textures.index_of_refraction(Color::Curve(CurveId(0)), white);
+            textures.rgb(&texture, &at(0.0, 0.0))
+        };
+        let found = color(ReferenceWhite::EqualEnergy);
+        let is_near = |c: usize| (found[c] - of_mitsuba[c]).abs() < 5e-3 * of_mitsuba[c] + 1e-6;
+        assert!((0..3).all(is_near), "{name}: {found:?}");
+        assert!(name == "metal-MgO-k" || color(ReferenceWhite::D65) != found);
+    }
+    // Colours that are written are what they are.
+    let none = only(TextureKind::product(Scalar::Value(1.0), Scalar::Value(1.0)));
+    let red = none.index_of_refraction(Color::Value([0.5, 0.1, 0.2]), ReferenceWhite::EqualEnergy);
+    assert_eq!(none.rgb(&red, &at(0.0, 0.0)), [0.5, 0.1, 0.2]);
+}
+
+#[test]
 fn nothing_is_nan_anywhere() {
     let wild = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1e20, 3e9, 1e-40, -0.0];
     let (a, b, octaves, roughness) = (Color::gray(0.2), Color::Value([0.1, 0.5, 0.9]), 4, 0.5);

@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::{Disney, Form, gtr1, mirrored, separable};
+use super::{Disney, Form, gtr1, separable, thin_facet};
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::conductor::try_half_vector;
@@ -138,7 +138,7 @@ impl Disney {
             Form::Solid { .. } => black,
             Form::Thin { diff_trans } => {
                 let diffuse = self.base * (FRAC_1_PI * (1.0 - self.spec_trans) * diff_trans);
-                let Some(wm) = try_half_vector(wo, mirrored(wi)) else { return [diffuse; 2] };
+                let Some(wm) = thin_facet(wo, wi) else { return [diffuse; 2] };
                 let facets = self.facets_of_thin_transmission();
                 let passes = 1.0 - fresnel::dielectric(wo.dot(wm).abs(), self.eta);
                 let visible =

@@ -268,7 +268,8 @@ fn diffuse_in_lanes() {
 fn conductors_in_lanes() {
     compare::<Conductor>(|index| {
         let lanes = |seed| Spectrum(std::array::from_fn(|lane| any(seed + lane as u64, index, 20)));
-        Bsdf::conductor(lanes(60), lanes(64), microfacets(68, index)).with_energy(energy(index))
+        let conductor = Conductor::new(lanes(60), lanes(64), microfacets(68, index));
+        Bsdf::Conductor(conductor.with_energy(energy(index)).with_specular_reflectance(spectrum(76, index)))
     });
 }
 
