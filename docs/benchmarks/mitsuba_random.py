@@ -3,14 +3,14 @@
 
 Needs: pip packages mitsuba and numpy; a release build of lookfrom.
 
-    mitsuba_random.py --lookfrom target/release/lookfrom [--seeds 0 40] [--samples 128] [--bsdf KIND] [--folder DIR]
+    mitsuba_random.py --lookfrom target/release/lookfrom [--seeds 0 40] [--samples 128] [--bsdf KIND] [--color spectral] [--folder DIR]
 
 A scene has a floor, sometimes a wall, two to four shapes with BSDFs by a grammar (textures, masks, maps, blends, media inside), and one to three
 lights. --bsdf puts one BSDF of a kind on one shape instead. Both programs render four pictures of other seeds. A block of pixels differs when its
 means are more than 1.5 % and six standard errors apart; a scene is told by `<<<` when two blocks differ, or the mean of the picture.
 
 Left out, because Mitsuba 3.9 is known to be different (docs/guide/mitsuba.md): masks with `path` in place of `volpath`, blends of smooth and rough
-BSDFs, maps over rough BSDFs with a grain, textures of disks.
+BSDFs, maps over rough BSDFs with a grain, textures of disks; and a filter wider than a pixel brings light from beyond the border here.
 """
 
 import argparse
@@ -156,8 +156,19 @@ class Grammar:
     def medium(self):
         """A medium in a body, with its boundary."""
         phases = ["", tag("phase", number("g", self.between(-0.7, 0.8)), type="hg"), tag("phase", type="rayleigh")]
-        coefficients = self.color("albedo", 0.3, 0.95) + number("sigma_t", self.between(0.3, 4.0))
-        medium = tag("medium", coefficients, self.random.choice(phases), type="homogeneous", name="interior")
+        phase = self.random.choice(phases)
+        if self.random.random() < 0.4:
+            # A grid all over the scene.
+            place = transform(tag("scale", x=6, y=4, z=6), tag("translate", x=-3, y=-0.5, z=-3))
+            density = tag(
+                "volume", tag("string", name="filename", value=self.folder / "cloud.vol"), place, type="gridvolume", name="sigma_t"
+            )
+            albedo = tag("volume", self.color("value", 0.3, 0.95), type="constvolume", name="albedo")
+            scale = number("scale", self.between(1.0, 6.0))
+            medium = tag("medium", density, albedo, scale, phase, type="heterogeneous", name="interior")
+        else:
+            coefficients = self.color("albedo", 0.3, 0.95) + number("sigma_t", self.between(0.3, 4.0))
+            medium = tag("medium", coefficients, phase, type="homogeneous", name="interior")
         return medium + self.random.choice([tag("bsdf", type="null"), self.bsdf("dielectric"), self.bsdf("roughdielectric")])
 
     def rotation(self):
@@ -166,7 +177,7 @@ class Grammar:
         return tag("rotate", **axis, angle=f"{self.between(0, 360):.1f}")
 
     def shape(self, place, surface=None):
-        kind = self.random.choice(["sphere", "sphere", "cube", "cylinder", "rectangle", "ply"])
+        kind = self.random.choice(["sphere", "sphere", "cube", "cylinder", "rectangle", "ply", "instance"])
         size = self.between(0.4, 0.75)
         is_closed = kind in ("sphere", "cube", "ply")
         where = tag("translate", x=place[0], y=f"{1.2 * size:.3f}", z=place[1])
@@ -177,6 +188,8 @@ class Grammar:
         else:
             sizes = {axis: f"{size * self.between(0.6, 1.3):.3f}" for axis in "xyz"}
             inside = transform(tag("scale", **sizes), self.rotation(), where)
+        if kind == "instance":
+            return tag("shape", inside, tag("ref", id="group"), type=kind) if surface is None else self.shape(place, surface)
         if kind == "ply":
             inside += tag("string", name="filename", value=self.folder / "ball.ply")
         if surface is not None:
@@ -191,7 +204,7 @@ class Grammar:
         if kind == "rectangle":
             to_world = transform(tag("scale", value=f"{self.between(0.3, 1.2):.2f}"), lookat(place, "0, 0, 0", "1, 0, 0"))
             is_picture = self.random.random() < 0.2
-            radiance = self.picture("radiance", "sky.exr") if is_picture else self.color("radiance", 4.0, 14.0)
+            radiance = self.picture("radiance", "picture.png") if is_picture else self.color("radiance", 4.0, 14.0)
             return tag("shape", to_world, tag("emitter", radiance, type="area"), type="rectangle")
         if kind == "ball":
             ball = point("center", place) + number("radius", self.between(0.1, 0.5))
@@ -207,7 +220,9 @@ class Grammar:
             return tag("emitter", direction, self.color("irradiance", 0.5, 2.0), type="directional")
         if kind == "constant":
             return tag("emitter", self.color("radiance", 0.1, 0.8), type="constant")
-        turns = transform(tag("rotate", y=1, angle=f"{self.between(0, 360):.0f}"), tag("rotate", x=1, angle=self.random.choice([0, 25])))
+        turns = transform(
+            tag("rotate", y=1, angle=f"{self.between(0, 360):.0f}"), tag("rotate", x=1, angle=self.random.choice([0, 25]))
+        )
         file = tag("string", name="filename", value=self.folder / "sky.exr")
         return tag("emitter", file, number("scale", self.between(0.3, 1.5)), turns, type="envmap")
 
@@ -215,7 +230,8 @@ class Grammar:
         depth = tag("integer", name="max_depth", value=self.random.choice([3, 5, 8, 12]))
         depth += tag("integer", name="rr_depth", value=1000)
         size = tag("integer", name="width", value=WIDTH) + tag("integer", name="height", value=HEIGHT)
-        film = tag("film", size, tag("rfilter", type="box"), type="hdrfilm")
+        rfilter = self.random.choice(["box", "box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"])
+        film = tag("film", size, tag("rfilter", type=rfilter), type="hdrfilm")
         sampler = tag("sampler", tag("integer", name="sample_count", value="$spp"), type="independent")
         kind = self.random.choice(["perspective", "perspective", "thinlens", "orthographic"])
         view = number("fov", self.between(35, 55)) if kind != "orthographic" else ""
@@ -234,6 +250,11 @@ class Grammar:
         else:
             parts.append(tag("shape", down, self.any_bsdf(), type="rectangle"))
             parts.append(self.maybe(0.5, lambda: tag("shape", behind, self.any_bsdf(), type="rectangle")))
+            group = [
+                tag("shape", self.bsdf("diffuse"), type="cube"),
+                tag("shape", point("center", [0, 1, 0]), self.any_bsdf(True), type="sphere"),
+            ]
+            parts.append(tag("shape", *group, type="shapegroup", id="group"))
             places = self.random.sample([(-1.8, 0), (0, -1), (1.8, 0.3), (-0.8, 1.8), (1, 1.9)], self.random.randint(2, 4))
             parts += [self.shape(place) for place in places]
         return tag("scene", "\n", "\n".join(parts + [self.light(kind) for kind in kinds]), version="3.0.0")
@@ -251,6 +272,7 @@ def write_inputs(folder):
     sky = np.full((16, 32, 3), 0.2, np.float32)
     sky[:8], sky[3:5, 8:11], sky[10:] = [0.4, 0.6, 1.0], [20, 18, 14], [0.3, 0.2, 0.1]
     mitsuba.Bitmap(sky).write(str(folder / "sky.exr"))
+    mitsuba.VolumeGrid(np.random.RandomState(5).rand(6, 5, 7).astype(np.float32)).write(str(folder / "cloud.vol"))
     rows, columns = 12, 24
     polar, around = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij")
     vertices = np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)], axis=-1).reshape(-1, 3)
@@ -276,10 +298,11 @@ def by_mitsuba(path, samples):
     return [np.array(mitsuba.render(scene, spp=samples, seed=seed))[..., :3] for seed in range(PICTURES)]
 
 
-def by_lookfrom(lookfrom, path, samples):
+def by_lookfrom(lookfrom, path, samples, color):
     pictures = []
     for seed in range(PICTURES):
-        command = [lookfrom, "render", path, "-D", f"spp={samples}", "--seed", seed, "--denoise", "off", "-o", path.with_suffix(".exr")]
+        command = [lookfrom, "render", path, "-D", f"spp={samples}", "--seed", seed, "--color", color, "--denoise", "off"]
+        command += ["-o", path.with_suffix(".exr")]
         ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
         if ran.returncode:
             sys.exit(f"{path}: {ran.stderr}")
@@ -297,9 +320,10 @@ def main():
     parser.add_argument("--seeds", type=int, nargs=2, default=[0, 40], metavar=("FIRST", "END"))
     parser.add_argument("--samples", type=int, default=128, help="of each pixel")
     parser.add_argument("--bsdf", choices=sorted({*OPEN, *CLOSED, *OUTER}), help="one shape with a BSDF of this kind")
+    parser.add_argument("--color", choices=["rgb", "spectral"], default="rgb")
     parser.add_argument("--folder", type=Path, default=Path("/tmp/lookfrom-random"))
     args = parser.parse_args()
-    mitsuba.set_variant("scalar_rgb")
+    mitsuba.set_variant(f"scalar_{args.color}")
     mitsuba.set_log_level(mitsuba.LogLevel.Error)
     folder = args.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -312,7 +336,7 @@ def main():
         if not np.isfinite(theirs).all():
             print(f"{seed}: Mitsuba's picture has values that are no numbers")
             continue
-        pictures, warnings = by_lookfrom(args.lookfrom, path, args.samples)
+        pictures, warnings = by_lookfrom(args.lookfrom, path, args.samples, args.color)
         ours = blocks(pictures)
         want, got = theirs.mean(axis=0), ours.mean(axis=0)
         apart, scale = np.abs(got - want), 0.02 * want.mean()
@@ -322,7 +346,12 @@ def main():
         change = got.mean() / want.mean() - 1
         is_told = differ.sum() > 1 or (abs(z) > 6 and abs(change) > 0.005)
         count, told = count + 1, told + is_told
-        print(f"{seed}: {change:+.2%}, {z:+.1f} standard errors, {differ.sum()} blocks differ", *warnings, "<<<" if is_told else "", flush=True)
+        print(
+            f"{seed}: {change:+.2%}, {z:+.1f} standard errors, {differ.sum()} blocks differ",
+            *warnings,
+            "<<<" if is_told else "",
+            flush=True,
+        )
     print(f"{told} of {count} scenes differ")
 
 

@@ -19,7 +19,7 @@ pub use kind::MaterialKind;
 pub use microfacets::{Distribution, Energy, Masking, Microfacets, Roughness};
 pub use open_pbr::{OpenPbr, Tangent};
 pub use plastic::Plastic;
-pub use principled::{Anisotropy, Metal, Principled, ReferenceWhite};
+pub use principled::{Anisotropy, Illuminant, Metal, Principled};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
 pub use whitted::Whitted;
 

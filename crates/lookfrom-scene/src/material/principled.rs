@@ -101,13 +101,13 @@ pub struct Anisotropy {
     pub texture: Option<TextureId>,
 }
 
-/// The light that has the colour (1, 1, 1) where a curve becomes a colour of Rec. 709.
+/// The light under which a curve is seen where it becomes a colour of Rec. 709.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ReferenceWhite {
-    /// Daylight: a constant curve is grey.
+pub enum Illuminant {
+    /// Daylight, the white of Rec. 709: a constant curve is grey.
     #[default]
     D65,
-    /// Light of equal energy at all wavelengths, whose colours are not adapted: a constant curve is reddish. Mitsuba's metals have them.
+    /// Light of equal energy at all wavelengths, which is not that white: a constant curve is reddish. Mitsuba's metals are seen under it.
     EqualEnergy,
 }
 
@@ -121,7 +121,7 @@ pub enum Metal {
         /// k.
         k: Color,
         /// The light under which curves have their colours in RGB mode.
-        reference_white: ReferenceWhite,
+        illuminant: Illuminant,
     },
     /// The reflectance at normal incidence: η = 1 and the k that gives it.
     Reflectance(Color),

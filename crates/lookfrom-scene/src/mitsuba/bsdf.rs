@@ -7,8 +7,8 @@ use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
-    BackFace, BumpGuard, BumpMapping, Color, Disney, Distribution, Energy, Hair, Ior, Masking, Material,
-    MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, ReferenceWhite, Roughness, Scalar,
+    BackFace, BumpGuard, BumpMapping, Color, Disney, Distribution, Energy, Hair, Illuminant, Ior, Masking,
+    Material, MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -335,7 +335,7 @@ impl Reader<'_, '_> {
                 return Ok(Metal::Indices {
                     eta: self.color(plugin, "eta", 0.0)?,
                     k: self.color(plugin, "k", 1.0)?,
-                    reference_white: ReferenceWhite::D65,
+                    illuminant: Illuminant::D65,
                 });
             }
             Some(_) => {}
@@ -352,7 +352,7 @@ impl Reader<'_, '_> {
             return Err(Error::new(ErrorKind::Unsupported, at, message).hint(hint));
         };
         let [eta, k] = [eta, k].map(|curve| Color::Curve(self.push_curve(curve)));
-        Ok(Metal::Indices { eta, k, reference_white: ReferenceWhite::EqualEnergy })
+        Ok(Metal::Indices { eta, k, illuminant: Illuminant::EqualEnergy })
     }
 
     /// The roughness α of a BSDF.

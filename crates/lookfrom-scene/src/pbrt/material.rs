@@ -7,8 +7,7 @@ use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, ReferenceWhite,
-    Roughness,
+    BumpMapping, Coat, CoatEstimate, Color, Energy, Illuminant, Ior, Material, MaterialKind, Metal, Roughness,
 };
 use crate::scene::{ImageId, MaterialId};
 
@@ -169,7 +168,7 @@ impl Reader<'_, '_> {
             Some(k) => k,
             None => Color::Curve(self.named_curve("metal-Cu-k", &p.place)?),
         };
-        Ok(Metal::Indices { eta, k, reference_white: ReferenceWhite::D65 })
+        Ok(Metal::Indices { eta, k, illuminant: Illuminant::D65 })
     }
 
     pub(super) fn roughness(

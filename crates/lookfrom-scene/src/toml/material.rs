@@ -35,7 +35,7 @@ pub(super) const KEYS: Kinds = &[
             "metal",
             "eta",
             "k",
-            "reference_white",
+            "illuminant",
             "reflectance",
             "specular_reflectance",
             "roughness",
@@ -49,7 +49,7 @@ pub(super) const KEYS: Kinds = &[
     ("coated_diffuse", &["reflectance", "roughness", "ior"]),
     (
         "coated_conductor",
-        &["metal", "eta", "k", "reference_white", "reflectance", "base_roughness", "roughness", "ior"],
+        &["metal", "eta", "k", "illuminant", "reflectance", "base_roughness", "roughness", "ior"],
     ),
     (
         "plastic",

@@ -12,8 +12,8 @@ use super::table::Table;
 use super::value::{Value, unit};
 use crate::error::Result;
 use crate::material::{
-    Coat, CoatEstimate, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, Plastic,
-    ReferenceWhite, Roughness, Scalar,
+    Coat, CoatEstimate, Color, Distribution, Energy, Illuminant, Ior, Masking, MaterialKind, Metal,
+    Microfacets, Plastic, Roughness, Scalar,
 };
 use crate::measured::Measured;
 
@@ -29,8 +29,8 @@ pub(super) const DISTRIBUTIONS: &[(&str, Distribution)] =
     &[("trowbridge_reitz", Distribution::TrowbridgeReitz), ("beckmann", Distribution::Beckmann)];
 
 /// The words for the light under which curves of metals have their colours.
-pub(super) const REFERENCE_WHITES: &[(&str, ReferenceWhite)] =
-    &[("d65", ReferenceWhite::D65), ("equal_energy", ReferenceWhite::EqualEnergy)];
+pub(super) const ILLUMINANTS: &[(&str, Illuminant)] =
+    &[("D65", Illuminant::D65), ("E", Illuminant::EqualEnergy)];
 
 /// The words for masking-shadowing functions.
 pub(super) const MASKINGS: &[(&str, Masking)] =
@@ -147,11 +147,10 @@ impl Reader<'_, '_> {
         table.one_of(&["metal", "reflectance", "k"]);
         table.one_of(&["metal", "reflectance", "eta"]);
         let stand_in = Metal::Reflectance(Color::gray(1.0));
-        let reference_white =
-            table.or("reference_white", ReferenceWhite::default(), |value| value.choice(REFERENCE_WHITES));
+        let illuminant = table.or("illuminant", Illuminant::default(), |value| value.choice(ILLUMINANTS));
         if table.has("metal") {
             return table.or("metal", stand_in, |value| {
-                self.metal(value).map(|[eta, k]| Metal::Indices { eta, k, reference_white })
+                self.metal(value).map(|[eta, k]| Metal::Indices { eta, k, illuminant })
             });
         }
         if table.has("reflectance") {
@@ -169,7 +168,7 @@ impl Reader<'_, '_> {
         Metal::Indices {
             eta: table.or("eta", Color::gray(1.0), |value| self.optical_color(value)),
             k: table.need("k", "[3, 2.5, 2]", Color::gray(1.0), |value| self.optical_color(value)),
-            reference_white,
+            illuminant,
         }
     }
 

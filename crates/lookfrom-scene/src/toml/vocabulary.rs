@@ -99,7 +99,7 @@ pub(super) fn choices() -> Vec<(&'static str, Vec<&'static str>)> {
         ("energy", words(physical::ENERGIES)),
         ("distribution", words(physical::DISTRIBUTIONS)),
         ("masking", words(physical::MASKINGS)),
-        ("reference_white", words(physical::REFERENCE_WHITES)),
+        ("illuminant", words(physical::ILLUMINANTS)),
         ("coat_estimate", words(physical::ESTIMATES)),
         ("ends", words(spectrum::ENDS)),
         ("channel", words(texture::CHANNELS)),

@@ -13,8 +13,8 @@ use lookfrom_scene::camera::{Projection, View};
 use lookfrom_scene::excerpt::Excerpts;
 use lookfrom_scene::light::{Edge, LightKind, MapRows, Projected, Sky};
 use lookfrom_scene::material::{
-    BackFace, BumpGuard, BumpMapping, Color, Distribution, Ior, Masking, MaterialKind, Metal, Microfacets,
-    Plastic, ReferenceWhite, Scalar,
+    BackFace, BumpGuard, BumpMapping, Color, Distribution, Illuminant, Ior, Masking, MaterialKind, Metal,
+    Microfacets, Plastic, Scalar,
 };
 use lookfrom_scene::medium::{Density, Extinction, Medium};
 use lookfrom_scene::scene::TextureId;
@@ -312,7 +312,7 @@ fn bsdfs_become_materials() {
     let MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } = metal else {
         panic!("{metal:?}")
     };
-    assert!(matches!(metal, Metal::Indices { reference_white: ReferenceWhite::EqualEnergy, .. }));
+    assert!(matches!(metal, Metal::Indices { illuminant: Illuminant::EqualEnergy, .. }));
     assert_eq!(specular_reflectance, Color::gray(1.0));
     let tinted = material(
         "<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"0.2 0.9 1.1\"/><rgb name=\"specular_reflectance\" value=\"0.5\"/></bsdf>",
@@ -320,7 +320,7 @@ fn bsdfs_become_materials() {
     let MaterialKind::Conductor { metal, specular_reflectance, .. } = tinted.0 else {
         panic!("{:?}", tinted.0)
     };
-    assert!(matches!(metal, Metal::Indices { reference_white: ReferenceWhite::D65, .. }));
+    assert!(matches!(metal, Metal::Indices { illuminant: Illuminant::D65, .. }));
     assert_eq!((specular_reflectance, tinted.2.len()), (Color::gray(0.5), 0));
     assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.1), false));
     let separable = |distribution| Microfacets { distribution, masking: Masking::Separable };

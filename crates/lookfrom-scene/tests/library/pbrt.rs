@@ -7,7 +7,7 @@ use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSystem};
 use lookfrom_scene::light::{LightKind, Power, Sky};
 use lookfrom_scene::material::{
-    Color, Energy, Ior, MaterialKind, Metal, Pigment, ReferenceWhite, Scalar, Subsurface, SubsurfaceMedium,
+    Color, Energy, Illuminant, Ior, MaterialKind, Metal, Pigment, Scalar, Subsurface, SubsurfaceMedium,
 };
 use lookfrom_scene::medium::Sides;
 use lookfrom_scene::scene::{MaterialId, MediumId, MeshId};
@@ -215,7 +215,7 @@ fn materials_are_found_by_name_before_and_after() {
     assert!(matches!(scene.curves[glass.index()], Curve::Tabulated { .. }));
     assert_eq!((roughness.u, roughness.v, roughness.remap), (Scalar::Value(0.25), Scalar::Value(0.25), true));
     let MaterialKind::Conductor {
-        metal: Metal::Indices { eta, k, reference_white: ReferenceWhite::D65 },
+        metal: Metal::Indices { eta, k, illuminant: Illuminant::D65 },
         roughness,
         energy: Energy::SingleScattering,
         ..

@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
-    BumpMapping, Color, Distribution, Energy, Ior, Masking, MaterialKind, Metal, Microfacets, OpenPbr,
-    Plastic, ReferenceWhite, Roughness, Scalar, SubsurfaceMedium, Tangent,
+    BumpMapping, Color, Distribution, Energy, Illuminant, Ior, Masking, MaterialKind, Metal, Microfacets,
+    OpenPbr, Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent,
 };
 use lookfrom_scene::medium::{Density, Extinction};
 use lookfrom_scene::scene::MediumId;
@@ -94,7 +94,7 @@ fn materials_are_what_they_say() {
 [materials.gold]
 type = "conductor"
 metal = "gold"
-reference_white = "equal_energy"
+illuminant = "E"
 roughness = 0.5
 [materials.tin]
 type = "conductor"
@@ -147,8 +147,8 @@ type = "dots"
     else {
         panic!("a conductor")
     };
-    let Metal::Indices { eta, k, reference_white } = metal else { panic!("{metal:?}") };
-    assert_eq!((reference_white, specular_reflectance), (ReferenceWhite::EqualEnergy, Color::gray(1.0)));
+    let Metal::Indices { eta, k, illuminant } = metal else { panic!("{metal:?}") };
+    assert_eq!((illuminant, specular_reflectance), (Illuminant::EqualEnergy, Color::gray(1.0)));
     assert_eq!(*curve(eta), spectrum::named("metal-Au-eta").expect("gold"));
     assert_eq!(*curve(k), spectrum::named("metal-Au-k").expect("gold"));
     assert_eq!(energy, Energy::Conserved);

@@ -24,7 +24,7 @@ use std::f32::consts::PI;
 
 use glam::{DVec3, Vec2, Vec3};
 use lookfrom_scene::image::Image;
-use lookfrom_scene::material::{Color, ReferenceWhite};
+use lookfrom_scene::material::{Color, Illuminant};
 use lookfrom_scene::scene::{CurveId, TextureId};
 use lookfrom_scene::settings::ColorMode;
 use lookfrom_scene::shape::Mesh;
@@ -195,13 +195,9 @@ impl Textures {
     }
 
     /// η or k of a metal. Curves of light have the colours that are not adapted to daylight.
-    pub(crate) fn index_of_refraction(
-        &self,
-        color: Color,
-        reference_white: ReferenceWhite,
-    ) -> SpectrumTexture {
-        let spectrum_type = match (color, reference_white) {
-            (Color::Curve(_), ReferenceWhite::EqualEnergy) => SpectrumType::Illuminant,
+    pub(crate) fn index_of_refraction(&self, color: Color, illuminant: Illuminant) -> SpectrumTexture {
+        let spectrum_type = match (color, illuminant) {
+            (Color::Curve(_), Illuminant::EqualEnergy) => SpectrumType::Illuminant,
             _ => SpectrumType::Unbounded,
         };
         self.spectrum_texture(color, spectrum_type)

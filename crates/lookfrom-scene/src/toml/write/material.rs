@@ -7,12 +7,12 @@ use super::picture::For;
 use super::text::{Fields, Item};
 use crate::error::Result;
 use crate::material::{
-    BackFace, BumpGuard, BumpMapping, Coat, Disney, Energy, Hair, Ior, Material, MaterialKind, Metal,
-    Pigment, Plastic, ReferenceWhite, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
+    BackFace, BumpGuard, BumpMapping, Coat, Disney, Energy, Hair, Illuminant, Ior, Material, MaterialKind,
+    Metal, Pigment, Plastic, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
 };
 use crate::measured::Measured;
 use crate::toml::material::BACK_FACES;
-use crate::toml::physical::{ENERGIES, ESTIMATES, REFERENCE_WHITES, REFLECTANCE};
+use crate::toml::physical::{ENERGIES, ESTIMATES, ILLUMINANTS, REFLECTANCE};
 use crate::toml::word_of;
 
 impl Writer<'_> {
@@ -123,7 +123,7 @@ impl Writer<'_> {
 
     fn metal(&mut self, fields: &mut Fields, metal: &Metal) -> Result<()> {
         match *metal {
-            Metal::Indices { eta, k, reference_white } => {
+            Metal::Indices { eta, k, illuminant } => {
                 match self.metal_symbol(eta, k) {
                     Some(symbol) => fields.put("metal", symbol),
                     None => {
@@ -132,8 +132,8 @@ impl Writer<'_> {
                         fields.put("k", k);
                     }
                 }
-                if reference_white != ReferenceWhite::default() {
-                    fields.put("reference_white", word_of(REFERENCE_WHITES, &reference_white));
+                if illuminant != Illuminant::default() {
+                    fields.put("illuminant", word_of(ILLUMINANTS, &illuminant));
                 }
             }
             Metal::Reflectance(color) => {

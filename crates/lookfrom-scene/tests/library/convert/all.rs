@@ -10,8 +10,8 @@ use lookfrom_scene::lens::{ApertureShape, LensConvention, LensSurface, LensSyste
 use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
 use lookfrom_scene::material::{
     Anisotropy, BackFace, BumpGuard, BumpMapping, Coat, CoatEstimate, Color, Disney, Distribution, Energy,
-    Hair, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr, Pigment, Plastic,
-    Principled, ReferenceWhite, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
+    Hair, Illuminant, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr,
+    Pigment, Plastic, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
 };
 use lookfrom_scene::medium::{Density, DraineLobe, Extinction, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -160,13 +160,10 @@ fn materials() -> Vec<(String, Scene)> {
     let gold = Metal::Indices {
         eta: Color::Curve(CurveId(5)),
         k: Color::Curve(CurveId(6)),
-        reference_white: ReferenceWhite::EqualEnergy,
+        illuminant: Illuminant::EqualEnergy,
     };
-    let odd = Metal::Indices {
-        eta: Color::Curve(TABLE),
-        k: Color::Curve(CurveId(1)),
-        reference_white: ReferenceWhite::D65,
-    };
+    let odd =
+        Metal::Indices { eta: Color::Curve(TABLE), k: Color::Curve(CurveId(1)), illuminant: Illuminant::D65 };
     let conductor = |metal, roughness, energy, specular_reflectance| MaterialKind::Conductor {
         metal,
         roughness,

@@ -169,9 +169,9 @@ fn metallic(
 ) -> Whitted {
     let color = match metal {
         Metal::Reflectance(color) => *color,
-        Metal::Indices { eta, k, reference_white } => {
+        Metal::Indices { eta, k, illuminant } => {
             let of = |color| {
-                let texture = textures.index_of_refraction(color, *reference_white);
+                let texture = textures.index_of_refraction(color, *illuminant);
                 Spectrum::from_rgb(textures.rgb(&texture, &TexturePoint::NOWHERE))
             };
             Color::Value(fresnel::conductor(1.0, of(*eta), of(*k)).rgb())

@@ -147,9 +147,8 @@ impl<'a> Compiler<'a> {
 
     fn metal(&self, metal: &written::Metal) -> Metal {
         match *metal {
-            written::Metal::Indices { eta, k, reference_white } => {
-                let [eta, k] =
-                    [eta, k].map(|color| self.textures.index_of_refraction(color, reference_white));
+            written::Metal::Indices { eta, k, illuminant } => {
+                let [eta, k] = [eta, k].map(|color| self.textures.index_of_refraction(color, illuminant));
                 Metal::Indices { eta, k }
             }
             written::Metal::Reflectance(color) => Metal::Reflectance(self.albedo(color)),

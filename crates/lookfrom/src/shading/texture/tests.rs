@@ -311,14 +311,14 @@ fn metals_under_light_of_equal_energy_have_the_colors_of_mitsuba() {
             let texture = textures.index_of_refraction(Color::Curve(CurveId(0)), white);
             textures.rgb(&texture, &at(0.0, 0.0))
         };
-        let found = color(ReferenceWhite::EqualEnergy);
+        let found = color(Illuminant::EqualEnergy);
         let is_near = |c: usize| (found[c] - of_mitsuba[c]).abs() < 5e-3 * of_mitsuba[c] + 1e-6;
         assert!((0..3).all(is_near), "{name}: {found:?}");
-        assert!(name == "metal-MgO-k" || color(ReferenceWhite::D65) != found);
+        assert!(name == "metal-MgO-k" || color(Illuminant::D65) != found);
     }
     // Colours that are written are what they are.
     let none = only(TextureKind::product(Scalar::Value(1.0), Scalar::Value(1.0)));
-    let red = none.index_of_refraction(Color::Value([0.5, 0.1, 0.2]), ReferenceWhite::EqualEnergy);
+    let red = none.index_of_refraction(Color::Value([0.5, 0.1, 0.2]), Illuminant::EqualEnergy);
     assert_eq!(none.rgb(&red, &at(0.0, 0.0)), [0.5, 0.1, 0.2]);
 }
 
