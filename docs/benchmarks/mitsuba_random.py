@@ -10,7 +10,7 @@ lights. --bsdf puts one BSDF of a kind on one shape instead. Both programs rende
 means are more than 1.5 % and six standard errors apart; a scene is told by `<<<` when two blocks differ, or the mean of the picture.
 
 Left out, because Mitsuba 3.9 is known to be different (docs/guide/mitsuba.md): masks with `path` in place of `volpath`, blends of smooth and rough
-BSDFs, maps over rough BSDFs with a grain, textures of disks; and a filter wider than a pixel brings light from beyond the border here.
+BSDFs, maps over rough BSDFs with a grain, and a grain on disks; and a filter wider than a pixel brings light from beyond the border here.
 """
 
 import argparse
@@ -177,7 +177,7 @@ class Grammar:
         return tag("rotate", **axis, angle=f"{self.between(0, 360):.1f}")
 
     def shape(self, place, surface=None):
-        kind = self.random.choice(["sphere", "sphere", "cube", "cylinder", "rectangle", "ply", "instance"])
+        kind = self.random.choice(["sphere", "sphere", "cube", "cylinder", "rectangle", "disk", "ply", "instance"])
         size = self.between(0.4, 0.75)
         is_closed = kind in ("sphere", "cube", "ply")
         where = tag("translate", x=place[0], y=f"{1.2 * size:.3f}", z=place[1])
@@ -194,7 +194,10 @@ class Grammar:
             inside += tag("string", name="filename", value=self.folder / "ball.ply")
         if surface is not None:
             return tag("shape", inside, self.bsdf(surface, is_closed), type=kind)
-        inside += self.medium() if is_closed and self.random.random() < 0.2 else self.any_bsdf(is_closed)
+        if kind == "disk":
+            inside += self.bsdf(self.random.choice(OPEN), has_grain=False)
+        else:
+            inside += self.medium() if is_closed and self.random.random() < 0.2 else self.any_bsdf(is_closed)
         inside += self.maybe(0.15, lambda: tag("emitter", self.color("radiance", 0.5, 4.0), type="area"))
         inside += self.maybe(0.1, lambda: tag("boolean", name="flip_normals", value="true"))
         return tag("shape", inside, type=kind)

@@ -73,6 +73,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
         images: HashMap::new(),
         media: HashMap::new(),
         slots: Vec::new(),
+        is_on_disk: false,
         meshes: HashMap::new(),
         own_normals: BTreeSet::new(),
         groups: HashMap::new(),
@@ -103,6 +104,8 @@ struct Reader<'s, 'f> {
     media: HashMap<*const Plugin, MediumId>,
     /// Slots of the attributes of the mesh whose surface is read.
     slots: Slots,
+    /// Whether the shape whose surface is read is a disk, along whose radius Mitsuba's u runs.
+    is_on_disk: bool,
     meshes: HashMap<shape::MeshKey, (Vec<MeshId>, Slots)>,
     /// Meshes with the normals of their files.
     own_normals: BTreeSet<MeshId>,

@@ -12,7 +12,7 @@ use super::serialized;
 use super::xml::blame;
 use super::{Attribute, Slots};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::material::{Color, Scalar};
+use crate::material::{BumpMapping, Color, Scalar};
 use crate::model;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
 use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
@@ -123,6 +123,7 @@ impl Reader<'_, '_> {
             "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),
             _ => false,
         };
+        self.use_disk(plugin.kind == "disk");
         let emission = match plugin.part("emitter", &self.ids)? {
             Some(emitter) => self.emission(&emitter)?,
             None => None,
@@ -134,9 +135,9 @@ impl Reader<'_, '_> {
         };
         let emission = emission.map(|emission| self.unmasked(plugin, emission, surface.alpha));
         let sides = self.sides(plugin)?;
-        if plugin.kind == "disk" && self.has_texture(surface) {
+        if plugin.kind == "disk" && self.has_grain(surface) {
             let message =
-                "textures of disks lie along the angle and the radius as in pbrt, not as in Mitsuba";
+                "the grain and normal maps of disks lie along the angle, in Mitsuba along the radius";
             self.warn_once(&plugin.at, message);
         }
         let shape = |(geometry, own): (Geometry, DMat4)| Shape {
@@ -174,9 +175,10 @@ impl Reader<'_, '_> {
         geometries.iter().any(|(geometry, _)| is_own(geometry))
     }
 
-    fn has_texture(&self, surface: Surface) -> bool {
+    /// Whether a surface depends on the direction of u; heights do not.
+    fn has_grain(&self, surface: Surface) -> bool {
         let material = &self.scene.materials[surface.material.index()];
-        material.kind.colors().iter().any(|color| matches!(color, Color::Texture(_)))
+        material.has_grain() && !matches!(material.bump_mapping, BumpMapping::Bump(_))
     }
 
     /// Geometries with their transforms to the space of the shape.
@@ -300,9 +302,21 @@ impl Reader<'_, '_> {
     fn use_slots(&mut self, slots: Slots) {
         if self.slots != slots {
             self.slots = slots;
-            self.surfaces.clear();
-            self.textures.clear();
+            self.forget_surfaces();
         }
+    }
+
+    /// Has textures lie as on disks, or as on other shapes.
+    fn use_disk(&mut self, is_on_disk: bool) {
+        if self.is_on_disk != is_on_disk {
+            self.is_on_disk = is_on_disk;
+            self.forget_surfaces();
+        }
+    }
+
+    fn forget_surfaces(&mut self) {
+        self.surfaces.clear();
+        self.textures.clear();
     }
 }
 

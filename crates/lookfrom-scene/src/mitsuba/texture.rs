@@ -231,7 +231,7 @@ impl Reader<'_, '_> {
                     even: reader.color(plugin, "color0", 0.4)?,
                     odd: reader.color(plugin, "color1", 0.2)?,
                     footprint: 0.0,
-                    mapping: mapping(&matrix, 2.0, false),
+                    mapping: reader.mapping(&matrix, 2.0, false),
                 })
             }
             "mesh_attribute" => reader.attribute_texture(plugin),
@@ -248,7 +248,7 @@ impl Reader<'_, '_> {
         plugin.ignore(&["accel", "format"]);
         Ok(TextureKind::Image {
             image: self.image(plugin, plugin.boolean("raw", false)?)?,
-            mapping: mapping(&plugin.transform("to_uv")?, 1.0, true),
+            mapping: self.mapping(&plugin.transform("to_uv")?, 1.0, true),
             wrap: [plugin.choice("wrap_mode", Wrap::Repeat, &wraps)?; 2],
             filter: plugin.choice("filter_type", TexelFilter::Bilinear, &filters)?,
             channel: Channel::Rgb,
@@ -274,18 +274,21 @@ impl Reader<'_, '_> {
         self.images.insert(key, id);
         Ok(id)
     }
-}
 
-/// The mapping of a texture by the matrix `to_uv`, times a factor. The result's v runs up if it `is_picture`.
-fn mapping(to_uv: &DMat4, factor: f64, is_picture: bool) -> Mapping {
-    let m = to_uv.transpose().to_cols_array_2d();
-    // Of (u, 1 − v).
-    let row = |row: [f64; 4]| [row[0], -row[1], row[1] + row[3]].map(|value| value * factor);
-    let (s, t) = (row(m[0]), row(m[1]));
-    let t = if is_picture { [-t[0], -t[1], 1.0 - t[2]] } else { t };
-    if s[1] == 0.0 && t[0] == 0.0 {
-        let [scale, offset] = [[s[0], t[1]], [s[2], t[2]]].map(|pair| pair.map(|value| value as f32));
-        return Mapping::Uv { scale, offset };
+    /// The mapping of a texture by the matrix `to_uv`, times a factor. The result's v runs up if it `is_picture`.
+    fn mapping(&self, to_uv: &DMat4, factor: f64, is_picture: bool) -> Mapping {
+        let m = to_uv.transpose().to_cols_array_2d();
+        // Of (u, 1 − v); on disks, where our u is the angle and our v runs from the edge to the centre, of (1 − v, u).
+        let row = |[u, v, _, offset]: [f64; 4]| match self.is_on_disk {
+            true => [v, -u, u + offset].map(|value| value * factor),
+            false => [u, -v, v + offset].map(|value| value * factor),
+        };
+        let (s, t) = (row(m[0]), row(m[1]));
+        let t = if is_picture { [-t[0], -t[1], 1.0 - t[2]] } else { t };
+        if s[1] == 0.0 && t[0] == 0.0 {
+            let [scale, offset] = [[s[0], t[1]], [s[2], t[2]]].map(|pair| pair.map(|value| value as f32));
+            return Mapping::Uv { scale, offset };
+        }
+        Mapping::Affine { set: 0, matrix: [s, t].map(|row| row.map(|value| value as f32)) }
     }
-    Mapping::Affine { set: 0, matrix: [s, t].map(|row| row.map(|value| value as f32)) }
 }

@@ -190,6 +190,33 @@ fn textures_undo_the_direction_of_v() {
 }
 
 #[test]
+fn u_is_the_radius_of_a_disk() {
+    let checks =
+        "<bsdf type=\"diffuse\" id=\"checks\"><texture type=\"checkerboard\" name=\"reflectance\"/></bsdf>";
+    let (read, warnings) = told(&format!(
+        "{checks}<shape type=\"disk\"><ref id=\"checks\"/></shape><shape type=\"cube\"><ref id=\"checks\"/></shape>"
+    ));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let mapping = |shape: usize| {
+        let MaterialKind::Diffuse { reflectance: Color::Texture(id) } =
+            read.materials[read.shapes[shape].material.index()].kind
+        else {
+            panic!("{:?}", read.materials)
+        };
+        let TextureKind::Checker { mapping, .. } = read.textures[id.index()].kind else {
+            panic!("{:?}", read.textures)
+        };
+        mapping
+    };
+    // Twice (1 − v, u) and twice (u, 1 − v).
+    assert_eq!(mapping(0), Mapping::Affine { set: 0, matrix: [[0.0, -2.0, 2.0], [2.0, 0.0, 0.0]] });
+    assert_eq!(mapping(1), Mapping::Uv { scale: [2.0, -2.0], offset: [0.0, 2.0] });
+    let brushed = "<bsdf type=\"roughconductor\"><float name=\"alpha_u\" value=\"0.4\"/></bsdf>";
+    let (_, warnings) = told(&format!("<shape type=\"disk\">{brushed}</shape>"));
+    assert!(warnings.len() == 1 && warnings[0].contains("grain"), "{warnings:?}");
+}
+
+#[test]
 fn curves_are_strands_of_bezier() {
     let of = |kind: &str, text: &str| {
         let scene = format!(
