@@ -38,7 +38,7 @@ pub enum MaterialKind {
         roughness: Roughness,
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
-        /// Multiplies what is reflected; not 1 is not in nature.
+        /// Factor of the Fresnel reflectance: 1 in nature.
         specular_reflectance: Color,
     },
     /// A dielectric such as glass or water, which encloses an interior.

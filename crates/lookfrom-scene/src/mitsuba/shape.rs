@@ -153,7 +153,7 @@ impl Reader<'_, '_> {
         Ok(geometries.into_iter().map(shape).collect())
     }
 
-    /// What a surface emits, which here its opacity would thin, and in Mitsuba does not.
+    /// Emission of a masked surface, over its opacity: that multiplies emission here, and not in Mitsuba.
     fn unmasked(&mut self, plugin: &Plugin, mut emission: Emission, alpha: Option<Scalar>) -> Emission {
         match alpha {
             Some(Scalar::Value(alpha)) if alpha > 0.0 => emission.power.scale /= alpha,

@@ -194,7 +194,7 @@ impl Textures {
         SpectrumTexture::new(Input::new(color, self.uplifts), spectrum_type, &self.curves)
     }
 
-    /// η or k of a metal. Curves of light have the colours that are not adapted to daylight.
+    /// η or k of a metal. A curve under light of equal energy has the colour of an emission, which daylight does not weight.
     pub(crate) fn index_of_refraction(&self, color: Color, illuminant: Illuminant) -> SpectrumTexture {
         let spectrum_type = match (color, illuminant) {
             (Color::Curve(_), Illuminant::EqualEnergy) => SpectrumType::Illuminant,

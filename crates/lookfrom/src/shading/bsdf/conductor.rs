@@ -33,7 +33,7 @@ pub struct Conductor<R = f32> {
     pub(crate) k: Spectrum<R>,
     /// Roughness of the surface.
     pub(crate) roughness: Microfacets<R>,
-    /// Multiplies what is reflected.
+    /// Factor of the Fresnel reflectance.
     pub(crate) specular: Spectrum<R>,
     /// 1 for [`Energy::Conserved`], 0 for [`Energy::SingleScattering`].
     pub(crate) conserves: R,
@@ -74,7 +74,7 @@ impl Conductor {
         Self { eta, k, roughness: roughness.into(), specular, conserves: 0.0 }
     }
 
-    /// This conductor with a factor of what it reflects.
+    /// This conductor with a factor of its Fresnel reflectance.
     #[must_use]
     pub fn with_specular_reflectance(self, specular: Spectrum) -> Self {
         Self { specular, ..self }
@@ -132,7 +132,7 @@ impl ScatteringFunction for Conductor {
 }
 
 impl<R: Real> Conductor<R> {
-    /// What facets reflect at a cosine.
+    /// Fresnel reflectance of the microfacets, times the factor, for a cosine of incidence.
     #[inline(always)]
     pub(super) fn reflectance(&self, cos: R) -> Spectrum<R> {
         fresnel::conductor(cos, self.eta, self.k) * self.specular

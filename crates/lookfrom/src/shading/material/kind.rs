@@ -46,7 +46,7 @@ pub enum MaterialKind {
         roughness: Roughness,
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
-        /// Multiplies what is reflected.
+        /// Factor of the Fresnel reflectance.
         specular_reflectance: SpectrumTexture,
     },
     /// A dielectric such as glass or water: the inside is a body.

@@ -1,4 +1,5 @@
-//! What is compiled for each class of BSDFs: the rows of eight materials, and the kernel that scatters by them.
+//! The part of a step that is generic over the class of BSDFs: evaluation of eight materials, and the kernel that scatters by them. All else of
+//! the step takes the class as a value, so that it is compiled once.
 
 use super::class_hits::ClassHit;
 use super::class_points::ClassPoints;
