@@ -127,12 +127,12 @@ macro_rules! bsdf_classes {
                 Whitted(WhittedCoefficients),
                 /// Lambertian reflection and transmission.
                 DiffuseTransmission(DiffuseTransmission),
+                /// Disney's principled surface.
+                Disney(Disney),
             }
             one_by_one {
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
-                /// Disney's principled surface.
-                Disney(Disney),
                 /// The boundary of a medium in which light diffuses.
                 Subsurface(Subsurface),
                 /// Light that leaves such a medium.

@@ -12,96 +12,83 @@
 pub(super) mod tests;
 mod values;
 
-use std::f32::consts::{FRAC_1_PI, PI};
-
 use glam::Vec3;
-use lookfrom_scene::material as written;
-use lookfrom_scene::material::Masking;
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
-use super::conductor::try_half_vector;
 use super::diffuse::cosine_direction;
-use super::microfacet::{Microfacets, TrowbridgeReitz};
-use super::{BsdfSample, Description, Lobes, Mode, ScatteringFunction, fresnel, is_grazing, same_side};
+use super::lanes::{LaneBsdf, RowBsdf};
+use super::microfacet::TrowbridgeReitz;
+use super::{
+    BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, across, fresnel, is_grazing,
+};
 use crate::core::elementary;
+use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
 /// Disney's surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disney {
+pub struct Disney<R: Real = f32> {
     /// The base colour, 0 … 1.
-    pub base: Spectrum,
+    pub base: Spectrum<R>,
     /// The base colour over its luminance; white for black.
-    pub tint: Spectrum,
+    pub tint: Spectrum<R>,
     /// Roughness, 0 … 1.
-    pub roughness: f32,
+    pub roughness: R,
     /// Divides the microfacets' α along x and multiplies it along y; 1 without a grain.
-    pub aspect: f32,
+    pub aspect: R,
     /// Index of refraction inside over that outside.
-    pub eta: f32,
+    pub eta: R,
     /// Share of the base colour in the colour of the specular layer.
-    pub spec_tint: f32,
+    pub spec_tint: R,
     /// Share of glass.
-    pub spec_trans: f32,
+    pub spec_trans: R,
     /// Strength of sheen …
-    pub sheen: f32,
+    pub sheen: R,
     /// … and the share of the base colour in it.
-    pub sheen_tint: f32,
+    pub sheen_tint: R,
     /// Share of a base in which light scatters below the surface.
-    pub flatness: f32,
-    /// A solid body or a thin sheet, with its own parameters.
-    pub form: Form,
+    pub flatness: R,
+    /// Whether it is a thin sheet, not a solid body.
+    pub is_thin: R::Mask,
+    /// Share of metal; 0 of sheets.
+    pub metallic: R,
+    /// Strength of the clear coat; 0 of sheets.
+    pub clearcoat: R,
+    /// α of the coat's microfacets.
+    pub clearcoat_alpha: R,
+    /// Share of diffuse light that passes, 0 … 1; 0 of solid bodies.
+    pub diff_trans: R,
 }
 
-/// A solid body or a thin sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Form {
-    /// A solid body.
-    Solid {
-        /// Share of metal.
-        metallic: f32,
-        /// Strength of the clear coat.
-        clearcoat: f32,
-        /// α of its microfacets.
-        clearcoat_alpha: f32,
-    },
-    /// A thin sheet.
-    Thin {
-        /// Share of diffuse light that passes, 0 … 1.
-        diff_trans: f32,
-    },
+/// Disney's surface seen from an outgoing direction.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenDisney<R: Real> {
+    /// In front, or inside of glass.
+    wo: Vector<R>,
+    /// Whether directions are turned to the front: what is no glass has no inside, both its sides are alike.
+    is_turned: R::Mask,
+    /// Whether light comes from inside of glass.
+    is_inside: R::Mask,
+    /// The share of glass in all …
+    glass: R,
+    /// … and that of the diffuse base.
+    matte: R,
+    /// The facets of the specular layer.
+    facets: TrowbridgeReitz<R>,
 }
 
 /// Probabilities of the lobes: reflecting and refracting microfacets, the clear coat, the diffuse lobe on both sides.
 #[derive(Clone, Copy, Debug)]
-struct Choice {
-    reflection: f32,
-    transmission: f32,
-    clearcoat: f32,
-    diffuse: f32,
-    diffuse_transmission: f32,
-}
-
-impl Choice {
-    /// In proportion to weights, of the sides that are asked for; `None` if there is none.
-    fn of(self, lobes: Lobes) -> Option<Self> {
-        let [reflection, transmission] = lobes.allowed([self.reflection, self.transmission]);
-        let [diffuse, diffuse_transmission] = lobes.allowed([self.diffuse, self.diffuse_transmission]);
-        let [clearcoat, _] = lobes.allowed([self.clearcoat, 0.0]);
-        let sum = reflection + transmission + clearcoat + diffuse + diffuse_transmission;
-        (sum > 0.0).then(|| Self {
-            reflection: reflection / sum,
-            transmission: transmission / sum,
-            clearcoat: clearcoat / sum,
-            diffuse: diffuse / sum,
-            diffuse_transmission: diffuse_transmission / sum,
-        })
-    }
-}
-
-/// Microfacets whose masking and shadowing are independent, as Mitsuba has them.
-fn separable(alpha: TrowbridgeReitz) -> Microfacets {
-    Microfacets::new(alpha, written::Microfacets { masking: Masking::Separable, ..Default::default() })
+struct Choice<R: Real> {
+    reflection: R,
+    transmission: R,
+    clearcoat: R,
+    diffuse: R,
+    diffuse_transmission: R,
+    /// Whether there is any lobe.
+    exists: R::Mask,
 }
 
 impl Disney {
@@ -110,226 +97,213 @@ impl Disney {
         let eta = fresnel::valid_eta(eta);
         if eta == 1.0 { 1.001 } else { eta }
     }
+}
 
+impl<R: Real> Disney<R> {
     /// The facets of the specular layer, or of light that passes a thin sheet, with a factor of the roughness.
-    fn facets(&self, factor: f32) -> Microfacets {
+    #[inline(always)]
+    fn facets(&self, factor: R) -> TrowbridgeReitz<R> {
         let roughness = factor * self.roughness;
         let alpha = roughness * roughness;
-        let [x, y] = [alpha / self.aspect, alpha * self.aspect].map(|alpha| alpha.max(1e-3));
-        separable(TrowbridgeReitz::new(x, y))
+        TrowbridgeReitz {
+            alpha_x: Float::clamp(alpha / self.aspect, 1e-3, 1e4),
+            alpha_y: Float::clamp(alpha * self.aspect, 1e-3, 1e4),
+        }
     }
 
     /// The facets through which light passes a thin sheet (Burley 2015, figure 15).
-    fn facets_of_thin_transmission(&self) -> Microfacets {
-        self.facets(0.65 * self.eta - 0.35)
+    #[inline(always)]
+    fn facets_of_thin_transmission(&self) -> TrowbridgeReitz<R> {
+        self.facets(self.eta * 0.65 - 0.35)
     }
 
-    /// Share of glass in all, and of the diffuse base.
-    fn shares(&self) -> [f32; 2] {
-        match self.form {
-            Form::Solid { metallic, .. } => {
-                [(1.0 - metallic) * self.spec_trans, (1.0 - metallic) * (1.0 - self.spec_trans)]
-            }
-            Form::Thin { .. } => [self.spec_trans, 1.0 - self.spec_trans],
+    #[inline(always)]
+    fn seen_from(&self, wo: Vector<R>) -> SeenDisney<R> {
+        let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
+        let body = one - self.metallic;
+        let glass = body * self.spec_trans;
+        let is_below = wo.z.lt(zero);
+        let is_inside = is_below & !self.is_thin & glass.gt(zero);
+        let is_turned = is_below & !is_inside;
+        SeenDisney {
+            wo: wo.negate_where(is_turned),
+            is_turned,
+            is_inside,
+            glass,
+            matte: body * (one - self.spec_trans),
+            facets: self.facets(one),
         }
     }
 
-    /// Whether light comes from inside of glass. What is no glass has no inside: both its sides are alike.
-    fn is_inside(&self, wo: Vec3) -> bool {
-        wo.z < 0.0 && matches!(self.form, Form::Solid { .. }) && self.shares()[0] > 0.0
-    }
-
-    /// The directions as seen from the front, but inside of glass.
-    fn facing(&self, wo: Vec3, wi: Vec3) -> (Vec3, Vec3) {
-        if wo.z < 0.0 && !self.is_inside(wo) { (-wo, -wi) } else { (wo, wi) }
-    }
-
-    /// The probabilities of the lobes for a facet with the reflectance `fresnel`. The sum of their weights does not depend on it, as those
-    /// of other lobes must not: their directions have other facets.
-    fn choice(&self, is_inside: bool, fresnel: f32, lobes: Lobes) -> Option<Choice> {
-        let [glass, matte] = self.shares();
-        let none = Choice {
-            reflection: 0.0,
-            transmission: 0.0,
-            clearcoat: 0.0,
-            diffuse: 0.0,
-            diffuse_transmission: 0.0,
+    /// The probabilities of the lobes on the sides that are asked for, for a facet with the reflectance `fresnel`. The sum of their weights
+    /// does not depend on it, as those of other lobes must not: their directions have other facets.
+    #[inline(always)]
+    fn choice(&self, seen: &SeenDisney<R>, fresnel: R, lobes: Lobes) -> Choice<R> {
+        let (zero, one) = (fresnel.like(0.0), fresnel.like(1.0));
+        let passes = R::select(seen.is_inside, one, seen.glass);
+        let refracted = passes * (one - fresnel);
+        let [reflection, transmission] = match (lobes.is_reflection(), lobes.is_transmission()) {
+            (true, true) => [one - refracted, refracted],
+            (true, false) => [one, zero],
+            (false, _) => [zero, passes],
         };
-        let solid = |passes: f32| match (lobes.is_reflection(), lobes.is_transmission()) {
-            (true, true) => [1.0 - passes * (1.0 - fresnel), passes * (1.0 - fresnel)],
-            (true, false) => [1.0, 0.0],
-            (false, _) => [0.0, passes],
-        };
-        let choice = match self.form {
-            Form::Solid { .. } if is_inside => {
-                let [reflection, transmission] = solid(1.0);
-                Choice { reflection, transmission, ..none }
-            }
-            Form::Solid { clearcoat, .. } => {
-                let [reflection, transmission] = solid(glass);
-                Choice { reflection, transmission, clearcoat: 0.25 * clearcoat, diffuse: matte, ..none }
-            }
-            Form::Thin { diff_trans } => Choice {
-                reflection: 0.5 * glass,
-                transmission: 0.5 * glass,
-                diffuse: matte * (1.0 - diff_trans),
-                diffuse_transmission: matte * diff_trans,
-                ..none
-            },
-        };
-        choice.of(lobes)
-    }
-
-    /// The half vector of refraction, with z ≥ 0, if its facet faces both directions.
-    fn refracting_facet(&self, wo: Vec3, wi: Vec3) -> Option<Vec3> {
-        let eta = fresnel::relative_eta(wo.z, self.eta);
-        let wm = (wo + wi * eta).try_normalize()?;
-        let wm = if wm.z < 0.0 { -wm } else { wm };
-        (wo.dot(wm) * wo.z > 0.0 && wi.dot(wm) * wi.z > 0.0).then_some(wm)
-    }
-
-    /// Density of what is sampled over solid angle, and the choice of lobes.
-    fn density(&self, wo: Vec3, wi: Vec3, lobes: Lobes) -> f32 {
-        let is_inside = self.is_inside(wo);
-        let cosine = wi.z.abs() * FRAC_1_PI;
-        if same_side(wo, wi) {
-            let Some(wm) = try_half_vector(wo, wi) else { return 0.0 };
-            let fresnel = fresnel::dielectric(wo.dot(wm), self.eta);
-            let Some(choice) = self.choice(is_inside, fresnel, lobes) else { return 0.0 };
-            let mut pdf = choice.diffuse * cosine;
-            if choice.reflection > 0.0 {
-                pdf += choice.reflection * 0.25 * self.facets(1.0).visible_per_cosine(wo.into(), wm.into());
-            }
-            if let Form::Solid { clearcoat_alpha, .. } = self.form
-                && choice.clearcoat > 0.0
-            {
-                pdf += choice.clearcoat * gtr1(clearcoat_alpha, wm.z) * wm.z / (4.0 * wo.dot(wm).abs());
-            }
-            return pdf;
+        let half = seen.glass * 0.5;
+        let matte = R::select(seen.is_inside, zero, seen.matte);
+        let coat = R::select(seen.is_inside, zero, self.clearcoat * 0.25);
+        let [reflection, transmission] = lobes.allowed([
+            R::select(self.is_thin, half, reflection),
+            R::select(self.is_thin, half, transmission),
+        ]);
+        let [diffuse, diffuse_transmission] =
+            lobes.allowed([matte * (one - self.diff_trans), matte * self.diff_trans]);
+        let [clearcoat, _] = lobes.allowed([coat, zero]);
+        let sum = reflection + transmission + clearcoat + diffuse + diffuse_transmission;
+        Choice {
+            reflection: reflection / sum,
+            transmission: transmission / sum,
+            clearcoat: clearcoat / sum,
+            diffuse: diffuse / sum,
+            diffuse_transmission: diffuse_transmission / sum,
+            exists: sum.gt(zero),
         }
-        match self.form {
-            Form::Solid { .. } => {
-                let Some(wm) = self.refracting_facet(wo, wi) else { return 0.0 };
-                let fresnel = fresnel::dielectric(wo.dot(wm), self.eta);
-                let Some(choice) = self.choice(is_inside, fresnel, lobes) else { return 0.0 };
-                let eta = fresnel::relative_eta(wo.z, self.eta);
-                let sum = wo.dot(wm) + eta * wi.dot(wm);
-                let jacobian = (wo.dot(wm) * wi.dot(wm)).abs() * eta * eta / (sum * sum);
-                choice.transmission * self.facets(1.0).visible_per_cosine(wo.into(), wm.into()) * jacobian
-            }
-            Form::Thin { .. } => {
-                let Some(choice) = self.choice(is_inside, 0.0, lobes) else { return 0.0 };
-                let mut pdf = choice.diffuse_transmission * cosine;
-                if let Some(wm) = thin_facet(wo, wi)
-                    && choice.transmission > 0.0
-                {
-                    let facets = self.facets_of_thin_transmission();
-                    pdf += choice.transmission * 0.25 * facets.visible_per_cosine(wo.into(), wm.into());
-                }
-                pdf
-            }
+    }
+
+    /// As [`super::Bsdf::sample`].
+    #[inline(always)]
+    fn sampled(
+        &self,
+        seen: &SeenDisney<R>,
+        uc: R,
+        u: [R; 2],
+        mode: Mode,
+        lobes: Lobes,
+    ) -> DirectionSample<R> {
+        let (wo, one) = (seen.wo, uc.like(1.0));
+        let wm = seen.facets.sample(wo, u);
+        let cos = wo.dot(wm);
+        let choice = self.choice(seen, fresnel::dielectric(cos, self.eta), lobes);
+
+        // Choose a lobe.
+        let passes = choice.diffuse + choice.diffuse_transmission;
+        let coated = passes + choice.clearcoat;
+        let is_diffuse = uc.lt(passes);
+        let is_passing = is_diffuse & !uc.lt(choice.diffuse);
+        let is_coat = !is_diffuse & uc.lt(coated);
+        let is_refracted = !is_diffuse & !is_coat & uc.lt(coated + choice.transmission);
+        let is_transmission = is_passing | is_refracted;
+
+        // A direction by it.
+        let reflected = optics::reflect(wo, wm);
+        let diffuse = cosine_direction(u, wo.z);
+        let diffuse = Vector::select(is_passing, across(diffuse), diffuse);
+        let mut wi = Vector::select(is_diffuse, diffuse, reflected);
+        if is_coat.any() {
+            let wm = sample_gtr1(self.clearcoat_alpha, u);
+            wi = Vector::select(is_coat, optics::reflect(wo, wm), wi);
+        }
+        let (mut eta, mut exists) = (one, choice.exists & !is_grazing(wo));
+        let is_body = is_refracted & !self.is_thin;
+        if is_body.any() {
+            let relative = fresnel::relative_eta(cos, self.eta);
+            let facing = wm.negate_where(cos.lt(one.like(0.0)));
+            let (refracted, is_refraction) = optics::refract(wo, facing, relative);
+            wi = Vector::select(is_body, refracted, wi);
+            eta = R::select(is_body, relative, one);
+            exists = exists & (is_refraction | !is_body);
+        }
+        let is_sheet = is_refracted & self.is_thin;
+        if is_sheet.any() {
+            let wm = self.facets_of_thin_transmission().sample(wo, u);
+            let passed = across(optics::reflect(wo, wm));
+            wi = Vector::select(is_sheet, passed, wi);
+            // The facet must face away from where the light comes from.
+            exists = exists & (passed.dot(wm).lt(one.like(0.0)) | !is_sheet);
+        }
+        let is_same_side = (wo.z * wi.z).gt(one.like(0.0));
+        exists = exists & is_transmission.choose(!is_same_side, is_same_side);
+
+        let wi = wi.negate_where(seen.is_turned);
+        let scattered = self.scattered(seen, wi, mode, lobes);
+        DirectionSample {
+            wi,
+            f: scattered.f,
+            pdf: scattered.pdf,
+            eta,
+            is_specular: exists.like(false),
+            is_diffuse,
+            is_transmission,
+            is_valid: exists,
         }
     }
 }
 
-/// The direction on the other side of the surface.
-fn mirrored(w: Vec3) -> Vec3 {
-    Vec3::new(w.x, w.y, -w.z)
-}
-
-/// The facet that lets light from `wi` pass a thin sheet to `wo`, if `wi` is behind it.
-fn thin_facet(wo: Vec3, wi: Vec3) -> Option<Vec3> {
-    try_half_vector(wo, mirrored(wi)).filter(|wm| wi.dot(*wm) < 0.0)
-}
-
-/// `D` of Burley's distribution GTR1 with the roughness α for the cosine of a facet's normal.
-fn gtr1(alpha: f32, cos: f32) -> f32 {
+/// A normal with the density D cos of Burley's distribution GTR1.
+#[inline(always)]
+fn sample_gtr1<R: Real>(alpha: R, [u, v]: [R; 2]) -> Vector<R> {
+    let one = alpha.like(1.0);
     let squared = alpha * alpha;
-    (squared - 1.0) / (PI * elementary::ln(squared) * (1.0 + (squared - 1.0) * cos * cos))
+    let cos2 = (one - elementary::exp(elementary::ln(squared) * (one - v))) / (one - squared);
+    let (sin_phi, cos_phi) = elementary::sin_cos_of_turns(u);
+    let sin = Float::sqrt(Float::clamp(one - cos2, 0.0, 1.0));
+    Vector { x: cos_phi * sin, y: sin_phi * sin, z: Float::sqrt(Float::clamp(cos2, 0.0, 1.0)) }
 }
 
-/// A normal with the density D cos of GTR1.
-fn sample_gtr1(alpha: f32, u: [f32; 2]) -> Vec3 {
-    let squared = alpha * alpha;
-    let cos2 = (1.0 - elementary::exp(elementary::ln(squared) * (1.0 - u[1]))) / (1.0 - squared);
-    let (sin_phi, cos_phi) = elementary::sin_cos_of_turns(u[0]);
-    let sin = (1.0 - cos2).clamp(0.0, 1.0).sqrt();
-    Vec3::new(cos_phi * sin, sin_phi * sin, cos2.clamp(0.0, 1.0).sqrt())
+impl<R: Real> LaneBsdf<R> for Disney<R> {
+    type Prepared = SeenDisney<R>;
+
+    #[inline(always)]
+    fn prepare(&self, wo: Vector<R>) -> SeenDisney<R> {
+        self.seen_from(wo)
+    }
+
+    #[inline(always)]
+    fn f(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).f
+    }
+
+    #[inline(always)]
+    fn pdf(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> R {
+        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).pdf
+    }
+
+    #[inline(always)]
+    fn f_and_pdf(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
+        let scattered = self.scattered(seen, wi, Mode::Radiance, Lobes::ALL);
+        (scattered.f, scattered.pdf)
+    }
+
+    #[inline(always)]
+    fn sample(&self, seen: &SeenDisney<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sampled(seen, uc, u, Mode::Radiance, Lobes::ALL)
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        self.is_thin.like(true)
+    }
+
+    #[inline(always)]
+    fn diffuse_share(&self, seen: &SeenDisney<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
+        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).diffuse.share_of(f)
+    }
 }
 
 impl ScatteringFunction for Disney {
     fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.values(wo, wi, mode)[0]
+        self.scattered(&self.seen_from(wo.into()), wi.into(), mode, Lobes::ALL).f
     }
 
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        if is_grazing::<f32>(wo) || is_grazing::<f32>(wi) {
-            return 0.0;
-        }
-        let (wo, wi) = self.facing(wo, wi);
-        self.density(wo, wi, lobes)
+    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
+        self.scattered(&self.seen_from(wo.into()), wi.into(), mode, lobes).pdf
     }
 
     fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let is_inside = self.is_inside(wo);
-        let turns = wo.z < 0.0 && !is_inside;
-        let wo_front = if turns { -wo } else { wo };
-        let wm = Vec3::from(self.facets(1.0).sample(wo_front.into(), u));
-        let fresnel = fresnel::dielectric(wo_front.dot(wm), self.eta);
-        let choice = self.choice(is_inside, fresnel, lobes)?;
-
-        // Choose a lobe, and a direction by it.
-        let mut eta = 1.0;
-        let mut rest = uc;
-        let mut takes = |probability: f32| {
-            let is_it = rest < probability;
-            rest -= probability;
-            is_it
-        };
-        let (wi, lobe) = if takes(choice.diffuse) {
-            (Vec3::from(cosine_direction(u, wo_front.z)), Lobes::REFLECTION | Lobes::DIFFUSE)
-        } else if takes(choice.diffuse_transmission) {
-            (mirrored(cosine_direction(u, wo_front.z).into()), Lobes::TRANSMISSION | Lobes::DIFFUSE)
-        } else if takes(choice.clearcoat) {
-            let Form::Solid { clearcoat_alpha, .. } = self.form else { return None };
-            let wm = sample_gtr1(clearcoat_alpha, u);
-            (optics::reflect(wo_front.into(), wm.into()).into(), Lobes::REFLECTION | Lobes::GLOSSY)
-        } else if takes(choice.transmission) {
-            let wi = match self.form {
-                Form::Solid { .. } => {
-                    let cos = wo_front.dot(wm);
-                    eta = fresnel::relative_eta(cos, self.eta);
-                    let facing = if cos < 0.0 { -wm } else { wm };
-                    let (wi, exists) = optics::refract(wo_front.into(), facing.into(), eta);
-                    if !exists {
-                        return None;
-                    }
-                    Vec3::from(wi)
-                }
-                Form::Thin { .. } => {
-                    let wm = self.facets_of_thin_transmission().sample(wo_front.into(), u);
-                    let wi = mirrored(optics::reflect(wo_front.into(), wm).into());
-                    thin_facet(wo_front, wi)?;
-                    wi
-                }
-            };
-            (wi, Lobes::TRANSMISSION | Lobes::GLOSSY)
-        } else {
-            (optics::reflect(wo_front.into(), wm.into()).into(), Lobes::REFLECTION | Lobes::GLOSSY)
-        };
-        if same_side(wo_front, wi) != lobe.is_reflection() {
-            return None;
-        }
-        let pdf = self.density(wo_front, wi, lobes);
-        let wi = if turns { -wi } else { wi };
-        Some(BsdfSample { eta, ..BsdfSample::new(wi, self.f(wo, wi, mode), pdf, lobe) })
+        self.sampled(&self.seen_from(wo.into()), uc, u, mode, lobes).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {
-        let passes = match self.form {
-            Form::Solid { .. } => self.shares()[0] > 0.0,
-            Form::Thin { diff_trans } => self.spec_trans > 0.0 || diff_trans > 0.0,
-        };
+        let seen = self.seen_from(Vec3::Z.into());
+        let passes = seen.glass > 0.0 || self.diff_trans > 0.0;
         let sides = if passes { Lobes::REFLECTION | Lobes::TRANSMISSION } else { Lobes::REFLECTION };
         sides | Lobes::DIFFUSE | Lobes::GLOSSY
     }
@@ -341,10 +315,7 @@ impl ScatteringFunction for Disney {
     }
 
     fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        let [_, diffuse] = self.values(wo, wi, Mode::Radiance);
-        Spectrum(std::array::from_fn(|lane| {
-            if f.0[lane] > 0.0 { (diffuse.0[lane] / f.0[lane]).clamp(0.0, 1.0) } else { 0.0 }
-        }))
+        LaneBsdf::diffuse_share(self, &self.seen_from(wo.into()), wi.into(), f)
     }
 
     fn description(&self) -> Description {
@@ -359,23 +330,48 @@ impl ScatteringFunction for Disney {
             ("sheen_tint", self.sheen_tint.into()),
             ("flatness", self.flatness.into()),
         ];
-        match self.form {
-            Form::Solid { metallic, clearcoat, clearcoat_alpha } => numbers.extend([
-                ("metallic", metallic.into()),
-                ("clearcoat", clearcoat.into()),
-                ("clearcoat alpha", clearcoat_alpha.into()),
+        match self.is_thin {
+            false => numbers.extend([
+                ("metallic", self.metallic.into()),
+                ("clearcoat", self.clearcoat.into()),
+                ("clearcoat alpha", self.clearcoat_alpha.into()),
             ]),
-            Form::Thin { diff_trans } => numbers.push(("diff_trans", diff_trans.into())),
+            true => numbers.push(("diff_trans", self.diff_trans.into())),
         }
         Description {
             kind: "disney",
-            does: match self.form {
-                Form::Solid { .. } => {
-                    "Disney's principled surface: diffuse, metal or glass under a specular layer"
-                }
-                Form::Thin { .. } => "Disney's thin sheet: diffuse light and microfacets on both sides",
+            does: match self.is_thin {
+                false => "Disney's principled surface: diffuse, metal or glass under a specular layer",
+                true => "Disney's thin sheet: diffuse light and microfacets on both sides",
             },
             numbers,
+        }
+    }
+}
+
+impl RowBsdf for Disney {
+    type Lanes<S: Simd> = Disney<f32x8<S>>;
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        let of = |numbers: [f32; LANES]| f32x8::load_array(simd, numbers);
+        let is_thin = of(by_lane!(lane => if rows[lane].is_thin { 1.0 } else { 0.0 }));
+        Disney {
+            base: gather_spectrum(simd, &by_lane!(lane => rows[lane].base)),
+            tint: gather_spectrum(simd, &by_lane!(lane => rows[lane].tint)),
+            roughness: of(by_lane!(lane => rows[lane].roughness)),
+            aspect: of(by_lane!(lane => rows[lane].aspect)),
+            eta: of(by_lane!(lane => rows[lane].eta)),
+            spec_tint: of(by_lane!(lane => rows[lane].spec_tint)),
+            spec_trans: of(by_lane!(lane => rows[lane].spec_trans)),
+            sheen: of(by_lane!(lane => rows[lane].sheen)),
+            sheen_tint: of(by_lane!(lane => rows[lane].sheen_tint)),
+            flatness: of(by_lane!(lane => rows[lane].flatness)),
+            is_thin: is_thin.gt(f32x8::splat(simd, 0.0)),
+            metallic: of(by_lane!(lane => rows[lane].metallic)),
+            clearcoat: of(by_lane!(lane => rows[lane].clearcoat)),
+            clearcoat_alpha: of(by_lane!(lane => rows[lane].clearcoat_alpha)),
+            diff_trans: of(by_lane!(lane => rows[lane].diff_trans)),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::Evaluator;
 use super::compile::Compiler;
 use crate::core::math::luminance;
 use crate::core::spectrum::Spectrum;
-use crate::shading::bsdf::disney::{Disney, Form};
+use crate::shading::bsdf::disney::Disney;
 use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture};
 
 /// Disney's surface, see [`lookfrom_scene::material::Disney`].
@@ -40,12 +40,13 @@ impl Evaluator<'_> {
         let [roughness, anisotropic, metallic, spec_trans, eta, rest @ ..] = numbers;
         let [spec_tint, sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss, diff_trans] = rest;
         let share = |number: f32| if number > 0.0 { number.min(1.0) } else { 0.0 };
+        let of_body = |number: f32| if look.is_thin { 0.0 } else { number };
         let brightness = match self.mode {
             SpectralMode::Rgb => luminance(base.rgb()),
             // The mean over wavelengths: it only tints.
             _ => 0.25 * base.0.iter().sum::<f32>(),
         };
-        let tint = if brightness > 0.0 { base * (1.0 / brightness) } else { Spectrum::ONE };
+        let tint = if brightness >= f32::MIN_POSITIVE { base * (1.0 / brightness) } else { Spectrum::ONE };
         Disney {
             base,
             tint,
@@ -57,14 +58,11 @@ impl Evaluator<'_> {
             sheen: if sheen > 0.0 { sheen } else { 0.0 },
             sheen_tint: share(sheen_tint),
             flatness: share(flatness),
-            form: match look.is_thin {
-                false => Form::Solid {
-                    metallic: share(metallic),
-                    clearcoat: share(clearcoat),
-                    clearcoat_alpha: 0.1 + (0.001 - 0.1) * share(clearcoat_gloss),
-                },
-                true => Form::Thin { diff_trans: 0.5 * diff_trans.clamp(0.0, 2.0) },
-            },
+            is_thin: look.is_thin,
+            metallic: share(of_body(metallic)),
+            clearcoat: share(of_body(clearcoat)),
+            clearcoat_alpha: 0.1 + (0.001 - 0.1) * share(clearcoat_gloss),
+            diff_trans: if look.is_thin { share(0.5 * diff_trans) } else { 0.0 },
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
+use crate::shading::bsdf::disney::Disney;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
@@ -38,6 +39,7 @@ impl Material {
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             MaterialKind::Measured(_) => Some(BsdfClass::Measured),
             MaterialKind::Whitted(_) => Some(BsdfClass::Whitted),
+            MaterialKind::Disney(_) => Some(BsdfClass::Disney),
             _ => None,
         }
     }
@@ -172,38 +174,6 @@ impl MaterialRow for OpenPbrSurface {
     }
 }
 
-impl MaterialRow for Hair {
-    #[inline]
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
-        let MaterialKind::Hair(hair) = kind else { return None };
-        Some(evaluator.hair(hair))
-    }
-}
-
-impl MaterialRow for Measured {
-    #[inline]
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
-        let MaterialKind::Measured(tables) = kind else { return None };
-        Some(evaluator.measured(tables))
-    }
-}
-
-impl MaterialRow for Plastic {
-    #[inline]
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
-        let MaterialKind::Plastic(plastic) = kind else { return None };
-        Some(evaluator.plastic(plastic))
-    }
-}
-
-impl MaterialRow for WhittedCoefficients {
-    #[inline]
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
-        let MaterialKind::Whitted(whitted) = kind else { return None };
-        Some(evaluator.whitted(whitted))
-    }
-}
-
 macro_rules! material_row {
     ($row:ty, $kind:ident { $($field:ident),+ } => $method:ident $(, $takes_seed:literal)?) => {
         impl MaterialRow for $row {
@@ -213,6 +183,17 @@ macro_rules! material_row {
             fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
                 match kind {
                     MaterialKind::$kind { $($field),+ } => Some(evaluator.$method($($field),+)),
+                    _ => None,
+                }
+            }
+        }
+    };
+    ($row:ty, $kind:ident => $method:ident) => {
+        impl MaterialRow for $row {
+            #[inline]
+            fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+                match kind {
+                    MaterialKind::$kind(look) => Some(evaluator.$method(look)),
                     _ => None,
                 }
             }
@@ -229,3 +210,8 @@ material_row!(Conductor, Conductor { metal, roughness, energy, specular_reflecta
 material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
 material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);
+material_row!(Plastic, Plastic => plastic);
+material_row!(Hair, Hair => hair);
+material_row!(Measured, Measured => measured);
+material_row!(WhittedCoefficients, Whitted => whitted);
+material_row!(Disney, Disney => disney);

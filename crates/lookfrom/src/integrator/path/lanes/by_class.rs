@@ -11,6 +11,7 @@ use crate::integrator::{Queues, SampleStream};
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
 use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
+use crate::shading::bsdf::disney::Disney;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;

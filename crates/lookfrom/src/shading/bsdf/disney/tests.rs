@@ -16,7 +16,11 @@ fn solid(metallic: f32, clearcoat: f32, gloss: f32) -> Disney {
         sheen: 0.0,
         sheen_tint: 0.0,
         flatness: 0.0,
-        form: Form::Solid { metallic, clearcoat, clearcoat_alpha: 0.1 - 0.099 * gloss },
+        is_thin: false,
+        metallic,
+        clearcoat,
+        clearcoat_alpha: 0.1 - 0.099 * gloss,
+        diff_trans: 0.0,
     }
 }
 
@@ -46,7 +50,8 @@ fn surfaces() -> [(&'static str, Disney); 6] {
                 sheen_tint: 0.7,
                 flatness: 0.2,
                 aspect: aspect(0.4),
-                form: Form::Thin { diff_trans: 0.3 },
+                is_thin: true,
+                diff_trans: 0.3,
                 ..plain
             },
         ),
@@ -100,7 +105,7 @@ fn values_are_those_of_mitsuba() {
         let found = surfaces().into_iter().find(|(of, _)| *of == name).map(|(_, surface)| surface);
         let surface = found.expect("a surface");
         let [wo, wi] = [wo, wi].map(|w: [f32; 3]| Vec3::from(w).normalize());
-        let value = surface.f(wo, wi, Mode::Radiance);
+        let value = ScatteringFunction::f(&surface, wo, wi, Mode::Radiance);
         for lane in 0..3 {
             assert!(close(value.0[lane], f[lane]), "{name} {wo} {wi}: {value:?} is not {f:?}");
         }

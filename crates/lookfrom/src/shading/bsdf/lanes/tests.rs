@@ -6,6 +6,7 @@ use lookfrom_simd::{Kernel, Level, dispatch_wide, is_wide};
 use super::*;
 use crate::core::hash;
 use crate::core::lanes::{gather, scatter, scatter_spectrum};
+use crate::shading::bsdf::disney::Disney;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::measured::Measured;
@@ -336,5 +337,35 @@ fn layered_surfaces_in_lanes() {
     compare::<Layered<Conductor>>(|index| {
         let (eta, k) = (spectrum(90, index), spectrum(94, index) * 4.0);
         Bsdf::coated_conductor(eta, k, roughness(98, index), &coat(index))
+    });
+}
+
+#[test]
+fn disneys_surfaces_in_lanes() {
+    compare::<Disney>(|index| {
+        let has = |seed| hash::pair(seed, index).is_multiple_of(3);
+        let is_thin = has(200);
+        let of_body = |number: f32| if is_thin { 0.0 } else { number };
+        let mut surface = Disney {
+            base: spectrum(201, index),
+            tint: spectrum(205, index) * any(209, index, 3),
+            roughness: share(210, index),
+            aspect: 0.3 + 0.7 * unit(211, index),
+            eta: Disney::valid_eta(any(212, index, 3)),
+            spec_tint: share(213, index),
+            spec_trans: share(214, index),
+            sheen: if has(215) { any(216, index, 3) } else { 0.0 },
+            sheen_tint: share(217, index),
+            flatness: share(218, index),
+            is_thin,
+            metallic: of_body(share(219, index)),
+            clearcoat: of_body(if has(220) { share(221, index) } else { 0.0 }),
+            clearcoat_alpha: 0.1 - 0.099 * unit(222, index),
+            diff_trans: if is_thin { share(223, index) } else { 0.0 },
+        };
+        if index.is_multiple_of(11) {
+            surface.regularize();
+        }
+        Bsdf::Disney(surface)
     });
 }
