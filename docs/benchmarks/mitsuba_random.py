@@ -100,6 +100,10 @@ class Grammar:
         factor = self.maybe(0.3, lambda: self.texture("specular_reflectance", 0.4, 1.0))
         return tag("string", name="material", value=self.random.choice(["Ag", "Al", "Au", "Cu"])) + factor
 
+    def tint(self):
+        names = ["specular_reflectance", "specular_transmittance"]
+        return "".join(self.maybe(0.3, lambda name=name: self.texture(name, 0.4, 1.0)) for name in names)
+
     def index(self, name="int_ior"):
         return number(name, self.between(1.2, 1.9))
 
@@ -133,9 +137,9 @@ class Grammar:
             shares = number("roughness", self.between(0.1, 0.6)) + number("spec_trans", self.between(0.2, 1.0))
             return self.texture("base_color", 0.5, 1.0) + shares + self.index("eta")
         if kind in ("dielectric", "thindielectric"):
-            return self.index()
+            return self.index() + self.tint()
         if kind == "roughdielectric":
-            return self.alpha(has_grain) + self.index()
+            return self.alpha(has_grain) + self.index() + self.tint()
         simple = [each for each in OPEN if "thin" not in each]
         if kind == "mask":
             return self.scalar("opacity", 0.1, 0.9) + self.bsdf(self.random.choice(CLOSED if is_closed else OPEN))

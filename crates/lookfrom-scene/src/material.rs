@@ -10,6 +10,7 @@ mod open_pbr;
 mod plastic;
 mod principled;
 mod subsurface;
+mod tint;
 mod whitted;
 
 pub use coat::{Coat, CoatEstimate};
@@ -21,6 +22,7 @@ pub use open_pbr::{OpenPbr, Tangent};
 pub use plastic::Plastic;
 pub use principled::{Anisotropy, Illuminant, Metal, Principled};
 pub use subsurface::{Subsurface, SubsurfaceMedium};
+pub use tint::Tint;
 pub use whitted::Whitted;
 
 use crate::error::Location;

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{
     Coat, Color, Disney, Energy, Hair, Ior, Metal, OpenPbr, Pigment, Plastic, Principled, Roughness, Scalar,
-    Subsurface, SubsurfaceMedium, Whitted,
+    Subsurface, SubsurfaceMedium, Tint, Whitted,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -49,11 +49,15 @@ pub enum MaterialKind {
         roughness: Roughness,
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
+        /// Its colours.
+        tint: Tint,
     },
     /// A sheet so thin that transmitted light is not deflected.
     ThinDielectric {
         /// Index of refraction of the sheet relative to the surrounding medium.
         eta: Ior,
+        /// Its colours.
+        tint: Tint,
     },
     /// A diffuse base under a dielectric coat.
     CoatedDiffuse {
@@ -149,12 +153,10 @@ impl MaterialKind {
             Self::Subsurface(below) => below.medium.colors().into(),
             Self::Hair(hair) => hair.pigment.colors(),
             Self::Unlit { color } => vec![*color],
-            Self::Dielectric { .. }
-            | Self::ThinDielectric { .. }
-            | Self::Mix { .. }
-            | Self::Measured(_)
-            | Self::ShadowCatcher { .. }
-            | Self::Interface => Vec::new(),
+            Self::Dielectric { tint, .. } | Self::ThinDielectric { tint, .. } => {
+                tint.colors().map(|(_, color)| color).into()
+            }
+            Self::Mix { .. } | Self::Measured(_) | Self::ShadowCatcher { .. } | Self::Interface => Vec::new(),
         }
     }
 
@@ -207,9 +209,8 @@ impl MaterialKind {
                 Pigment::Reflectance(reflectance) => vec![("reflectance", reflectance)],
                 Pigment::Absorption(_) | Pigment::Melanin { .. } => Vec::new(),
             },
-            Self::Dielectric { .. }
-            | Self::ThinDielectric { .. }
-            | Self::Mix { .. }
+            Self::Dielectric { tint, .. } | Self::ThinDielectric { tint, .. } => tint.colors().into(),
+            Self::Mix { .. }
             | Self::Measured(_)
             | Self::Unlit { .. }
             | Self::ShadowCatcher { .. }

@@ -8,7 +8,7 @@ use super::plugin::{Plugin, Property, Value};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{
     BackFace, BumpGuard, BumpMapping, Color, Disney, Distribution, Energy, Hair, Illuminant, Ior, Masking,
-    Material, MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar,
+    Material, MaterialKind, Metal, Microfacets, NormalTexture, Pigment, Plastic, Roughness, Scalar, Tint,
 };
 use crate::measured::Measured;
 use crate::scene::MaterialId;
@@ -219,7 +219,6 @@ impl Reader<'_, '_> {
     }
 
     fn kind(&mut self, plugin: &Plugin) -> Result<MaterialKind> {
-        plugin.ignore_ones(&["specular_reflectance", "specular_transmittance"]);
         Ok(match &*plugin.kind {
             "diffuse" => MaterialKind::Diffuse { reflectance: self.reflectance(plugin, "reflectance", 0.5)? },
             "null" => MaterialKind::Interface,
@@ -232,13 +231,17 @@ impl Reader<'_, '_> {
                 eta: index(plugin, "bk7")?,
                 roughness: SMOOTH,
                 energy: Energy::SingleScattering,
+                tint: self.tint(plugin)?,
             },
             "roughdielectric" => MaterialKind::Dielectric {
                 eta: index(plugin, "bk7")?,
                 roughness: self.roughness(plugin)?,
                 energy: Energy::SingleScattering,
+                tint: self.tint(plugin)?,
             },
-            "thindielectric" => MaterialKind::ThinDielectric { eta: index(plugin, "bk7")? },
+            "thindielectric" => {
+                MaterialKind::ThinDielectric { eta: index(plugin, "bk7")?, tint: self.tint(plugin)? }
+            }
             "plastic" | "roughplastic" => MaterialKind::Plastic(Box::new(self.plastic(plugin)?)),
             "hair" => self.hair(plugin)?,
             "measured" => {
@@ -321,6 +324,13 @@ impl Reader<'_, '_> {
             roughness,
             energy: Energy::SingleScattering,
             specular_reflectance: self.reflectance(plugin, "specular_reflectance", 1.0)?,
+        })
+    }
+
+    fn tint(&mut self, plugin: &Plugin) -> Result<Tint> {
+        Ok(Tint {
+            reflectance: self.reflectance(plugin, "specular_reflectance", 1.0)?,
+            transmittance: self.reflectance(plugin, "specular_transmittance", 1.0)?,
         })
     }
 

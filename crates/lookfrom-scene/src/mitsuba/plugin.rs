@@ -148,20 +148,6 @@ impl Plugin {
         }
     }
 
-    /// Lets factors count as used where they are 1.
-    pub(super) fn ignore_ones(&self, names: &[&str]) {
-        let is_one = |property: &&Property| match &property.value {
-            Value::Integer(value) => *value == 1,
-            Value::Float(value) => *value == 1.0,
-            Value::Color(rgb) => *rgb == [1.0; 3],
-            Value::Curve(curve) => *curve == Curve::Constant(1.0),
-            _ => false,
-        };
-        for property in self.unused().filter(is_one).filter(|property| names.contains(&&*property.name)) {
-            property.is_used.set(true);
-        }
-    }
-
     /// Its properties that have not been used yet.
     pub(super) fn unused(&self) -> impl Iterator<Item = &Property> {
         self.properties.iter().filter(|property| !property.is_used.get())

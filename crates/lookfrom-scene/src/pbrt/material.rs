@@ -7,7 +7,8 @@ use super::text::Place;
 use super::{NamedMaterial, Reader};
 use crate::error::Result;
 use crate::material::{
-    BumpMapping, Coat, CoatEstimate, Color, Energy, Illuminant, Ior, Material, MaterialKind, Metal, Roughness,
+    BumpMapping, Coat, CoatEstimate, Color, Energy, Illuminant, Ior, Material, MaterialKind, Metal,
+    Roughness, Tint,
 };
 use crate::scene::{ImageId, MaterialId};
 
@@ -100,10 +101,12 @@ impl Reader<'_, '_> {
                 eta: self.index_of_refraction(p, "eta", Ior::GLASS)?,
                 roughness: self.roughness(p, ["uroughness", "vroughness", "roughness"], 0.0)?,
                 energy: Energy::SingleScattering,
+                tint: Tint::default(),
             },
-            "thindielectric" => {
-                MaterialKind::ThinDielectric { eta: self.index_of_refraction(p, "eta", Ior::GLASS)? }
-            }
+            "thindielectric" => MaterialKind::ThinDielectric {
+                eta: self.index_of_refraction(p, "eta", Ior::GLASS)?,
+                tint: Tint::default(),
+            },
             "coateddiffuse" => MaterialKind::CoatedDiffuse {
                 reflectance: self.color(p, "reflectance", REFLECTANCE, Reflectance)?,
                 coat: self.coat(p, "eta", ["uroughness", "vroughness", "roughness"])?,

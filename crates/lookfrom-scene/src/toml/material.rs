@@ -44,8 +44,19 @@ pub(super) const KEYS: Kinds = &[
             "energy",
         ],
     ),
-    ("dielectric", &["ior", "roughness", "distribution", "masking", "energy"]),
-    ("thin_dielectric", &["ior"]),
+    (
+        "dielectric",
+        &[
+            "ior",
+            "roughness",
+            "distribution",
+            "masking",
+            "energy",
+            "specular_reflectance",
+            "specular_transmittance",
+        ],
+    ),
+    ("thin_dielectric", &["ior", "specular_reflectance", "specular_transmittance"]),
     ("coated_diffuse", &["reflectance", "roughness", "ior"]),
     (
         "coated_conductor",

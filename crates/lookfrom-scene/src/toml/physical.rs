@@ -13,7 +13,7 @@ use super::value::{Value, unit};
 use crate::error::Result;
 use crate::material::{
     Coat, CoatEstimate, Color, Distribution, Energy, Illuminant, Ior, Masking, MaterialKind, Metal,
-    Microfacets, Plastic, Roughness, Scalar,
+    Microfacets, Plastic, Roughness, Scalar, Tint,
 };
 use crate::measured::Measured;
 
@@ -95,8 +95,11 @@ impl Reader<'_, '_> {
                 eta: self.ior_of(table),
                 roughness: self.rough_microfacets(table),
                 energy: energy(table),
+                tint: self.tint(table),
             },
-            "thin_dielectric" => MaterialKind::ThinDielectric { eta: self.ior_of(table) },
+            "thin_dielectric" => {
+                MaterialKind::ThinDielectric { eta: self.ior_of(table), tint: self.tint(table) }
+            }
             "coated_diffuse" => MaterialKind::CoatedDiffuse {
                 reflectance: self.color_or(table, "reflectance", REFLECTANCE),
                 coat: self.coat(table),
@@ -174,6 +177,13 @@ impl Reader<'_, '_> {
 
     fn ior_of(&mut self, table: &Table<'_>) -> Ior {
         table.or("ior", Ior::default(), |value| self.ior(value))
+    }
+
+    fn tint(&mut self, table: &Table<'_>) -> Tint {
+        Tint {
+            reflectance: self.color_or(table, "specular_reflectance", 1.0),
+            transmittance: self.color_or(table, "specular_transmittance", 1.0),
+        }
     }
 
     fn plastic(&mut self, table: &Table<'_>) -> Plastic {

@@ -39,7 +39,7 @@ fn check_kind(part: &Part<'_>, kind: &MaterialKind) -> Result<()> {
             check_ior(part, *eta)?;
             check_roughness(part, roughness)
         }
-        MaterialKind::ThinDielectric { eta } => check_ior(part, *eta),
+        MaterialKind::ThinDielectric { eta, .. } => check_ior(part, *eta),
         MaterialKind::CoatedDiffuse { coat, .. } => check_coat(part, coat),
         MaterialKind::CoatedConductor { roughness, coat, .. } => {
             check_roughness(part, roughness)?;

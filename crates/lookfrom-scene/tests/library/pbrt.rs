@@ -207,8 +207,9 @@ fn materials_are_found_by_name_before_and_after() {
     );
     let ids: Vec<MaterialId> = scene.shapes.iter().map(|shape| shape.material).collect();
     assert_eq!(ids, [MaterialId(0), MaterialId(1), MaterialId(2)]);
-    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness, energy: Energy::SingleScattering } =
-        &scene.materials[1].kind
+    let MaterialKind::Dielectric {
+        eta: Ior::Curve(glass), roughness, energy: Energy::SingleScattering, ..
+    } = &scene.materials[1].kind
     else {
         panic!("{:?}", scene.materials[1])
     };

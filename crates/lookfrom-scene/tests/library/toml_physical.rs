@@ -8,7 +8,7 @@ use lookfrom_scene::camera::{Projection, Window};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
     BumpMapping, Color, Distribution, Energy, Illuminant, Ior, Masking, MaterialKind, Metal, Microfacets,
-    OpenPbr, Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent,
+    OpenPbr, Plastic, Roughness, Scalar, SubsurfaceMedium, Tangent, Tint,
 };
 use lookfrom_scene::medium::{Density, Extinction};
 use lookfrom_scene::scene::MediumId;
@@ -112,6 +112,8 @@ ior = "SF11"
 [materials.pane]
 type = "thin_dielectric"
 ior = 1.3
+specular_reflectance = 0.5
+specular_transmittance = [0.2, 0.4, 0.6]
 [materials.plastic]
 type = "coated_diffuse"
 roughness = 0.3
@@ -184,14 +186,15 @@ type = "dots"
         assert!((curve(eta).at(nm) - expected).abs() < 1e-6);
     }
 
-    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness, energy } = *kind(&scene, "prism")
+    let MaterialKind::Dielectric { eta: Ior::Curve(glass), roughness, energy, tint } = *kind(&scene, "prism")
     else {
         panic!("a dielectric")
     };
-    assert_eq!(energy, Energy::Conserved);
+    assert_eq!((energy, tint), (Energy::Conserved, Tint::default()));
     assert_eq!(scene.curves[glass.index()], spectrum::named("glass-SF11").expect("a glass"));
     assert_eq!(roughness.u, Scalar::Value(0.0));
-    assert_eq!(*kind(&scene, "pane"), MaterialKind::ThinDielectric { eta: Ior::Value(1.3) });
+    let tint = Tint { reflectance: Color::gray(0.5), transmittance: Color::Value([0.2, 0.4, 0.6]) };
+    assert_eq!(*kind(&scene, "pane"), MaterialKind::ThinDielectric { eta: Ior::Value(1.3), tint });
     let MaterialKind::CoatedDiffuse { coat, .. } = *kind(&scene, "plastic") else { panic!("coated") };
     assert_eq!((coat.roughness.u, coat.albedo), (Scalar::Value(0.3 * 0.3), Color::gray(0.4)));
     assert_eq!((coat.eta, coat.g), (Ior::Value(1.5), Scalar::Value(0.5)));

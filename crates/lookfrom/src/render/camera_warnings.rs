@@ -180,6 +180,7 @@ fn is_opaque(world: &World, surface: &SurfaceInteraction) -> bool {
             | MaterialKind::Hair(_)
             | MaterialKind::DiffuseTransmission { .. }
             | MaterialKind::Dielectric { .. }
+            | MaterialKind::TintedDielectric { .. }
             | MaterialKind::ThinDielectric { .. }
             | MaterialKind::Mix { .. }
             | MaterialKind::ShadowCatcher { .. }

@@ -29,6 +29,7 @@ pub mod phase;
 pub mod plastic;
 pub mod principled;
 pub mod subsurface;
+pub mod tinted;
 pub mod two_lobes;
 pub mod whitted;
 

@@ -27,11 +27,12 @@ use lookfrom_scene::scene::CurveId;
 use crate::core::points::Lift;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::conductor::Conductor;
-use crate::shading::bsdf::dielectric::Dielectric;
+use crate::shading::bsdf::dielectric::{Dielectric, ThinDielectric};
 use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
 use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::layered::{CoatLayer, Layered};
 use crate::shading::bsdf::plastic::Plastic;
+use crate::shading::bsdf::tinted::{Tint, TintedDielectric};
 use crate::shading::bsdf::{Bsdf, MicrofacetFactors, fresnel};
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
 use crate::shading::interior_stack::InteriorStack;
@@ -48,7 +49,7 @@ pub use disney::DisneyMaterial;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
-    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures, WhittedMaterial,
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::MaterialRow;
@@ -255,7 +256,7 @@ impl Material {
 
     /// Whether it is a thin sheet that light passes straight on, and is not dispersed by.
     pub fn is_pane(&self) -> bool {
-        matches!(self.kind, MaterialKind::ThinDielectric { eta: Ior::Value(_) })
+        matches!(self.kind, MaterialKind::ThinDielectric { eta: Ior::Value(_), .. })
     }
 
     /// True if its shapes are solid bodies that light enters.
@@ -363,7 +364,13 @@ impl Evaluator<'_> {
             MaterialKind::Dielectric { eta, roughness, energy } => {
                 Bsdf::Dielectric(self.dielectric(eta, roughness, energy))
             }
-            MaterialKind::ThinDielectric { eta } => Bsdf::thin_dielectric(self.ior(eta)),
+            MaterialKind::TintedDielectric { eta, roughness, energy, tint } => {
+                Bsdf::TintedDielectric(self.tinted_dielectric(eta, roughness, energy, tint))
+            }
+            MaterialKind::ThinDielectric { eta, tint } => {
+                let tint = tint.as_ref().map_or(Tint::NONE, |tint| self.tint(tint));
+                Bsdf::ThinDielectric(ThinDielectric::new(self.ior(eta)).with_tint(tint))
+            }
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
                 Bsdf::CoatedDiffuse(self.coated_diffuse(reflectance, coat))
             }
@@ -422,6 +429,20 @@ impl Evaluator<'_> {
 
     fn dielectric(&mut self, eta: &Ior, roughness: &Roughness, &energy: &Energy) -> Dielectric {
         Dielectric::new(self.ior(eta), roughness.at(self.textures, self.point)).with_energy(energy)
+    }
+
+    fn tinted_dielectric(
+        &mut self,
+        eta: &Ior,
+        roughness: &Roughness,
+        energy: &Energy,
+        tint: &TintTextures,
+    ) -> TintedDielectric {
+        TintedDielectric { boundary: self.dielectric(eta, roughness, energy), tint: self.tint(tint) }
+    }
+
+    fn tint(&self, tint: &TintTextures) -> Tint {
+        Tint { reflectance: self.albedo(&tint.reflectance), transmittance: self.albedo(&tint.transmittance) }
     }
 
     fn coated_diffuse(&mut self, reflectance: &SpectrumTexture, coat: &CoatMaterial) -> Layered<Diffuse> {

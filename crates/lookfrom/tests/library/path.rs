@@ -6,7 +6,7 @@ use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Sky};
 use lookfrom_scene::material::{
     Coat, CoatEstimate, Color, Energy, Ior, Material, MaterialKind, Metal, Microfacets, Plastic, Roughness,
-    Scalar,
+    Scalar, Tint,
 };
 use lookfrom_scene::scene::{MaterialId, Scene};
 use lookfrom_scene::settings::{ColorMode, FilterShape, Integrator, LightSampler, Sampler};
@@ -184,7 +184,12 @@ fn a_white_furnace_hides_what_keeps_all_light() {
         energy,
         specular_reflectance: white,
     };
-    let glass = |roughness, energy| MaterialKind::Dielectric { eta: Ior::Value(1.5), roughness, energy };
+    let glass = |roughness, energy| MaterialKind::Dielectric {
+        eta: Ior::Value(1.5),
+        roughness,
+        energy,
+        tint: Tint::default(),
+    };
     let plastic = MaterialKind::Plastic(Box::new(Plastic {
         reflectance: white,
         specular_reflectance: white,
@@ -204,7 +209,7 @@ fn a_white_furnace_hides_what_keeps_all_light() {
             },
         ),
         ("glass", glass(Roughness::SMOOTH, Energy::SingleScattering)),
-        ("thin glass", MaterialKind::ThinDielectric { eta: Ior::Value(1.5) }),
+        ("thin glass", MaterialKind::ThinDielectric { eta: Ior::Value(1.5), tint: Tint::default() }),
         ("interface", MaterialKind::Interface),
         ("plastic", plastic),
         ("mirror", metal(Roughness::SMOOTH, Energy::SingleScattering)),

@@ -7,7 +7,7 @@ use lookfrom::render::Renderer;
 use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
-    BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium,
+    BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium, Tint,
 };
 use lookfrom_scene::medium::Extinction;
 use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
@@ -192,6 +192,11 @@ impl<'a> Places<'a> {
         self.scalar(v);
     }
 
+    fn tint(&mut self, Tint { reflectance, transmittance }: &'a mut Tint) {
+        self.color(reflectance);
+        self.color(transmittance);
+    }
+
     fn ior(&mut self, ior: &'a mut Ior) {
         match ior {
             Ior::Value(value) => self.single.push(value),
@@ -232,11 +237,15 @@ impl<'a> Places<'a> {
                 self.color(specular_reflectance);
                 self.roughness(roughness);
             }
-            MaterialKind::Dielectric { eta, roughness, .. } => {
+            MaterialKind::Dielectric { eta, roughness, tint, .. } => {
                 self.ior(eta);
                 self.roughness(roughness);
+                self.tint(tint);
             }
-            MaterialKind::ThinDielectric { eta } => self.ior(eta),
+            MaterialKind::ThinDielectric { eta, tint } => {
+                self.ior(eta);
+                self.tint(tint);
+            }
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
                 self.color(reflectance);
                 self.coat(coat);

@@ -8,7 +8,7 @@ use super::text::{Fields, Item};
 use crate::error::Result;
 use crate::material::{
     BackFace, BumpGuard, BumpMapping, Coat, Disney, Energy, Hair, Illuminant, Ior, Material, MaterialKind,
-    Metal, Pigment, Plastic, Roughness, Scalar, Subsurface, SubsurfaceMedium, Whitted,
+    Metal, Pigment, Plastic, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tint, Whitted,
 };
 use crate::measured::Measured;
 use crate::toml::material::BACK_FACES;
@@ -37,12 +37,16 @@ impl Writer<'_> {
                 put_energy(&mut fields, *energy);
                 self.put_color(&mut fields, "specular_reflectance", *specular_reflectance, 1.0)?;
             }
-            MaterialKind::Dielectric { eta, roughness, energy } => {
+            MaterialKind::Dielectric { eta, roughness, energy, tint } => {
                 self.ior(&mut fields, *eta);
                 self.roughness(&mut fields, "roughness", roughness);
                 put_energy(&mut fields, *energy);
+                self.tint(&mut fields, tint)?;
             }
-            MaterialKind::ThinDielectric { eta } => self.ior(&mut fields, *eta),
+            MaterialKind::ThinDielectric { eta, tint } => {
+                self.ior(&mut fields, *eta);
+                self.tint(&mut fields, tint)?;
+            }
             MaterialKind::CoatedDiffuse { reflectance, coat } => {
                 self.put_color(&mut fields, "reflectance", *reflectance, REFLECTANCE)?;
                 self.coat(&mut fields, coat)?;
@@ -230,6 +234,11 @@ impl Writer<'_> {
             }
         }
         Ok(())
+    }
+
+    fn tint(&mut self, fields: &mut Fields, tint: &Tint) -> Result<()> {
+        self.put_color(fields, "specular_reflectance", tint.reflectance, 1.0)?;
+        self.put_color(fields, "specular_transmittance", tint.transmittance, 1.0)
     }
 
     fn plastic(&mut self, fields: &mut Fields, plastic: &Plastic) -> Result<()> {

@@ -11,7 +11,7 @@ use lookfrom_scene::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Pro
 use lookfrom_scene::material::{
     Anisotropy, BackFace, BumpGuard, BumpMapping, Coat, CoatEstimate, Color, Disney, Distribution, Energy,
     Hair, Illuminant, Ior, Masking, Material, MaterialKind, Metal, Microfacets, NormalTexture, OpenPbr,
-    Pigment, Plastic, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Whitted,
+    Pigment, Plastic, Principled, Roughness, Scalar, Subsurface, SubsurfaceMedium, Tangent, Tint, Whitted,
 };
 use lookfrom_scene::medium::{Density, DraineLobe, Extinction, Medium, Sides, Temperature, Variation};
 use lookfrom_scene::motion::Motion;
@@ -285,6 +285,8 @@ fn materials() -> Vec<(String, Scene)> {
     };
     let beckmann = Roughness { microfacets, ..alpha };
     let (conserved, single) = (Energy::Conserved, Energy::SingleScattering);
+    let (clear, stained) = (Tint::default(), Tint { reflectance: value, transmittance: COLOR });
+    let glass = |eta, roughness, energy, tint| MaterialKind::Dielectric { eta, roughness, energy, tint };
     let variants = vec![
         MaterialKind::Whitted(whitted),
         MaterialKind::Diffuse { reflectance: Color::Curve(CurveId(3)) },
@@ -292,9 +294,10 @@ fn materials() -> Vec<(String, Scene)> {
         conductor(gold, rough, single, Color::gray(1.0)),
         conductor(odd, alpha, conserved, value),
         conductor(Metal::Reflectance(value), alpha, single, COLOR),
-        MaterialKind::Dielectric { eta: Ior::Curve(TABLE), roughness: alpha, energy: single },
-        MaterialKind::Dielectric { eta: Ior::Curve(CurveId(3)), roughness: rough, energy: conserved },
-        MaterialKind::ThinDielectric { eta: Ior::Value(1.25) },
+        glass(Ior::Curve(TABLE), alpha, single, clear),
+        glass(Ior::Curve(CurveId(3)), rough, conserved, stained),
+        MaterialKind::ThinDielectric { eta: Ior::Value(1.25), tint: clear },
+        MaterialKind::ThinDielectric { eta: Ior::Value(1.25), tint: stained },
         MaterialKind::CoatedDiffuse { reflectance: value, coat },
         MaterialKind::CoatedConductor { metal: gold, roughness: rough, coat },
         below(SubsurfaceMedium::Coefficients { absorption: value, scattering: Color::Curve(TABLE) }),
@@ -314,7 +317,7 @@ fn materials() -> Vec<(String, Scene)> {
         MaterialKind::Plastic(Box::new(plastic)),
         MaterialKind::Plastic(Box::new(Plastic { alpha: 0.25, is_nonlinear: true, ..plastic })),
         conductor(gold, beckmann, single, Color::gray(1.0)),
-        MaterialKind::Dielectric { eta: Ior::Value(1.3), roughness: beckmann, energy: single },
+        glass(Ior::Value(1.3), beckmann, single, clear),
         MaterialKind::Unlit { color: value },
         MaterialKind::ShadowCatcher { normal: unit() },
         MaterialKind::Interface,

@@ -2,7 +2,7 @@
 
 use lookfrom_scene::material::{
     BackFace, BumpGuard, BumpMapping, Color, Distribution, Illuminant, Ior, Masking, MaterialKind, Metal,
-    Microfacets, Plastic, Scalar,
+    Microfacets, Plastic, Scalar, Tint,
 };
 
 use super::{material, scene, told};
@@ -28,11 +28,11 @@ fn maps_lie_over_all_of_a_blend() {
 #[test]
 fn bsdfs_become_materials() {
     let (glass, _, warnings) = material(
-        "<bsdf type=\"dielectric\"><rgb name=\"specular_reflectance\" value=\"1\"/><float name=\"specular_transmittance\" value=\"0.5\"/></bsdf>",
+        "<bsdf type=\"dielectric\"><rgb name=\"specular_reflectance\" value=\"1\"/><rgb name=\"specular_transmittance\" value=\"0.5\"/></bsdf>",
     );
-    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
-    assert!(warning.contains("specular_transmittance"), "{warning}");
-    let MaterialKind::Dielectric { eta: Ior::Value(eta), .. } = glass else { panic!("{glass:?}") };
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let MaterialKind::Dielectric { eta: Ior::Value(eta), tint, .. } = glass else { panic!("{glass:?}") };
+    assert_eq!(tint, Tint { transmittance: Color::gray(0.5), ..Tint::default() });
     assert!((eta - 1.5046 / 1.000_277).abs() < 1e-6);
     let (metal, _, warnings) = material(
         "<bsdf type=\"roughconductor\"><string name=\"material\" value=\"Al\"/><float name=\"alpha_u\" value=\"0.25\"/></bsdf>",

@@ -35,7 +35,7 @@ impl ShadowLight {
         };
         match world.shading(surface, context) {
             Some(shading) if let Bsdf::ThinDielectric(pane) = shading.bsdf => {
-                mode.one() * (1.0 - pane.reflectance(shading.cos(surface.wo)))
+                mode.one() * pane.transmittance(shading.cos(surface.wo))
             }
             _ => Spectrum::BLACK,
         }

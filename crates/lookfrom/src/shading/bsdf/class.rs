@@ -15,6 +15,7 @@ use super::open_pbr::OpenPbrSurface;
 use super::plastic::Plastic;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
+use super::tinted::TintedDielectric;
 use super::whitted::WhittedCoefficients;
 use super::{BsdfSample, MicrofacetFactors, Mode};
 use crate::core::spectrum::Spectrum;
@@ -129,6 +130,8 @@ macro_rules! bsdf_classes {
                 DiffuseTransmission(DiffuseTransmission),
                 /// Disney's principled surface.
                 Disney(Disney),
+                /// The boundary of a dielectric with colours of its own.
+                TintedDielectric(TintedDielectric),
             }
             one_by_one {
                 /// A thin dielectric sheet.

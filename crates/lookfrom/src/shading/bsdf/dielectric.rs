@@ -12,6 +12,7 @@ use lookfrom_simd::{Float, Mask, Real};
 
 use super::lanes::LaneBsdf;
 use super::microfacet::Microfacets;
+use super::tinted::Tint;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
     fresnel, is_grazing,
@@ -365,12 +366,26 @@ pub(super) fn radiance_scale<R: Real>(f: R, eta: R, mode: Mode) -> R {
 pub struct ThinDielectric {
     /// Index of the sheet over the surrounding one.
     pub(crate) eta: f32,
+    /// Its colours.
+    pub(crate) tint: Tint,
 }
 
 impl ThinDielectric {
     /// By the index of refraction of the sheet over the surrounding one (0 counts as 1).
     pub fn new(eta: f32) -> Self {
-        Self { eta: fresnel::valid_eta(eta) }
+        Self { eta: fresnel::valid_eta(eta), tint: Tint::NONE }
+    }
+
+    /// This sheet with colours.
+    #[must_use]
+    pub fn with_tint(self, tint: Tint) -> Self {
+        Self { tint, ..self }
+    }
+
+    /// The light that passes it, by the cosine to the normal.
+    #[inline]
+    pub(crate) fn transmittance(&self, cos: f32) -> Spectrum {
+        self.tint.transmittance * (1.0 - self.reflectance(cos))
     }
 
     /// Reflectance of both interfaces with all reflections between them: R + T R T + T R³ T + … = R + T² R / (1 − R²), as in
@@ -399,11 +414,12 @@ impl ScatteringFunction for ThinDielectric {
         }
         let reflection = r / (r + t);
         let (wi, part, probability, side) = if uc < reflection {
-            (Vec3::new(-wo.x, -wo.y, wo.z), fresnel, reflection, Lobes::REFLECTION)
+            let part = self.tint.reflectance * fresnel;
+            (Vec3::new(-wo.x, -wo.y, wo.z), part, reflection, Lobes::REFLECTION)
         } else {
-            (-wo, 1.0 - fresnel, 1.0 - reflection, Lobes::TRANSMISSION)
+            (-wo, self.tint.transmittance * (1.0 - fresnel), 1.0 - reflection, Lobes::TRANSMISSION)
         };
-        let f = Spectrum([part / wi.z.abs(); 4]);
+        let f = part / wi.z.abs();
         Some(BsdfSample::new(wi, f, probability, side | Lobes::SPECULAR))
     }
 
@@ -419,7 +435,11 @@ impl ScatteringFunction for ThinDielectric {
         Description {
             kind: "thin dielectric",
             does: "a thin pane: reflects light, or transmits it straight on",
-            numbers: vec![("eta", self.eta.into())],
+            numbers: vec![
+                ("eta", self.eta.into()),
+                ("specular reflectance", self.tint.reflectance.into()),
+                ("specular transmittance", self.tint.transmittance.into()),
+            ],
         }
     }
 }

@@ -102,8 +102,11 @@ impl ThinDielectric {
             [wo, wi, Vec3::Z],
         );
         let fresnel = self.reflectance(wo.z);
-        let part = if same_side(wo, wi) { fresnel } else { 1.0 - fresnel };
-        Some(MicrofacetFactors { fresnel: Spectrum([fresnel; 4]), part: Spectrum([part; 4]), ..smooth })
+        let part = match same_side::<f32>(wo, wi) {
+            true => self.tint.reflectance * fresnel,
+            false => self.transmittance(wo.z),
+        };
+        Some(MicrofacetFactors { fresnel: Spectrum([fresnel; 4]), part, ..smooth })
     }
 }
 

@@ -70,6 +70,14 @@ fn separable(x: f32, y: f32) -> Microfacets {
     of_kind(x, y, Distribution::TrowbridgeReitz, Masking::Separable)
 }
 
+fn stained(eta: f32, facets: Microfacets) -> Bsdf {
+    let tint = tinted::Tint {
+        reflectance: Spectrum([0.9, 0.6, 0.3, 0.5]),
+        transmittance: Spectrum([0.2, 0.5, 0.8, 0.4]),
+    };
+    Bsdf::TintedDielectric(tinted::TintedDielectric { boundary: Dielectric::new(eta, facets), tint })
+}
+
 fn plastic(reflectance: f32, is_nonlinear: bool, facets: Microfacets) -> Bsdf {
     let interface = plastic::Interface::kept(1.5, facets);
     Bsdf::Plastic(plastic::Plastic::new(grey(reflectance), grey(0.8), is_nonlinear, interface))
@@ -169,6 +177,7 @@ fn with_density() -> Vec<(&'static str, Bsdf)> {
             ),
         ),
         ("glass 0.5", Bsdf::dielectric(1.5, rough(0.5, 0.5))),
+        ("stained glass 0.4", stained(1.5, rough(0.4, 0.4).into())),
         ("glass 0.15", Bsdf::dielectric(1.5, rough(0.15, 0.15))),
         ("glass 0.3 × 0.6", Bsdf::dielectric(1.5, rough(0.3, 0.6))),
         ("bubble 0.4", Bsdf::dielectric(1.0 / 1.33, rough(0.4, 0.4))),
@@ -851,6 +860,7 @@ fn numbers_of_any_size_never_become_nan() {
             Bsdf::dielectric(size(75), of_any_kind(trial, roughness)),
             Bsdf::dielectric(1.0 + any_size(76, trial, 24).min(1.0), roughness),
             Bsdf::thin_dielectric(size(75)),
+            stained(size(75), of_any_kind(trial, roughness)),
             Bsdf::coated_diffuse(lanes(71), &coat),
             Bsdf::coated_conductor(lanes(73), lanes(74), roughness, &coat),
             Bsdf::Whitted(whitted),

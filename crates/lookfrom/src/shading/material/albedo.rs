@@ -76,6 +76,7 @@ pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32;
         }
         MaterialKind::Unlit { albedo, .. } => albedo.varies(),
         MaterialKind::Dielectric { .. }
+        | MaterialKind::TintedDielectric { .. }
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::ShadowCatcher { .. }
         | MaterialKind::Interface => false,
@@ -146,6 +147,7 @@ fn of_kind(
         }
         MaterialKind::Unlit { albedo, .. } => color(albedo),
         MaterialKind::Dielectric { .. }
+        | MaterialKind::TintedDielectric { .. }
         | MaterialKind::ThinDielectric { .. }
         | MaterialKind::ShadowCatcher { .. }
         | MaterialKind::Interface => Spectrum::ONE,

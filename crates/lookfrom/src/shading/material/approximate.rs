@@ -28,8 +28,8 @@ pub(super) fn in_whitteds_model(
         MaterialKind::Conductor { metal, roughness, specular_reflectance, .. } => {
             metallic(metal, *specular_reflectance, roughness, textures)
         }
-        MaterialKind::Dielectric { eta, .. } => {
-            Whitted { transmission: Color::gray(1.0), fresnel: true, ior: ior(eta, textures), ..plain }
+        MaterialKind::Dielectric { eta, tint, .. } => {
+            Whitted { transmission: tint.transmittance, fresnel: true, ior: ior(eta, textures), ..plain }
         }
         MaterialKind::ThinDielectric { .. } => {
             Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }

@@ -8,7 +8,7 @@ use lookfrom_scene::scene::{TextureId, VertexNormals};
 
 use super::kind::{
     Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
-    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, WhittedMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures, WhittedMaterial,
 };
 use super::{Material, albedo, approximate, measured, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
@@ -99,10 +99,16 @@ impl<'a> Compiler<'a> {
                     specular_reflectance: self.albedo(specular_reflectance),
                 }
             }
-            &Written::Dielectric { eta, ref roughness, energy } => {
-                MaterialKind::Dielectric { eta: index(eta), roughness: rough(roughness), energy }
+            &Written::Dielectric { eta, ref roughness, energy, ref tint } => {
+                let (eta, roughness) = (index(eta), rough(roughness));
+                match self.tint(tint) {
+                    Some(tint) => MaterialKind::TintedDielectric { eta, roughness, energy, tint },
+                    None => MaterialKind::Dielectric { eta, roughness, energy },
+                }
             }
-            Written::ThinDielectric { eta } => MaterialKind::ThinDielectric { eta: index(*eta) },
+            Written::ThinDielectric { eta, tint } => {
+                MaterialKind::ThinDielectric { eta: index(*eta), tint: self.tint(tint) }
+            }
             Written::CoatedDiffuse { reflectance, coat } => MaterialKind::CoatedDiffuse {
                 reflectance: self.albedo(*reflectance),
                 coat: Box::new(self.coat(coat)),
@@ -143,6 +149,15 @@ impl<'a> Compiler<'a> {
             ior: whitted.ior,
             fresnel: whitted.fresnel,
         }
+    }
+
+    fn tint(&self, tint: &written::Tint) -> Option<Box<TintTextures>> {
+        (*tint != written::Tint::default()).then(|| {
+            Box::new(TintTextures {
+                reflectance: self.albedo(tint.reflectance),
+                transmittance: self.albedo(tint.transmittance),
+            })
+        })
     }
 
     fn metal(&self, metal: &written::Metal) -> Metal {

@@ -58,10 +58,23 @@ pub enum MaterialKind {
         /// Multiple scattering between its microfacets: kept or lost.
         energy: Energy,
     },
+    /// A dielectric with colours of its own.
+    TintedDielectric {
+        /// As of [`Self::Dielectric`].
+        eta: Ior,
+        /// As of [`Self::Dielectric`].
+        roughness: Roughness,
+        /// As of [`Self::Dielectric`].
+        energy: Energy,
+        /// Its colours.
+        tint: Box<TintTextures>,
+    },
     /// A dielectric sheet so thin that light passes undeviated.
     ThinDielectric {
         /// Index of refraction of the sheet over that of its surroundings.
         eta: Ior,
+        /// Its colours, if it has any.
+        tint: Option<Box<TintTextures>>,
     },
     /// A diffuse base under a dielectric coat.
     CoatedDiffuse {
@@ -212,6 +225,15 @@ pub struct CoatMaterial {
     pub estimate: CoatEstimate,
     /// Knowledge of its inside, where the coat is the same everywhere and has no particles, and is not pbrt's.
     pub interior: Option<CoatInterior>,
+}
+
+/// Colours of a dielectric, see [`lookfrom_scene::material::Tint`].
+#[derive(Clone, Debug)]
+pub struct TintTextures {
+    /// Of reflected light.
+    pub reflectance: SpectrumTexture,
+    /// Of transmitted light.
+    pub transmittance: SpectrumTexture,
 }
 
 /// A diffuse base under a dielectric surface, see [`lookfrom_scene::material::Plastic`].

@@ -1,7 +1,7 @@
 //! The pictures that a material's scattering function depends on, to be looked up before it is evaluated, and whether it
 //! varies over the surface at all.
 
-use super::{BumpMapping, CoatMaterial, MaterialKind, Metal, Roughness};
+use super::{BumpMapping, CoatMaterial, MaterialKind, Metal, Roughness, TintTextures};
 use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, Textures};
 
 /// The pictures of a material, and whether it may vary over the surface.
@@ -19,6 +19,11 @@ pub(super) fn of(kind: &MaterialKind, bump_mapping: &BumpMapping, textures: &Tex
             walk.color(specular_reflectance);
         }
         MaterialKind::Dielectric { roughness, .. } => walk.roughness(roughness),
+        MaterialKind::TintedDielectric { roughness, tint, .. } => {
+            walk.roughness(roughness);
+            walk.tint(tint);
+        }
+        MaterialKind::ThinDielectric { tint: Some(tint), .. } => walk.tint(tint),
         MaterialKind::CoatedDiffuse { reflectance, coat } => {
             walk.color(reflectance);
             walk.coat(coat);
@@ -81,6 +86,11 @@ impl Walk<'_> {
     fn number(&mut self, number: FloatTexture) {
         self.varies |= number.varies();
         self.textures.add_pictures_of_float(number, &mut self.pictures);
+    }
+
+    fn tint(&mut self, tint: &TintTextures) {
+        self.color(&tint.reflectance);
+        self.color(&tint.transmittance);
     }
 
     fn metal(&mut self, metal: &Metal) {

@@ -13,6 +13,7 @@ use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::tinted::TintedDielectric;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{TexturePoint, Textures};
@@ -29,6 +30,7 @@ impl Material {
             MaterialKind::DiffuseTransmission { .. } => Some(BsdfClass::DiffuseTransmission),
             MaterialKind::Conductor { .. } => Some(BsdfClass::Conductor),
             MaterialKind::Dielectric { .. } => Some(BsdfClass::Dielectric),
+            MaterialKind::TintedDielectric { .. } => Some(BsdfClass::TintedDielectric),
             MaterialKind::CoatedDiffuse { .. } => Some(BsdfClass::CoatedDiffuse),
             MaterialKind::CoatedConductor { .. } => Some(BsdfClass::CoatedConductor),
             MaterialKind::Principled(look) => {
@@ -208,6 +210,7 @@ material_row!(
 );
 material_row!(Conductor, Conductor { metal, roughness, energy, specular_reflectance } => conductor);
 material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
+material_row!(TintedDielectric, TintedDielectric { eta, roughness, energy, tint } => tinted_dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
 material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);
 material_row!(Plastic, Plastic => plastic);

@@ -19,6 +19,7 @@ use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::tinted::TintedDielectric;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::bsdf::{Bsdf, BsdfClass, bsdf_classes};
 use crate::shading::material::{MaterialRow, ShadingContext};

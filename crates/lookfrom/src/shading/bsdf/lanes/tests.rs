@@ -16,6 +16,7 @@ use crate::shading::bsdf::principled::film::ThinFilm;
 use crate::shading::bsdf::principled::open_pbr::OpenPbr;
 use crate::shading::bsdf::principled::{Gltf, Principled};
 use crate::shading::bsdf::tests::{measured, merl, of_any_kind};
+use crate::shading::bsdf::tinted::{Tint, TintedDielectric};
 use crate::shading::bsdf::{Bsdf, BsdfSample};
 use lookfrom_scene::material::{CoatEstimate, Energy};
 
@@ -279,6 +280,17 @@ fn dielectrics_in_lanes() {
     compare::<Dielectric>(|index| {
         let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
         Bsdf::dielectric(eta, microfacets(71, index)).with_energy(energy(index))
+    });
+}
+
+#[test]
+fn stained_glass_in_lanes() {
+    compare::<TintedDielectric>(|index| {
+        let eta = if index.is_multiple_of(7) { 1.0 } else { any(70, index, 3) };
+        Bsdf::TintedDielectric(TintedDielectric {
+            boundary: Dielectric::new(eta, microfacets(71, index)).with_energy(energy(index)),
+            tint: Tint { reflectance: spectrum(196, index), transmittance: spectrum(226, index) },
+        })
     });
 }
 
