@@ -22,6 +22,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from against_cycles import read_exr
 from gltf_files import FEATURES, KINDS, File
 
 WIDTH, HEIGHT, BLOCK, PICTURES, DEPTH, TIME = 48, 36, 6, 4, 6, 0.4375
@@ -30,17 +31,6 @@ WIDTH, HEIGHT, BLOCK, PICTURES, DEPTH, TIME = 48, 36, 6, 4, 6, 0.4375
 def blocks(pictures):
     size = (len(pictures), HEIGHT // BLOCK, BLOCK, WIDTH // BLOCK, BLOCK, 3)
     return np.array(pictures).reshape(size).mean(axis=(2, 4))
-
-
-def read_exr(path):
-    import OpenEXR
-
-    with OpenEXR.File(str(path)) as file:
-        channels = file.channels()
-        for name in ("RGB", "RGBA", "Combined", "ViewLayer.Combined"):
-            if name in channels:
-                return np.asarray(channels[name].pixels, np.float64)[..., :3]
-        return np.stack([channels[c].pixels for c in "RGB"], axis=-1).astype(np.float64)
 
 
 def worker():

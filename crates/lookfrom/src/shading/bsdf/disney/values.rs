@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::{Disney, SeenDisney};
+use super::{Choice, Disney, SeenDisney};
 use crate::core::elementary;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
@@ -21,6 +21,28 @@ pub(super) struct Scattered<R: Real> {
     pub(super) diffuse: Spectrum<R>,
     /// As [`Bsdf::pdf`](crate::shading::bsdf::Bsdf::pdf).
     pub(super) pdf: R,
+}
+
+/// The facet that reflects light between two directions or lets it pass.
+#[derive(Clone, Copy)]
+struct Facet<R: Real> {
+    /// Where light comes from, turned as [`SeenDisney`]'s outgoing direction.
+    wi: Vector<R>,
+    /// Its normal, z ≥ 0; through a sheet light passes mirrored at the surface.
+    wm: Vector<R>,
+    /// The cosines of both directions to it.
+    cos_o: R,
+    cos_i: R,
+    /// The index of refraction on the side of `wi` over that on the other, where light is refracted; else 1.
+    eta: R,
+    /// Light is reflected …
+    reflects: R::Mask,
+    /// … or refracted into a body …
+    refracts: R::Mask,
+    /// … or passes a sheet.
+    passes_sheet: R::Mask,
+    /// Whether there is one.
+    exists: R::Mask,
 }
 
 /// `D` of Burley's distribution GTR1 with the roughness α for the cosine of a facet's normal.
@@ -92,6 +114,75 @@ impl<R: Real> Disney<R> {
         base + color * (self.sheen * sheen * schlick(Float::abs(cos)))
     }
 
+    /// The facet between the outgoing direction and `wi`.
+    #[inline(always)]
+    fn facet(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> Facet<R> {
+        let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
+        let (wo, wi) = (seen.wo, wi.negate_where(seen.is_turned));
+        let reflects = (wo.z * wi.z).gt(zero);
+        let refracts = !reflects & !self.is_thin;
+        let passes_sheet = !reflects & self.is_thin;
+        let eta = R::select(refracts, fresnel::relative_eta(wo.z, self.eta), one);
+        let mirrored = Vector::select(passes_sheet, across(wi), wi);
+        let (wm, is_defined) = (mirrored * eta + wo).try_normalize();
+        let wm = wm.negate_where(wm.z.lt(zero));
+        let (cos_o, cos_i) = (wo.dot(wm), wi.dot(wm));
+        let is_refracting = (cos_o * wo.z).gt(zero) & (cos_i * wi.z).gt(zero);
+        Facet {
+            wi,
+            wm,
+            cos_o,
+            cos_i,
+            eta,
+            reflects,
+            refracts,
+            passes_sheet,
+            exists: is_defined & (reflects | refracts.choose(is_refracting, cos_i.lt(zero))),
+        }
+    }
+
+    /// `f` by the microfacets that reflect light or let it pass, and their part of the density.
+    #[inline(always)]
+    fn microfacets(
+        &self,
+        seen: &SeenDisney<R>,
+        facet: &Facet<R>,
+        choice: &Choice<R>,
+        dielectric: R,
+        mode: Mode,
+    ) -> (Spectrum<R>, R) {
+        let &Facet { wi, wm, cos_o, cos_i, eta, reflects, refracts, passes_sheet, .. } = facet;
+        let (wo, one) = (seen.wo, eta.like(1.0));
+        let (mut facets, mut per_facet) = (seen.facets, one.like(0.25));
+        let mut color = self.specular(seen, cos_o, dielectric);
+        if !reflects.all() {
+            let sheet = self.facets_of_thin_transmission();
+            facets.alpha_x = R::select(passes_sheet, sheet.alpha_x, facets.alpha_x);
+            facets.alpha_y = R::select(passes_sheet, sheet.alpha_y, facets.alpha_y);
+            let sum = cos_o + eta * cos_i;
+            let jacobian = Float::abs(cos_o * cos_i) * eta * eta / (sum * sum);
+            per_facet = R::select(refracts, jacobian, per_facet);
+            let scale = if mode == Mode::Radiance { one / (eta * eta) } else { one };
+            let base = Spectrum::select(self.is_thin, self.base, self.base.map(Float::sqrt));
+            let passed = base * (seen.glass * (one - dielectric) * scale);
+            color = Spectrum::select(reflects, color, passed);
+        }
+        let density = facets.d(wm) * facets.g1(wo) * per_facet / Float::abs(wo.z);
+        let f = color * (density * facets.g1(wi) / Float::abs(wi.z));
+        (f, R::select(reflects, choice.reflection, choice.transmission) * density)
+    }
+
+    /// `f` by the clear coat, and its part of the density.
+    #[inline(always)]
+    fn coat(&self, seen: &SeenDisney<R>, facet: &Facet<R>, choice: &Choice<R>) -> [R; 2] {
+        let quarter = facet.cos_o.like(0.25);
+        let coat = TrowbridgeReitz { alpha_x: quarter, alpha_y: quarter };
+        let fresnel = self.schlick_weight(facet.cos_o) * 0.96 + 0.04;
+        let d = gtr1(self.clearcoat_alpha, facet.wm.z);
+        let f = self.clearcoat * 0.25 * fresnel * d * coat.g1(seen.wo) * coat.g1(facet.wi);
+        [f, choice.clearcoat * d * facet.wm.z * 0.25 / Float::abs(facet.cos_o)]
+    }
+
     /// What is scattered from `wi`, with the density for the sides of `lobes`. Not inlined, since it is needed several times.
     #[inline(never)]
     pub(super) fn scattered(
@@ -103,86 +194,46 @@ impl<R: Real> Disney<R> {
     ) -> Scattered<R> {
         wi.z.at_level(
             #[inline(always)]
-            || self.scattered_inline(seen, wi, mode, lobes),
+            || {
+                let zero = wi.z.like(0.0);
+                let black = Spectrum::splat(zero);
+                let facet = self.facet(seen, wi);
+                let Facet { wi, reflects, passes_sheet, .. } = facet;
+                let passes = self.is_thin | seen.glass.gt(zero);
+                let is_lit = !is_grazing(seen.wo) & !is_grazing(wi) & (reflects | passes);
+                if !is_lit.any() {
+                    return Scattered { f: black, diffuse: black, pdf: zero };
+                }
+                let dielectric = fresnel::dielectric(facet.cos_o, self.eta);
+                let choice = self.choice(seen, dielectric, lobes);
+
+                // What has a facet.
+                let (mut f, mut pdf) = self.microfacets(seen, &facet, &choice, dielectric, mode);
+                let is_front = reflects & !seen.is_inside;
+                let has_coat = is_front & self.clearcoat.gt(zero);
+                if has_coat.any() {
+                    let [value, density] = self.coat(seen, &facet, &choice);
+                    f += Spectrum::splat(R::select(has_coat, value, zero));
+                    pdf = pdf + R::select(has_coat, density, zero);
+                }
+                let reflected = self.diffuse(seen, wi, facet.cos_i);
+                let reflected = Spectrum::select(is_front & facet.exists, reflected, black);
+
+                // Diffuse light that passes has none.
+                let passed = self.base * (seen.matte * FRAC_1_PI * self.diff_trans);
+                let diffuse = Spectrum::select(passes_sheet, passed, reflected);
+                let probability = R::select(passes_sheet, choice.diffuse_transmission, choice.diffuse);
+                let is_diffuse = passes_sheet | reflects & facet.exists;
+                let density = R::select(is_diffuse, probability * Float::abs(wi.z) * FRAC_1_PI, zero);
+
+                let f = Spectrum::select(facet.exists, f, black) + diffuse;
+                let pdf = R::select(facet.exists, pdf, zero) + density;
+                Scattered {
+                    f: Spectrum::select(is_lit, f, black),
+                    diffuse: Spectrum::select(is_lit, diffuse, black),
+                    pdf: R::select(is_lit & choice.exists, pdf, zero),
+                }
+            },
         )
-    }
-
-    #[inline(always)]
-    fn scattered_inline(
-        &self,
-        seen: &SeenDisney<R>,
-        wi: Vector<R>,
-        mode: Mode,
-        lobes: Lobes,
-    ) -> Scattered<R> {
-        let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
-        let black = Spectrum::splat(zero);
-        let (wo, wi) = (seen.wo, wi.negate_where(seen.is_turned));
-        let reflects = (wo.z * wi.z).gt(zero);
-        let refracts = !reflects & !self.is_thin;
-        let passes_sheet = !reflects & self.is_thin;
-        let is_lit = !is_grazing(wo) & !is_grazing(wi) & (reflects | self.is_thin | seen.glass.gt(zero));
-        if !is_lit.any() {
-            return Scattered { f: black, diffuse: black, pdf: zero };
-        }
-
-        // The facet, which what passes a sheet is mirrored by.
-        let eta = R::select(refracts, fresnel::relative_eta(wo.z, self.eta), one);
-        let mirrored = Vector::select(passes_sheet, across(wi), wi);
-        let (wm, is_defined) = (mirrored * eta + wo).try_normalize();
-        let wm = wm.negate_where(wm.z.lt(zero));
-        let (cos_o, cos_i) = (wo.dot(wm), wi.dot(wm));
-        let is_refracting = (cos_o * wo.z).gt(zero) & (cos_i * wi.z).gt(zero);
-        let has_facet = is_defined & (reflects | refracts.choose(is_refracting, cos_i.lt(zero)));
-
-        // Microfacets that reflect light or let it pass.
-        let dielectric = fresnel::dielectric(cos_o, self.eta);
-        let choice = self.choice(seen, dielectric, lobes);
-        let (mut facets, mut per_facet) = (seen.facets, one.like(0.25));
-        let mut f = self.specular(seen, cos_o, dielectric);
-        if !reflects.all() {
-            let sheet = self.facets_of_thin_transmission();
-            facets.alpha_x = R::select(passes_sheet, sheet.alpha_x, facets.alpha_x);
-            facets.alpha_y = R::select(passes_sheet, sheet.alpha_y, facets.alpha_y);
-            let sum = cos_o + eta * cos_i;
-            let jacobian = Float::abs(cos_o * cos_i) * eta * eta / (sum * sum);
-            per_facet = R::select(refracts, jacobian, per_facet);
-            let scale = if mode == Mode::Radiance { one / (eta * eta) } else { one };
-            let color = Spectrum::select(self.is_thin, self.base, self.base.map(Float::sqrt));
-            let passed = color * (seen.glass * (one - dielectric) * scale);
-            f = Spectrum::select(reflects, f, passed);
-        }
-        let area = facets.d(wm) * facets.g1(wo) * per_facet / Float::abs(wo.z);
-        f = f * (area * facets.g1(wi) / Float::abs(wi.z));
-        let mut pdf = R::select(reflects, choice.reflection, choice.transmission) * area;
-
-        // The clear coat.
-        let is_front = reflects & !seen.is_inside;
-        let has_coat = is_front & self.clearcoat.gt(zero);
-        if has_coat.any() {
-            let coat = TrowbridgeReitz { alpha_x: one.like(0.25), alpha_y: one.like(0.25) };
-            let fresnel = self.schlick_weight(cos_o) * 0.96 + 0.04;
-            let d = gtr1(self.clearcoat_alpha, wm.z);
-            let value = self.clearcoat * 0.25 * fresnel * d * coat.g1(wo) * coat.g1(wi);
-            f += Spectrum::splat(R::select(has_coat, value, zero));
-            let density = choice.clearcoat * d * wm.z * 0.25 / Float::abs(cos_o);
-            pdf = pdf + R::select(has_coat, density, zero);
-        }
-
-        // The diffuse base.
-        let reflected = Spectrum::select(is_front & has_facet, self.diffuse(seen, wi, cos_i), black);
-        let passed = self.base * (seen.matte * FRAC_1_PI * self.diff_trans);
-        let diffuse = Spectrum::select(passes_sheet, passed, reflected);
-        let probability = R::select(passes_sheet, choice.diffuse_transmission, choice.diffuse);
-        let is_diffuse = passes_sheet | reflects & has_facet;
-        let density = R::select(is_diffuse, probability * Float::abs(wi.z) * FRAC_1_PI, zero);
-
-        let f = Spectrum::select(has_facet, f, black) + diffuse;
-        let pdf = R::select(has_facet, pdf, zero) + density;
-        Scattered {
-            f: Spectrum::select(is_lit, f, black),
-            diffuse: Spectrum::select(is_lit, diffuse, black),
-            pdf: R::select(is_lit & choice.exists, pdf, zero),
-        }
     }
 }
