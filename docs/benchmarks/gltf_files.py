@@ -33,8 +33,6 @@ def ball():
         for k in range(columns):
             a, b = i * (columns + 1) + k, (i + 1) * (columns + 1) + k
             faces += ([(a, b, b + 1)] if i < rows - 1 else []) + ([(a, b + 1, a + 1)] if i > 0 else [])
-            if i == rows - 1:
-                faces += [(a, b, a + 1)]
     return points.reshape(-1, 3), points.reshape(-1, 3), uv.reshape(-1, 2), np.array(faces)
 
 
