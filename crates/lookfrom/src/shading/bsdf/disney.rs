@@ -184,9 +184,9 @@ impl<R: Real> Disney<R> {
         let choice = self.choice(seen, fresnel::dielectric(cos, self.eta), lobes);
 
         // Choose a lobe.
-        let passes = choice.diffuse + choice.diffuse_transmission;
-        let coated = passes + choice.clearcoat;
-        let is_diffuse = uc.lt(passes);
+        let diffuse = choice.diffuse + choice.diffuse_transmission;
+        let coated = diffuse + choice.clearcoat;
+        let is_diffuse = uc.lt(diffuse);
         let is_passing = is_diffuse & !uc.lt(choice.diffuse);
         let is_coat = !is_diffuse & uc.lt(coated);
         let is_refracted = !is_diffuse & !is_coat & uc.lt(coated + choice.transmission);
