@@ -153,7 +153,7 @@ class File:
             stride = size + (-size % 4) + self.random.choice([0, 4, 8])
             padded = np.full((len(values), stride), 0xA5, np.uint8)
             padded[:, :size] = values.view(np.uint8).reshape(len(values), size)
-            accessor["bufferView"] = self.view(padded.tobytes(), **({"byteStride": stride} if width > 1 or form != "u2" else {}))
+            accessor["bufferView"] = self.view(padded.tobytes(), byteStride=stride)
         else:
             accessor["bufferView"] = self.view(values.tobytes())
         return self.add("accessors", accessor)

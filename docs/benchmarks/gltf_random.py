@@ -21,16 +21,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 from against_cycles import read_exr
+from blocks import HEIGHT, WIDTH, block_means, compare
 from gltf_files import FEATURES, KINDS, File
 
-WIDTH, HEIGHT, BLOCK, PICTURES, DEPTH, TIME = 48, 36, 6, 4, 6, 0.4375
-
-
-def blocks(pictures):
-    size = (len(pictures), HEIGHT // BLOCK, BLOCK, WIDTH // BLOCK, BLOCK, 3)
-    return np.array(pictures).reshape(size).mean(axis=(2, 4))
+PICTURES, DEPTH, TIME = 4, 6, 0.4375
 
 
 def worker():
@@ -57,11 +52,8 @@ def worker():
         scene.render.engine = "CYCLES"
         scene.render.image_settings.file_format = "OPEN_EXR"
         scene.render.image_settings.color_depth = "32"
-        scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = (
-            WIDTH,
-            HEIGHT,
-            100,
-        )
+        scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+        scene.render.resolution_percentage = 100
         cycles = scene.cycles
         cycles.device, cycles.use_adaptive_sampling, cycles.use_denoising = "CPU", False, False
         cycles.pixel_filter_type, cycles.filter_width, cycles.samples = "BOX", 1.0, int(samples)
@@ -100,21 +92,10 @@ def by_lookfrom(lookfrom, path, samples, animated):
     night.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + bytes(8))
     for seed in range(PICTURES):
         out = path.with_suffix(".exr")
-        command = [
-            lookfrom,
-            "render",
-            path,
-            "--size",
-            f"{WIDTH}x{HEIGHT}",
-            "--samples",
-            samples,
-            "--seed",
-            seed,
-            "--denoise",
-            "off",
-        ]
+        command = [lookfrom, "render", path, "--size", f"{WIDTH}x{HEIGHT}"]
+        command += ["--samples", samples, "--seed", seed, "--denoise", "off"]
         command += ["--animation", 0, "--at", TIME] if animated else []
-        command += ["--depth", DEPTH, "--filter", "box:0.5", "--environment", night, "-o", out, "--quiet"]
+        command += ["--depth", DEPTH, "--filter", "box:0.5", "--environment", night, "-o", out]
         ran = subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False)
         if ran.returncode:
             sys.exit(f"{path}: {ran.stderr}")
@@ -141,25 +122,13 @@ def main():
         file = File(seed, args.without)
         file.scene(args.kind)
         file.write(path)
-        theirs, (ours, warnings) = (
-            cycles.render(path, args.samples),
-            by_lookfrom(args.lookfrom, path, args.samples, bool(file.json["animations"])),
-        )
-        np.savez(path.with_suffix(".npz"), theirs=theirs, ours=ours)
-        theirs, ours = blocks(theirs), blocks(ours)
-        want, got = theirs.mean(axis=0), ours.mean(axis=0)
-        error = np.sqrt((theirs.var(axis=0, ddof=1) + ours.var(axis=0, ddof=1)) / PICTURES)
-        apart, scale = np.abs(got - want), 0.02 * want.mean()
-        differ = (apart > 6 * (error + 1e-4 * want.mean())) & (apart > 0.03 * (want + scale))
-        is_told = differ.sum() > 3
+        theirs = cycles.render(path, args.samples)
+        ours, warnings = by_lookfrom(args.lookfrom, path, args.samples, bool(file.json["animations"]))
+        found = compare(block_means(theirs), block_means(ours), 0.03)
+        is_told = found.differ > 3
         told += is_told
-        change = got.mean() / want.mean() - 1
-        print(
-            f"{seed}: {change:+.2%}, {differ.sum()} of {differ.size} means differ",
-            *warnings,
-            "<<<" if is_told else "",
-            flush=True,
-        )
+        said = f"{seed}: {found.change:+.2%}, {found.differ} of {found.count} means differ"
+        print(said, *warnings, "<<<" if is_told else "", flush=True)
     print(f"{told} of {args.seeds[1] - args.seeds[0]} files differ")
 
 

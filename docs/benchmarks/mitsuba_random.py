@@ -22,8 +22,9 @@ from pathlib import Path
 
 import mitsuba
 import numpy as np
+from blocks import HEIGHT, WIDTH, block_means, compare
 
-WIDTH, HEIGHT, BLOCK, PICTURES = 48, 36, 6, 8
+PICTURES = 8
 OPEN = ["diffuse", "conductor", "roughconductor", "plastic", "roughplastic", "principled", "thindielectric", "principledthin"]
 CLOSED = [kind for kind in OPEN if "thin" not in kind] + ["dielectric", "roughdielectric", "glass"]
 OUTER = ["mask", "bumpmap", "normalmap", "blendbsdf", "twosided"]
@@ -295,11 +296,6 @@ def write_inputs(folder):
     mesh.write_ply(str(folder / "ball.ply"))
 
 
-def blocks(pictures):
-    size = (len(pictures), HEIGHT // BLOCK, BLOCK, WIDTH // BLOCK, BLOCK, 3)
-    return np.array(pictures).reshape(size).mean(axis=(2, 4))
-
-
 def by_mitsuba(path, samples):
     scene = mitsuba.load_file(str(path), spp=str(samples))
     return [np.array(mitsuba.render(scene, spp=samples, seed=seed))[..., :3] for seed in range(PICTURES)]
@@ -315,10 +311,6 @@ def by_lookfrom(lookfrom, path, samples, color):
             sys.exit(f"{path}: {ran.stderr}")
         pictures.append(np.array(mitsuba.Bitmap(str(path.with_suffix(".exr"))))[..., :3])
     return pictures, [line for line in ran.stderr.splitlines() if line.startswith("warning")]
-
-
-def standard_error(theirs, ours):
-    return np.sqrt((theirs.var(axis=0, ddof=1) + ours.var(axis=0, ddof=1)) / PICTURES)
 
 
 def main():
@@ -339,22 +331,17 @@ def main():
     for seed in range(*args.seeds):
         path = folder / f"{seed}.xml"
         path.write_text(Grammar(seed, folder).scene(args.bsdf))
-        theirs = blocks(by_mitsuba(path, args.samples))
+        theirs = block_means(by_mitsuba(path, args.samples))
         if not np.isfinite(theirs).all():
             print(f"{seed}: Mitsuba's picture has values that are no numbers")
             continue
         pictures, warnings = by_lookfrom(args.lookfrom, path, args.samples, args.color)
-        ours = blocks(pictures)
-        want, got = theirs.mean(axis=0), ours.mean(axis=0)
-        apart, scale = np.abs(got - want), 0.02 * want.mean()
-        differ = (apart > 6 * (standard_error(theirs, ours) + 1e-4 * want.mean())) & (apart > 0.015 * (want + scale))
-        means = [each.mean(axis=(1, 2, 3)) for each in (theirs, ours)]
-        z = (got.mean() - want.mean()) / (standard_error(*means) + 1e-9)
-        change = got.mean() / want.mean() - 1
-        is_told = differ.sum() > 1 or (abs(z) > 6 and abs(change) > 0.005)
+        ours = block_means(pictures)
+        found = compare(theirs, ours, 0.015)
+        is_told = found.differ > 1 or (abs(found.z) > 6 and abs(found.change) > 0.005)
         count, told = count + 1, told + is_told
         print(
-            f"{seed}: {change:+.2%}, {z:+.1f} standard errors, {differ.sum()} blocks differ",
+            f"{seed}: {found.change:+.2%}, {found.z:+.1f} standard errors, {found.differ} blocks differ",
             *warnings,
             "<<<" if is_told else "",
             flush=True,

@@ -12,7 +12,7 @@ use crate::core::vector::Vector;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::{Lobes, Mode, across, fresnel, is_grazing};
 
-/// What a surface scatters from one direction to another.
+/// The BSDF and the density for a pair of directions.
 #[derive(Clone, Copy)]
 pub(super) struct Scattered<R: Real> {
     /// As [`Bsdf::f`](crate::shading::bsdf::Bsdf::f).
@@ -26,7 +26,7 @@ pub(super) struct Scattered<R: Real> {
 /// The facet that reflects light between two directions or lets it pass.
 #[derive(Clone, Copy)]
 struct Facet<R: Real> {
-    /// Where light comes from, turned as [`SeenDisney`]'s outgoing direction.
+    /// The incident direction, turned to the front with the outgoing one ([`SeenDisney::is_turned`]).
     wi: Vector<R>,
     /// Its normal, z ≥ 0; through a sheet light passes mirrored at the surface.
     wm: Vector<R>,
@@ -183,7 +183,7 @@ impl<R: Real> Disney<R> {
         [f, choice.clearcoat * d * facet.wm.z * 0.25 / Float::abs(facet.cos_o)]
     }
 
-    /// What is scattered from `wi`, with the density for the sides of `lobes`. Not inlined, since it is needed several times.
+    /// The BSDF for light from `wi`, and the density of `wi` among the sides of `lobes`. Not inlined, since it is needed several times.
     #[inline(never)]
     pub(super) fn scattered(
         &self,
