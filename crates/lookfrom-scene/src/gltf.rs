@@ -3,10 +3,11 @@
 //! `json` holds the structures of the JSON, `file` and `uri` find the bytes that belong to it, `accessor` turns bytes into
 //! vectors. `node` places nodes in the world, `mesh` builds their geometry, `material` and `texture` their materials;
 //! `camera` and `light` convert cameras and lights, `build` assembles the scene, and `contents` lists the items that
-//! `choose` selects from. `pose` and `track` evaluate animations, `morph` and `skin` deform meshes; `meshopt` and `draco`
-//! decompress. Errors name the file and the location in its JSON as a pointer (RFC 6901).
+//! `choose` selects from. `animation` and `track` evaluate animations for the nodes of `pose` and for any other `properties`; `morph` and
+//! `skin` deform meshes; `meshopt` and `draco` decompress. Errors name the file and the location in its JSON as a pointer (RFC 6901).
 
 mod accessor;
+mod animation;
 mod build;
 mod camera;
 mod choose;
@@ -22,6 +23,7 @@ mod meshopt;
 mod morph;
 mod node;
 mod pose;
+mod properties;
 mod skin;
 mod tangents;
 mod texture;
@@ -86,10 +88,14 @@ fn document_model(
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Model> {
-    let document = Document::open(content, path, context)?;
+    let mut document = Document::open(content, path, context)?;
     extension::warn(&document, context);
+    let animation = animation::chosen(&document, context)?;
+    if let Some(animation) = animation {
+        properties::animate(&mut document, animation, context)?;
+    }
     let first = scene.meshes.len();
-    let model = build::model(&document, context, scene)?;
+    let model = build::model(&document, animation, context, scene)?;
     if let levels @ 1.. = context.import.subdivision {
         let at = Location::file(path);
         subdivision::subdivide_meshes(&mut scene.meshes[first..], levels, &at, context)?;

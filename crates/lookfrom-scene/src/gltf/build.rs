@@ -84,9 +84,14 @@ fn size(aspect: f64, most: u32) -> (u32, u32) {
     if aspect >= 1.0 { (most, smaller(aspect)) } else { (smaller(1.0 / aspect), most) }
 }
 
-/// Reads everything; images are decoded last, in parallel.
-pub(super) fn model(document: &Document, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Model> {
-    let Pose { local, weights } = pose::pose(document, context)?;
+/// Reads everything, in the pose of the animation with this index if there is one; images are decoded last, in parallel.
+pub(super) fn model(
+    document: &Document,
+    animation: Option<usize>,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Model> {
+    let Pose { local, weights } = pose::pose(document, animation, context)?;
     let tree = Tree::new(document, local, context)?;
     let cameras = Cameras::new(document, &tree)?;
     let variant = match (&context.import.variant, &document.root.extensions.variants) {

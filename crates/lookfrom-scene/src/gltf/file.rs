@@ -1,6 +1,7 @@
 //! A glTF document and its bytes: the JSON, alone or in a GLB container, and the buffers in the container, in other files
 //! or in the JSON (specification, §2.7, §3.6.1, §4).
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::draco::{self, Compressed, Decoded};
-use super::json::{self, Root, Whole};
+use super::json::{self, Animation, Root, Whole};
 use super::meshopt::{self, CompressedView};
 use super::uri::{self, Uri};
 use crate::budget::{Budget, Reservation, Reserved};
@@ -38,6 +39,8 @@ pub(crate) struct Document {
     pub(crate) limits: Limits,
     at: Location,
     content: Reserved<Vec<u8>>,
+    /// The bytes of `content` that are the JSON.
+    json: Range<usize>,
     buffers: Vec<Bytes>,
     /// The memory for all that is read.
     pub(crate) budget: Budget,
@@ -88,12 +91,13 @@ impl Document {
         };
         let memory = json::memory(&content[json.clone()]);
         let memory = context.budget.reserve(memory, what, &at)?;
-        let root = parse(&content[json], what, &at, context)?;
+        let root = parse(&content[json.clone()], what, &at, context)?;
         check_version(&root, &at, context)?;
         let decoded = root.buffer_views.iter().map(|_| OnceLock::new()).collect();
         let limits = context.limits;
-        // Text is not needed any longer, and may be long.
-        let content = if binary.is_some() { content } else { Vec::new().into() };
+        // Text may be long; it is read once more only if an animation changes it.
+        let is_needed = binary.is_some() || root.animations.iter().any(Animation::has_pointers);
+        let (content, json) = if is_needed { (content, json) } else { (Vec::new().into(), 0..0) };
         let compressed = Compressed::new(&root);
         let mut document = Self {
             root,
@@ -101,6 +105,7 @@ impl Document {
             limits,
             at,
             content,
+            json,
             buffers: Vec::new(),
             budget: context.budget.clone(),
             held: Mutex::new(vec![memory]),
@@ -111,6 +116,11 @@ impl Document {
         };
         document.read_buffers(binary.as_ref(), context);
         Ok(document)
+    }
+
+    /// The bytes of the JSON, if the file is a container or an animation has pointers.
+    pub(super) fn json(&self) -> &[u8] {
+        &self.content[self.json.clone()]
     }
 
     /// The location of a JSON pointer in this file.
@@ -411,24 +421,22 @@ fn chunks(
 
 /// Parses the bytes of the JSON; messages call them `what`.
 fn parse(bytes: &[u8], what: &str, at: &Location, context: &mut LoadContext<'_>) -> Result<Root> {
-    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
-    let text = String::from_utf8_lossy(bytes);
-    if matches!(text, std::borrow::Cow::Owned(_)) {
+    let text = json::text(bytes);
+    if matches!(text, Cow::Owned(_)) {
         context.notice(at, "the JSON is not valid UTF-8; invalid bytes are read as �");
     }
-    let text = text.trim_end_matches(['\0', ' ', '\n', '\r', '\t']);
     if text.is_empty() {
         let found = if bytes.is_empty() { "is empty" } else { "contains only spaces and zeros" };
         return Err(Error::syntax(at, format!("{what} {found}; expected the JSON of a glTF 2.0 model")));
     }
-    json::parse(text).map_err(|wrong| {
+    json::parse(&text).map_err(|wrong| {
         let Some(pointer) = wrong.pointer else {
             let place = at.at(wrong.line, wrong.column);
             return Error::syntax(&place, format!("this is not valid glTF JSON: {}", wrong.message))
-                .hint(instead_of_json(text));
+                .hint(instead_of_json(&text));
         };
         // Other versions have other names, so a JSON error may be due to the version.
-        match json::version(text) {
+        match json::version(&text) {
             Some(version) if !version.starts_with('2') => {
                 unsupported(&at.pointer("/asset/version"), &format!("glTF {version}"))
             }

@@ -15,7 +15,7 @@ mod pointer;
 pub(crate) use material::{
     Iridescence, Material, MaterialExtensions, SpecularGlossiness, TextureInfo, Volume,
 };
-pub(super) use parse::{parse, version};
+pub(super) use parse::{parse, text, version};
 
 /// A whole number of at least 0: an index or a count. `3.0` is accepted, too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -440,6 +440,13 @@ pub(crate) struct Animation {
     pub(crate) samplers: Vec<AnimationSampler>,
 }
 
+impl Animation {
+    /// Whether it changes properties by their JSON pointers.
+    pub(crate) fn has_pointers(&self) -> bool {
+        self.channels.iter().any(|channel| channel.target.extensions.pointer.is_some())
+    }
+}
+
 #[derive(Debug, Deserialize)]
 pub(crate) struct AnimationChannel {
     pub(crate) sampler: Whole,
@@ -451,6 +458,21 @@ pub(crate) struct AnimationTarget {
     pub(crate) node: Option<Whole>,
     /// `translation`, `rotation`, `scale`, `weights`, or a word of an extension.
     pub(crate) path: String,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(crate) extensions: AnimationTargetExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(crate) struct AnimationTargetExtensions {
+    #[serde(rename = "KHR_animation_pointer")]
+    pub(crate) pointer: Option<AnimationPointer>,
+}
+
+/// Any property, in place of one of a node.
+#[derive(Debug, Deserialize)]
+pub(crate) struct AnimationPointer {
+    /// A JSON pointer (RFC 6901).
+    pub(crate) pointer: String,
 }
 
 #[derive(Debug, Deserialize)]

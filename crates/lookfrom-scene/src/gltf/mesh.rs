@@ -356,8 +356,7 @@ impl Order<'_> {
 
 fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[u32; 3]>) -> MeshId {
     let Vertices { mut positions, normals, tangents, uvs, colors, opacities, .. } = vertices;
-    // No triangle uses these vertices.
-    positions.iter_mut().filter(|position| !position.is_finite()).for_each(|position| *position = Vec3::ZERO);
+    forget_infinite(&mut positions);
     let mut sets = uvs.into_iter();
     scene.meshes.push(Mesh {
         name: name.to_owned(),
@@ -374,14 +373,20 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
     MeshId(scene.meshes.len() as u32 - 1)
 }
 
+/// Moves the vertices that are infinite or not numbers, which no triangle uses, to the origin.
+fn forget_infinite(positions: &mut [Vec3]) {
+    positions.iter_mut().filter(|position| !position.is_finite()).for_each(|position| *position = Vec3::ZERO);
+}
+
 /// A mesh with its positions transformed by a singular matrix, such as one that flattens it; without normals and tangents,
 /// which such a matrix does not transform.
 pub(super) fn flattened(mesh: &Mesh, matrix: &glam::DMat4) -> Mesh {
-    let positions: Vec<Vec3> =
+    let mut positions: Vec<Vec3> =
         mesh.positions.iter().map(|p| matrix.transform_point3(p.as_dvec3()).as_vec3()).collect();
     let corners = |triangle: &[u32; 3]| triangle.map(|vertex| positions[vertex as usize]);
     let triangles =
         mesh.triangles.iter().filter(|t| corners(t).iter().all(|p| p.is_finite()) && has_area(corners(t)));
     let triangles = triangles.copied().collect();
+    forget_infinite(&mut positions);
     Mesh { triangles, positions, normals: Vec::new(), tangents: Vec::new(), ..mesh.clone() }
 }

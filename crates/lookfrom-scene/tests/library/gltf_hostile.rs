@@ -11,7 +11,7 @@ use proptest::prelude::*;
 /// A file with something of everything; its buffer is `binary`, in the container.
 const JSON: &str = r#"{
     "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2, 3, 4]}],
-    "extensionsUsed": ["KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_texture_transform"],
+    "extensionsUsed": ["KHR_lights_punctual", "EXT_mesh_gpu_instancing", "KHR_texture_transform", "KHR_animation_pointer"],
     "extensions": {"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 3, "spot": {"innerConeAngle": 0.1}}]}},
     "nodes": [
         {"children": [1], "rotation": [0, 0, 0, 1], "scale": [1, -1, 1]}, {"mesh": 0, "translation": [1, 2, 3]},
@@ -40,8 +40,15 @@ const JSON: &str = r#"{
         {"bufferView": 1, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC4"},
         {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
         {"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 2,
-            "indices": {"bufferView": 2, "componentType": 5121, "byteOffset": 1}, "values": {"bufferView": 0, "byteOffset": 12}}}
+            "indices": {"bufferView": 2, "componentType": 5121, "byteOffset": 1}, "values": {"bufferView": 0, "byteOffset": 12}}},
+        {"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR"},
+        {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}
     ],
+    "animations": [{"samplers": [{"input": 5, "output": 6}, {"input": 5, "output": 5, "interpolation": "STEP"}], "channels": [
+        {"sampler": 0, "target": {"node": 1, "path": "scale"}},
+        {"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/materials/0/emissiveFactor"}}}},
+        {"sampler": 1, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/cameras/0/perspective/yfov"}}}}
+    ]}],
     "bufferViews": [{"buffer": 0, "byteLength": 48, "byteStride": 12}, {"buffer": 0, "byteOffset": 48, "byteLength": 16},
         {"buffer": 0, "byteOffset": 64, "byteLength": 12}],
     "buffers": [{"byteLength": 76}]
@@ -73,6 +80,7 @@ fn read(content: Vec<u8>) -> bool {
     let mut context = LoadContext::new(&memory);
     context.limits.elements = 1 << 16;
     context.limits.texels = 1 << 16;
+    context.import.at = Some(0.75);
     match load::scene(Path::new("a.glb"), &mut context) {
         Ok(scene) => {
             check(&scene);

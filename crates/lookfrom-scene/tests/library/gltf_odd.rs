@@ -139,19 +139,37 @@ fn what_is_beyond_all_numbers_of_rays_is_left_out() {
 }
 
 #[test]
-fn pointers_of_animations_are_told_of_once() {
-    let channel = r#"{"sampler": 0, "target": {"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/scale"}}}}"#;
-    let file = triangle(&format!(
-        r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "extensionsUsed": ["KHR_animation_pointer"],
-        "animations": [{{"samplers": [{{"input": 0, "output": 0}}], "channels": [{channel}, {channel}, {channel}]}}]"#
-    ));
-    let memory = Memory([(PathBuf::from("a.gltf"), file.into_bytes())].into());
-    let choice = ImportOptions { animation: Some("0".to_owned()), at: Some(0.5), ..ImportOptions::default() };
-    let (_, warnings) = read_by("a.gltf", &memory, choice).expect("it is valid");
-    assert_eq!(
-        warnings,
-        ["a.gltf#/extensionsUsed/0: the extension KHR_animation_pointer is not known and is ignored"]
-    );
+fn pointers_of_animations_to_nothing_are_told_of() {
+    // The accessor of positions has the numbers 0 0 0, 1 0 0, 0 1 0; that of times has none in the file: zeros.
+    let at_once = |pointer: &str| {
+        let file = triangle(&format!(
+            r#""meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}], "materials": [{{"name": "a"}}],
+            "animations": [{{"samplers": [{{"input": 1, "output": 0}}],
+            "channels": [{{"sampler": 0, "target": {{"path": "pointer", "extensions": {{"KHR_animation_pointer": {{"pointer": "{pointer}"}}}}}}}}]}}]"#
+        ));
+        let file = file.replace(
+            r#""type": "VEC3"}]"#,
+            r#""type": "VEC3"}, {"componentType": 5126, "count": 3, "type": "SCALAR"}]"#,
+        );
+        let memory = Memory([(PathBuf::from("a.gltf"), file.into_bytes())].into());
+        let choice = ImportOptions { at: Some(0.5), ..ImportOptions::default() };
+        read_by("a.gltf", &memory, choice).expect("it is valid").1
+    };
+    assert_eq!(at_once("/materials/0/emissiveFactor"), Vec::<String>::new());
+    let still = |named: &str| {
+        format!(
+            "a.gltf#/animations/0/channels/0: {named:?} cannot take the channel's values, and stays as it is"
+        )
+    };
+    let nowhere =
+        ["", "/", "x", "/asset/version", "/accessors/0/count", "/meshes/0", "/materials/1/emissiveFactor"];
+    for pointer in nowhere.into_iter().chain(["/materials/0/name", "/nodes/0/mesh"]) {
+        assert_eq!(at_once(pointer), [still(pointer)]);
+    }
+    // What the file does not have could take any numbers, but the item is not read with them.
+    for property in ["alphaCutoff", "doubleSided", "pbrMetallicRoughness/baseColorFactor", "alphaMode/a"] {
+        assert_eq!(at_once(&format!("/materials/0/{property}")), [still("/materials/0")]);
+    }
 }
 
 /// The extension allows strips, but compressed streams have triangles one by one.

@@ -286,6 +286,77 @@ fn relief_and_grain_bring_tangents() {
 }
 
 /// The vertices of a file of the corpus, in the world.
+/// A file in which an animation moves properties reads, at any time, as one that has their values then.
+#[test]
+fn properties_are_where_pointers_take_them() {
+    let mut numbers = Numbers::default();
+    let position = numbers.floats("VEC3", &TRIANGLE);
+    let times = numbers.floats("SCALAR", &[[0.0], [2.0]]);
+    let mut channels = Vec::new();
+    let mut samplers = Vec::new();
+    let mut moved = |pointer: &str, output: usize, interpolation: &str| {
+        samplers.push(json!({"input": times, "output": output, "interpolation": interpolation}));
+        let extensions = json!({"KHR_animation_pointer": {"pointer": pointer}});
+        let target = json!({"path": "pointer", "extensions": extensions});
+        channels.push(json!({"sampler": channels.len(), "target": target}));
+    };
+    let color = numbers.floats("VEC4", &[[1.0, 0.0, 0.0, 1.0], [0.0, 0.5, 1.0, 1.0]]);
+    moved("/materials/0/pbrMetallicRoughness/baseColorFactor", color, "LINEAR");
+    // Neither the factor nor the extension is in the file.
+    let strength = numbers.floats("SCALAR", &[[0.0], [4.0]]);
+    moved("/materials/0/extensions/KHR_materials_emissive_strength/emissiveStrength", strength, "LINEAR");
+    // One component of an array.
+    moved("/materials/0/emissiveFactor/1", strength, "STEP");
+    moved("/extensions/KHR_lights_punctual/lights/0/intensity", strength, "LINEAR");
+    let field = numbers.floats("SCALAR", &[[0.4], [0.8]]);
+    moved("/cameras/0/perspective/yfov", field, "LINEAR");
+    let turn = numbers.floats("VEC4", &[[0.0, 0.0, 0.0, 1.0], [0.0, HALF, 0.0, HALF]]);
+    moved("/nodes/0/rotation", turn, "LINEAR");
+    let seen = numbers.push(&[0, 1], 5121, 2, "SCALAR");
+    moved("/nodes/2/extensions/KHR_node_visibility/visible", seen, "STEP");
+
+    let root = json!({
+        "scenes": [{"nodes": [0, 1, 2]}],
+        "nodes": [{"mesh": 0}, {"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}, {"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": position}, "material": 0}]}],
+        "materials": [{"emissiveFactor": [0.5, 0.0, 0.25]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point"}]}},
+        "animations": [{"samplers": samplers, "channels": channels}],
+    });
+    let written = |part: f64, is_late: bool| {
+        let mut root = root.clone();
+        let material = &mut root["materials"][0];
+        let color = [1.0 - part, 0.5 * part, part, 1.0];
+        material["pbrMetallicRoughness"]["baseColorFactor"] = json!(color);
+        material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = json!(4.0 * part);
+        material["emissiveFactor"][1] = json!(if is_late { 4.0 } else { 0.0 });
+        root["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = json!(4.0 * part);
+        let [from, to] = [0.4_f32, 0.8].map(f64::from);
+        root["cameras"][0]["perspective"]["yfov"] = json!(from + part * (to - from));
+        // Half of the angle of the quaternion: the keys are rounded, so the angle is not 90°.
+        let half = f64::atan2(f64::from(HALF), f64::from(HALF)) * part;
+        root["nodes"][0]["rotation"] = json!([0.0, half.sin(), 0.0, half.cos()]);
+        root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = json!(is_late);
+        numbers.read(root, None, None).expect("it is valid")
+    };
+    for (time, part) in [(-1.0, 0.0), (0.0, 0.0), (0.5, 0.25), (1.0, 0.5), (2.0, 1.0), (9.0, 1.0)] {
+        let (moving, warnings) = numbers.read(root.clone(), None, time).expect("it is valid");
+        assert_eq!(warnings, Vec::<String>::new());
+        let (still, _) = written(part, part == 1.0);
+        assert_eq!(moving.shapes.len(), if part == 1.0 { 2 } else { 1 });
+        let turned = |scene: &Scene| scene.shapes[0].world_from_object;
+        assert!(turned(&moving).abs_diff_eq(turned(&still), 1e-7), "{time}");
+        let all_else = |mut scene: Scene| {
+            scene.shapes[0].world_from_object = glam::DMat4::IDENTITY;
+            format!("{scene:#?}")
+        };
+        assert_eq!(all_else(moving), all_else(still), "{time}");
+    }
+    // Without a time the file is as it is written.
+    assert_eq!(numbers.read(root, None, None).expect("it is valid").0.shapes.len(), 2);
+}
+
 fn corpus(name: &str, animation: Option<&str>, at: impl Into<Option<f64>>) -> Vec<DVec3> {
     let path = lookfrom_test_data::shared(&format!("corpus/{name}"));
     let mut context = LoadContext::new(&Disk);

@@ -1,5 +1,7 @@
 //! From the text of a glTF file to its structures, or to what is wrong with it and where.
 
+use std::borrow::Cow;
+
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -16,6 +18,13 @@ pub(in crate::gltf) struct Wrong {
     pub(in crate::gltf) line: u32,
     /// The column, from 1.
     pub(in crate::gltf) column: u32,
+}
+
+/// The text of a file's bytes: without a byte order mark, and without the spaces and zeros at its end.
+pub(in crate::gltf) fn text(bytes: &[u8]) -> Cow<'_, str> {
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    let end = bytes.iter().rposition(|byte| !b"\0 \n\r\t".contains(byte)).map_or(0, |last| last + 1);
+    String::from_utf8_lossy(&bytes[..end])
 }
 
 /// Parses the text.
