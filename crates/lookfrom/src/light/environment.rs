@@ -355,7 +355,7 @@ impl SkyImage {
 
     /// The inverse of [`SkyImage::uv`].
     #[inline(always)]
-    fn direction<R: Real>(&self, uv: [R; 2]) -> (Vector<R>, R) {
+    pub(super) fn direction<R: Real>(&self, uv: [R; 2]) -> (Vector<R>, R) {
         let (of_light, per_solid_angle) = match self.layout {
             MapLayout::LatitudeLongitude => latitude_longitude_direction(uv),
             MapLayout::Octahedral => (warp::octahedral_direction_within(uv), uv[0].like(OCTAHEDRAL_DENSITY)),

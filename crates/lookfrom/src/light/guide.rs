@@ -4,8 +4,9 @@
 //! trees of directional histograms: Müller, Gross & Novák 2017, here of next-event estimation as in Vorba et al. 2019). Each leaf
 //! has a histogram over directions, of the radiance of the environment that is visible from there, times the cosine. A guide
 //! never decides what light there is: directions are sampled by a mixture with another density, and what has density 0
-//! is left to BSDF sampling. `learn` makes guides, `steps` are their histograms, `octahedron` is the square of directions.
+//! is left to BSDF sampling. `learn` makes guides where `gain` finds them worth it, `steps` are their histograms, `octahedron` is the square of directions.
 
+mod gain;
 mod learn;
 mod octahedron;
 mod steps;
@@ -63,6 +64,8 @@ impl Node {
 pub(crate) struct Histogram {
     columns: Steps,
     rows: [Steps; SIDE],
+    /// The part of the samples that it chooses: a multiple of 2⁻¹⁵, as probabilities of cells are.
+    pub(super) share: f32,
 }
 
 /// A cell of the square, and the probabilities that its density is made of.
@@ -94,15 +97,15 @@ impl Guide {
 }
 
 impl Histogram {
-    /// By the weights of cells, row by row; `None` if none is positive.
-    fn new(weights: &[f32]) -> Option<Self> {
+    /// By the weights of cells, row by row, and the part of the samples that it chooses; `None` if no weight is positive.
+    fn new(weights: &[f32], share: f32) -> Option<Self> {
         let mut rows = [Steps::NONE; SIDE];
         let columns = std::array::from_fn(|column| {
             let of_column = std::array::from_fn(|row| weights[row * SIDE + column]);
             rows[column] = Steps::new(of_column).unwrap_or(Steps::NONE);
             of_column.iter().sum()
         });
-        Some(Self { columns: Steps::new(columns)?, rows })
+        Some(Self { columns: Steps::new(columns)?, rows, share: steps::whole_units(share) })
     }
 
     /// A unit direction for `u` in [0, 1)².

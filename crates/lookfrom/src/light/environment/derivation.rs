@@ -64,7 +64,7 @@ impl Environment {
     ) -> Vec<Derivation> {
         let unguided = self.unguided_pdf(wi);
         let of_guide = self.histogram(at).map(|histogram| {
-            let share = f64::from(self.guided_share());
+            let share = f64::from(histogram.share);
             let mut numbers = vec![("w", vec![share])];
             if let Some(GuideCell { place, probabilities, length }) = histogram.cell(wi) {
                 numbers.extend([

@@ -9,8 +9,9 @@ use crate::light::guide::{Guide, Histogram};
 use crate::light::{IncompletePdf, LightSample, LightSampleContext, Target};
 use crate::shading::texture::{SpectralMode, Textures};
 
-/// The part of the samples that a guide to an environment map chooses: the rest finds what is too small for its cells, as the sun.
-const SHARE: f32 = 0.75;
+/// The largest part of the samples that a guide to an environment map chooses: the rest finds what is too small for its cells, as the
+/// sun.
+const MOST_OF_MAP: f32 = 0.75;
 
 /// The density that a direction is sampled with, and its random numbers there.
 #[derive(Clone, Copy)]
@@ -28,19 +29,20 @@ impl Environment {
         self.guide.as_ref()?.histogram(at.point.as_vec3(), at.n)
     }
 
-    /// The part of the samples that the guide chooses where it has a histogram.
-    pub(super) fn guided_share(&self) -> f32 {
-        if matches!(self.sky, Sky::Image(_)) { SHARE } else { 1.0 }
+    /// The largest part of the samples that a guide may choose: all where they are sampled by nothing else.
+    pub(crate) fn most_guided(&self) -> f32 {
+        if matches!(self.sky, Sky::Image(_)) { MOST_OF_MAP } else { 1.0 }
     }
 
     /// Chooses the density of a sample.
     #[inline]
     pub(super) fn choose<'a>(&self, histogram: Option<&'a Histogram>, [u, v]: [f32; 2]) -> Chosen<'a> {
-        let share = self.guided_share();
-        match histogram {
-            None => Chosen::Environment([u, v]),
-            Some(histogram) if u < share => Chosen::Guide(histogram, [(u / share).min(ONE_MINUS_EPSILON), v]),
-            Some(_) => Chosen::Environment([((u - share) / (1.0 - share)).min(ONE_MINUS_EPSILON), v]),
+        let Some(histogram) = histogram else { return Chosen::Environment([u, v]) };
+        let share = histogram.share;
+        if u < share {
+            Chosen::Guide(histogram, [(u / share).min(ONE_MINUS_EPSILON), v])
+        } else {
+            Chosen::Environment([((u - share) / (1.0 - share)).min(ONE_MINUS_EPSILON), v])
         }
     }
 
@@ -58,7 +60,7 @@ impl Environment {
         match histogram {
             None => unguided,
             Some(histogram) => {
-                let share = self.guided_share();
+                let share = histogram.share;
                 share * histogram.pdf(wi) + (1.0 - share) * unguided
             }
         }

@@ -15,6 +15,11 @@ pub(super) struct Steps {
     begins: [u16; SIDE],
 }
 
+/// The largest probability of whole units that is not above another.
+pub(super) fn whole_units(probability: f32) -> f32 {
+    (probability * UNITS).floor() / UNITS
+}
+
 impl Steps {
     /// No cell: nothing may be chosen.
     pub(super) const NONE: Self = Self { begins: [0; SIDE] };

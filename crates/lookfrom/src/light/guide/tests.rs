@@ -1,16 +1,20 @@
 //! Guides of places whose visibility is known.
 
 use std::f32::consts::PI;
+use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Mat3, Vec3, Vec3Swizzles};
+use lookfrom_scene::image::Image;
 use lookfrom_scene::material::Color;
 use lookfrom_scene::settings::ColorMode;
 
+use super::gain::{Lit, Moments, gain};
 use super::*;
+use crate::core::distribution::Piecewise2D;
 use crate::core::hash;
 use crate::core::statistics::chi_square_deviate;
 use crate::core::warp;
-use crate::light::{EmissionSpectrum, Environment, Sky};
+use crate::light::{EmissionSpectrum, Environment, MapLayout, Sky, SkyImage};
 use crate::shading::texture::{SpectrumType, Textures};
 
 fn number(k: u64, salt: u64) -> f32 {
@@ -43,11 +47,20 @@ fn is_lit(point: Vec3, wi: Vec3) -> bool {
 
 fn learn(points: &[GuidePoint], is_lit: impl Fn(Vec3, Vec3) -> bool) -> Option<Guide> {
     let textures = textures();
+    learn_of(&even_sky(&textures), &textures, points, is_lit)
+}
+
+fn learn_of(
+    environment: &Environment,
+    textures: &Textures,
+    points: &[GuidePoint],
+    is_lit: impl Fn(Vec3, Vec3) -> bool,
+) -> Option<Guide> {
     let visibility = |queries: &[Query]| {
         let lit = |(index, wi): &Query| is_lit(points[*index as usize].point, *wi);
         queries.iter().map(|query| f32::from(u8::from(lit(query)))).collect()
     };
-    Guide::learn(&even_sky(&textures), &textures, points, &visibility)
+    Guide::learn(environment, textures, points, &visibility)
 }
 
 #[test]
@@ -94,10 +107,70 @@ fn guides_are_learned_where_they_help() {
     assert!(learn(&floor(), |_, _| true).is_none(), "an open place");
     assert!(learn(&floor(), |_, _| false).is_none(), "a closed room");
     assert!(learn(&[], is_lit).is_none());
-    // Between both, each place on its own.
-    let guide = learn(&floor(), |p, wi| if p.x < 0.0 { true } else { is_lit(p, wi) }).expect("a window");
-    assert!(guide.histogram(Vec3::new(-1.9, 0.0, 0.0), Vec3::Y).is_none());
-    assert!(guide.histogram(Vec3::new(1.9, 0.0, 0.0), Vec3::Y).is_some());
+    let half_open = |p: Vec3, wi: Vec3| if p.x < 0.0 { true } else { is_lit(p, wi) };
+    assert!(learn(&floor(), half_open).is_none(), "what is open lights the rest");
+}
+
+/// A window that lights all points with 1/50 of the sky, and some points with the sun, as samples without a guide find them.
+#[test]
+fn gains_are_small_where_the_sun_shines_in() {
+    let (sky, count) = (PI, 1000);
+    let of = |in_the_sun: usize, brightness: f32| {
+        let window = Lit::with(count - in_the_sun, 1.0, sky / 50.0, sky, Moments::of([].into_iter(), 1));
+        let sun = Lit::without(in_the_sun, Moments::of([brightness].into_iter(), 1));
+        gain(&[window, sun], count)
+    };
+    // All that reaches a point, and all that reaches others, has 1/50 of the mean square.
+    assert!((of(0, 0.0) / 50.0 - 1.0).abs() < 1e-5, "{}", of(0, 0.0));
+    let gains = [0.0, 1.0, 3.0, 10.0, 100.0].map(|brightness| of(10, brightness * sky));
+    assert!(gains.is_sorted_by(|brighter, darker| brighter > darker), "{gains:?}");
+    assert!(gains[1] > 5.0 && gains[4] < 1.2, "{gains:?}");
+}
+
+/// Where a spot of the sun is on the floor, most samples are left to the map, which finds the sun: by the light of both.
+#[test]
+fn a_guide_leaves_the_sun_to_the_map() {
+    let (width, height) = (64, 64);
+    let sun = (48, 20);
+    let texels = |sun_too: bool| -> Vec<[f32; 3]> {
+        let is_sun = |index: usize| sun_too && (index % width, index / width) == sun;
+        (0..width * height).map(|index| [if is_sun(index) { 2e4 } else { 1.0 }; 3]).collect()
+    };
+    let share = |sun_too: bool, in_the_sun: f32| {
+        let texels = texels(sun_too);
+        let weights: Vec<f32> = texels.iter().map(|texel| texel[0]).collect();
+        let image = Image::from_linear("", width as u32, height as u32, texels);
+        let textures = Textures::new(&[], vec![image], Vec::new(), ColorMode::Rgb);
+        let choice = Arc::new(Piecewise2D::new(&weights, width, height));
+        let sky = SkyImage {
+            image: 0,
+            scale: [1.0; 3],
+            layout: MapLayout::Octahedral,
+            world_from_light: Mat3::IDENTITY,
+            complete: choice.clone(),
+            compensated: choice,
+            picture_v: [1.0, 0.0],
+            mean: 1.0,
+            sums: [1.0; 2],
+        };
+        let to_sun = Vec3::from(sky.direction([sun.0, sun.1].map(|i| (i as f32 + 0.5) / 64.0)).0);
+        let environment =
+            Environment { sky: Sky::Image(Box::new(sky)), portal: None, illuminates: true, guide: None };
+        let points: Vec<GuidePoint> = floor()
+            .into_iter()
+            .map(|point| GuidePoint { n: Vec3::Z, facing: Vec3::Z, point: point.point.xzy(), ..point })
+            .collect();
+        // A window near the horizon, and the sun through a hole.
+        let is_lit = |p: Vec3, wi: Vec3| {
+            let is_in_spot = p.length() < in_the_sun && wi.dot(to_sun) > 0.99;
+            is_in_spot || wi.x > 0.9
+        };
+        let guide = learn_of(&environment, &textures, &points, is_lit).expect("a window");
+        guide.histogram(Vec3::ZERO, Vec3::Z).map(|histogram| histogram.share)
+    };
+    let [even, dark, lit] = [share(false, 0.15), share(true, 0.0), share(true, 0.15)];
+    assert_eq!([even, dark], [Some(0.75); 2]);
+    assert!(lit.is_none_or(|share| share < 0.3), "{lit:?}");
 }
 
 #[test]

@@ -106,14 +106,17 @@ fn compare(layout: MapLayout, picture_v: [f32; 2], mode: &SpectralMode) {
         let is_seen = |(index, wi): &Query| points[*index as usize].point.x > 0.0 && wi.x > 0.9;
         queries.iter().map(|query| f32::from(u8::from(is_seen(query)))).collect()
     };
-    let guide = Guide::learn(&unguided, &textures, &points, &visibility).expect("a guide");
-    let guided = Environment { guide: Some(Arc::new(guide)), ..unguided.clone() };
+    let with_guide = |environment: &Environment| {
+        let guide = Guide::learn(environment, &textures, &points, &visibility).expect("a guide");
+        Environment { guide: Some(Arc::new(guide)), ..environment.clone() }
+    };
+    let guided = with_guide(&unguided);
     let even = |value: f32| {
         let color = textures.spectrum_texture(Color::gray(value), SpectrumType::Illuminant);
         EmissionSpectrum { color, scale: 1.0 }
     };
     let gradient = Sky::Gradient { zenith: even(0.5), horizon: even(2.0), nadir: even(0.0) };
-    let gradient = Environment { sky: gradient, ..guided.clone() };
+    let gradient = with_guide(&Environment { sky: gradient, ..unguided.clone() });
     let mut with_histogram = 0;
     for (environment, round) in
         [unguided, guided, gradient].iter().flat_map(|sky| (0..2000).map(move |round| (sky, round)))
