@@ -1,0 +1,132 @@
+//! Lights.
+
+use glam::DVec3;
+use lookfrom_scene::light::{LightKind, Sky};
+use lookfrom_scene::material::Color;
+use lookfrom_scene::spectrum::{self, Curve};
+
+use super::{read, read_files};
+
+#[test]
+fn lights_have_curves_and_totals() {
+    let scene = read(
+        r#"
+[[light]]
+type = "point"
+position = [0, 1, 0]
+intensity = { kelvin = 3000, scale = 7 }
+[[light]]
+type = "distant"
+direction = [0, -1, 0]
+illuminance = 5
+[[light]]
+type = "environment"
+color = { illuminant = "D65" }
+portal = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]]
+[[light]]
+type = "ambient"
+color = { illuminant = "D65", scale = 2 }
+[[light]]
+type = "sphere"
+center = [0, 2, 0]
+radius = 1
+radiance = { kelvin = 3000 }
+power = 100
+[[sphere]]
+emission = { kelvin = 3000, scale = 4 }
+"#,
+    );
+    let LightKind::Point { intensity: Color::Curve(warm), .. } = scene.lights[0].kind else {
+        panic!("a point")
+    };
+    assert_eq!(scene.curves[warm.index()], Curve::Blackbody { kelvin: 3000.0 });
+    assert_eq!((scene.lights[0].power.scale, scene.lights[0].power.total), (7.0, None));
+    assert!(!scene.lights[0].power.absolute);
+    let LightKind::Distant { intensity, .. } = scene.lights[1].kind else { panic!("distant") };
+    assert_eq!((intensity, scene.lights[1].power.total), (Color::gray(1.0), Some(5.0)));
+    let LightKind::Environment { sky: Sky::Constant(Color::Curve(_)), portal: Some(corners), .. } =
+        scene.lights[2].kind
+    else {
+        panic!("a window to the sky")
+    };
+    assert_eq!(corners[2], DVec3::new(2.0, 1.0, 0.0));
+    // D65 is white, as bright as it says.
+    let LightKind::Ambient { color } = scene.lights[3].kind else { panic!("ambient") };
+    assert!(color.iter().all(|c| (c - 2.0).abs() < 1e-3), "{color:?}");
+    // What it comes to as a whole outdoes the brightness; the curve is kept once.
+    let emissions: Vec<_> = scene.shapes.iter().map(|shape| shape.emission.expect("it shines")).collect();
+    assert!(emissions.iter().all(|emission| emission.radiance == Color::Curve(warm)));
+    let powers: Vec<_> = emissions.iter().map(|e| (e.power.scale, e.power.total)).collect();
+    assert!(powers.contains(&(1.0, Some(100.0))) && powers.contains(&(4.0, None)));
+}
+
+#[test]
+fn lights_throw_pictures_the_right_way() {
+    let scene = read(
+        r#"
+[[light]]
+type = "projection"
+image = "half.png"
+position = [1, 2, 3]
+direction = [0, 0, -2]
+fov = 30
+[[light]]
+type = "goniometric"
+image = "half.png"
+position = [1, 2, 3]
+intensity = 2
+rotate = 90
+[[light]]
+type = "environment"
+image = "half.png"
+layout = "octahedral"
+"#,
+    );
+    let LightKind::Projection { world_from_light, fov: 30.0, .. } = scene.lights[0].kind else {
+        panic!("a projector")
+    };
+    let to = |v: DVec3| world_from_light.transform_vector3(v);
+    assert_eq!((to(DVec3::X), to(DVec3::Y), to(DVec3::Z)), (DVec3::X, DVec3::Y, -DVec3::Z));
+    assert_eq!(world_from_light.transform_point3(DVec3::ZERO), DVec3::new(1.0, 2.0, 3.0));
+    let LightKind::Goniometric { world_from_light, .. } = scene.lights[1].kind else { panic!("a lamp") };
+    assert_eq!(world_from_light.transform_vector3(DVec3::Z), DVec3::Y);
+    assert_eq!(world_from_light.transform_vector3(DVec3::X), -DVec3::Z);
+    let LightKind::Environment { sky: Sky::Octahedral { world_from_light, .. }, .. } = scene.lights[2].kind
+    else {
+        panic!("a sky")
+    };
+    assert_eq!(world_from_light.transform_vector3(DVec3::Z), DVec3::Y);
+    assert_eq!(world_from_light.transform_vector3(DVec3::X), DVec3::X);
+    assert!(world_from_light.determinant() > 0.0);
+}
+
+#[test]
+fn photometric_files_are_read_once() {
+    let lamp = "[[light]]\ntype = \"goniometric\"\nimage = \"a.IES\"\nposition = [0, 2, 0]\nintensity = 3\n";
+    let ies = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n2 1\n";
+    let scene = read_files(&[("a.toml", &lamp.repeat(2)), ("a.IES", ies)]);
+    assert_eq!((scene.lights.len(), scene.images.len()), (2, 1));
+    let Color::Value(intensity) = (match scene.lights[1].kind {
+        LightKind::Goniometric { intensity, .. } => intensity,
+        ref other => panic!("{other:?}"),
+    }) else {
+        panic!("no colour")
+    };
+    assert_eq!(intensity, [3.0; 3]);
+    // The brightest direction, straight down, is at the corners of the map.
+    assert!(scene.images[0].texel(0)[0] > 0.99);
+}
+
+#[test]
+fn d50_is_the_cies() {
+    let xy = |color: &str| {
+        let scene =
+            read(&format!("[[light]]\ntype = \"point\"\nposition = [0, 0, 0]\nintensity = {color}\n"));
+        let [x, y, z] = spectrum::observer::xyz(&scene.curves[0]);
+        [x / (x + y + z), y / (x + y + z)]
+    };
+    let [x, y] = xy("{ illuminant = \"D50\" }");
+    assert!((x - 0.3457).abs() < 2e-4 && (y - 0.3585).abs() < 2e-4, "{x} {y}");
+    let [x, _] = xy("{ illuminant = \"D65\" }");
+    assert!((x - 0.3127).abs() < 2e-4, "{x}");
+}
