@@ -82,6 +82,9 @@ const BOTH_SIDES: &str = "the camera sees only the backs of single-sided surface
 const OPEN_FRONTS: &str =
     "from outside mostly backs of single-sided surfaces are seen: half of the light passes their fronts, too";
 
+/// The notice of a scene in which openings are asked for and not sampled.
+const NO_OPENINGS: &str = "no openings are sampled: here that would cost more than it brings";
+
 /// A scene that is ready to be rendered, and to be rendered again with another camera or other settings.
 ///
 /// Owns its data; a clone shares the world.
@@ -270,6 +273,9 @@ impl Session {
         }
         if world.has_open_fronts {
             warnings.push(Warning::notice(&Location::file(path), OPEN_FRONTS));
+        }
+        if renderer.has_given_up_guide() {
+            warnings.push(Warning::notice(&Location::file(path), NO_OPENINGS));
         }
         let turntable = turntable.map(|turntable| Turning {
             turntable,

@@ -38,8 +38,8 @@ struct Visited {
 impl Renderer {
     /// This renderer with a guide to the environment, if its settings ask for one and it helps.
     pub(super) fn with_guide(mut self) -> Self {
-        let is_asked_for = self.settings.portals == Portals::Auto && self.settings.integrator == Kind::Path;
-        let Some((light, environment)) = self.world.guidable().filter(|_| is_asked_for) else { return self };
+        let asks = self.asks_for_guide();
+        let Some((light, environment)) = self.world.guidable().filter(|_| asks) else { return self };
         let visited = self.visited();
         let points: Vec<GuidePoint> = visited.iter().map(|visited| visited.point).collect();
         let world = &self.world;
@@ -48,6 +48,15 @@ impl Renderer {
             self.world = world.guided(light, &Arc::new(guide)).into();
         }
         self
+    }
+
+    fn asks_for_guide(&self) -> bool {
+        self.settings.portals == Portals::Auto && self.settings.integrator == Kind::Path
+    }
+
+    /// Whether its settings ask for a guide, and it was given up.
+    pub(crate) fn has_given_up_guide(&self) -> bool {
+        self.asks_for_guide() && self.world.guidable().is_some() && !self.world.is_guided()
     }
 
     /// The points of all surfaces and media that paths of samples all over the picture visit, where light that is sampled counts.

@@ -24,12 +24,14 @@ impl World {
 
     /// This world without guides.
     pub(crate) fn unguided(self: Arc<Self>) -> Arc<Self> {
+        if self.is_guided() { Arc::new(self.with_guides(|_| None)) } else { self }
+    }
+
+    /// Whether an environment has a guide.
+    pub(crate) fn is_guided(&self) -> bool {
         let is_guided =
             |light: &Light| matches!(light, Light::Environment(Environment { guide: Some(_), .. }));
-        match self.lights.iter().any(is_guided) {
-            true => Arc::new(self.with_guides(|_| None)),
-            false => self,
-        }
+        self.lights.iter().any(is_guided)
     }
 
     fn with_guides(&self, guide_of: impl Fn(u32) -> Option<Arc<Guide>>) -> Self {

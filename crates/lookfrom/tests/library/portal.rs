@@ -1,5 +1,7 @@
 //! A room with a window: the sky lights it as before when the window is named as its portal, and with less noise.
 
+use lookfrom::session::{Options, Session};
+
 use crate::support::{Compiled, scene};
 
 /// A room of 4 × 4 × 4 around the origin, open on a window of 1 × 1 in the wall at z = −2; the camera looks at its back wall.
@@ -84,6 +86,31 @@ fn a_window_is_found() {
     let z = (named - found) / ((noise + noise_of_found) / 144.0).sqrt();
     assert!(z.abs() < 4.0, "{named} {found}, {z} standard deviations");
     assert!(noise_of_found < 0.5 * noise, "{noise_of_found}, not far below {noise}");
+}
+
+/// Where openings are asked for and nothing is gained by them, this is told, and the picture is as without.
+#[test]
+fn what_is_given_up_is_told() {
+    let under_a_sky = |more: &str| {
+        let text = format!(
+            "[image]\nwidth = 8\nheight = 8\n[render]\nintegrator = \"path\"\nsamples = 4\n{more}\n\
+             [materials.m]\ntype = \"diffuse\"\n[[sphere]]\ncenter = [0, 0, -4]\nradius = 1\nmaterial = \"m\"\n\
+             [[light]]\ntype = \"environment\"\nzenith = [1, 2, 6]\nhorizon = [3, 3, 3]"
+        );
+        Session::of_scene(scene(&text), &Options::default()).expect("a scene")
+    };
+    let told = |session: &Session| {
+        session
+            .warnings()
+            .iter()
+            .filter(|warning| warning.message.starts_with("no openings are sampled"))
+            .count()
+    };
+    let [named, auto] = ["", "portals = \"auto\""].map(under_a_sky);
+    assert_eq!([&named, &auto].map(told), [0, 1]);
+    let [named, auto] =
+        [named, auto].map(|session| session.render(&()).expect("a picture").rendered.film.picture().pixels);
+    assert!(named == auto);
 }
 
 #[test]

@@ -55,7 +55,10 @@ pub(super) fn gain(lit: &[Lit], points: usize) -> f32 {
     let indirect = over_points(&|lit| lit.mean) * REFLECTED / (1.0 - REFLECTED);
     let [without, with] = [0, 1].map(|guided| {
         let of_others = over_points(&|lit| lit.squares[guided]) * REFLECTED * REFLECTED;
-        over_points(&|lit| (lit.squares[guided] + of_others) / (lit.mean + indirect).powi(2))
+        over_points(&|lit| {
+            let light = lit.mean + indirect;
+            (lit.squares[guided] + of_others) / (light * light)
+        })
     });
     without / with
 }

@@ -25,13 +25,11 @@ const RAYS: u32 = 8;
 /// The weight of a group's visibility in that of its leaves, in rays.
 const PRIOR: f32 = 0.1;
 
-/// Rays of a group into directions that would be sampled without a guide, and the share of them that find the
-/// environment from which on a guide would not help.
+/// Rays of a group or a leaf into directions that would be sampled without a guide.
 const UNGUIDED_RAYS: u32 = 128;
-const OPEN: f32 = 0.4;
 
-/// The same of a leaf.
-const UNGUIDED_RAYS_OF_LEAF: u32 = 128;
+/// The share of them that find the environment from which on a guide would not help: of a group, and of a leaf.
+const OPEN: f32 = 0.4;
 const BRIGHT: f32 = 0.15;
 
 /// The least part of the samples that is worth a histogram.
@@ -207,7 +205,7 @@ impl Learner<'_> {
     /// The visibility of each cell of directions from a group, weighted by the cosine and blurred; empty where nothing is visible or a
     /// guide would not help.
     fn visibility_of_group(&mut self, members: &[u32]) -> Vec<f32> {
-        let unguided = self.unguided(members, UNGUIDED_RAYS);
+        let unguided = self.unguided(members);
         if unguided.found > OPEN {
             self.lit.push(Lit::without(members.len(), unguided.all));
             return Vec::new();
@@ -226,7 +224,7 @@ impl Learner<'_> {
         if of_group.is_empty() {
             return None;
         }
-        let unguided = self.unguided(members, UNGUIDED_RAYS_OF_LEAF);
+        let unguided = self.unguided(members);
         if unguided.found > BRIGHT {
             self.lit.push(Lit::without(members.len(), unguided.all));
             return None;
@@ -237,7 +235,7 @@ impl Learner<'_> {
         weights.iter_mut().zip(&self.light.cells).for_each(|(weight, light)| *weight *= light);
         let irradiance = weights.iter().sum::<f32>() / (RAYS as f32 * (1.0 + PRIOR));
         let share = irradiance / (irradiance + unguided.excess.square.sqrt());
-        if share < LEAST_SHARE {
+        if irradiance == 0.0 || share < LEAST_SHARE {
             self.lit.push(Lit::without(members.len(), unguided.all));
             return None;
         }
@@ -267,16 +265,16 @@ impl Learner<'_> {
     }
 
     /// What rays from points into directions that are sampled without a guide find.
-    fn unguided(&mut self, members: &[u32], rays: u32) -> Unguided {
+    fn unguided(&mut self, members: &[u32]) -> Unguided {
         let (queries, lights): (Vec<_>, Vec<_>) =
-            (0..rays).filter_map(|_| self.unguided_ray(members)).unzip();
+            (0..UNGUIDED_RAYS).filter_map(|_| self.unguided_ray(members)).unzip();
         let seen = (self.visibility)(&queries);
         let arrived = |of: usize| seen.iter().zip(&lights).map(move |(seen, light)| seen * light[of]);
-        let unhindered = Moments::of(lights.iter().map(|[all, _]| *all), rays);
+        let unhindered = Moments::of(lights.iter().map(|[all, _]| *all), UNGUIDED_RAYS);
         Unguided {
-            found: seen.iter().sum::<f32>() / rays as f32,
-            all: Moments::of(arrived(0), rays),
-            excess: Moments::of(arrived(1), rays),
+            found: seen.iter().sum::<f32>() / UNGUIDED_RAYS as f32,
+            all: Moments::of(arrived(0), UNGUIDED_RAYS),
+            excess: Moments::of(arrived(1), UNGUIDED_RAYS),
             of_one: if unhindered.mean > 0.0 { unhindered.square / unhindered.mean } else { 0.0 },
         }
     }
