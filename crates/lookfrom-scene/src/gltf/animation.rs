@@ -9,7 +9,7 @@ use super::track::{Interpolation, Track};
 use crate::error::Result;
 use crate::files::{ImportOptions, LoadContext};
 
-/// What a channel gives for one time.
+/// The type of a channel's value.
 #[derive(Clone, Copy)]
 pub(super) enum Animated {
     /// A quaternion: x, y, z, w.

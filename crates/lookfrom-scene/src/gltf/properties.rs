@@ -42,7 +42,7 @@ struct Change<'a> {
     channel: usize,
     /// The property: a JSON pointer in its item.
     property: &'a str,
-    /// What it is now.
+    /// The components of its value at the requested time.
     numbers: Vec<f64>,
 }
 
@@ -63,9 +63,9 @@ pub(super) fn animate(document: &mut Document, index: usize, context: &mut LoadC
 
     // The changes of each item.
     let mut items: BTreeMap<&str, (&List, Vec<Change<'_>>)> = BTreeMap::new();
-    for (channel, target) in animation.channels.iter().enumerate() {
-        let Some(target) = &target.target.extensions.pointer else { continue };
-        let pointer = target.pointer.as_str();
+    for (channel, animated_by) in animation.channels.iter().enumerate() {
+        let Some(pointer) = &animated_by.target.extensions.pointer else { continue };
+        let pointer = pointer.pointer.as_str();
         let animated = animated(document, index, channel, pointer)?;
         let Some(numbers) = channel_value(document, index, channel, animated, context)? else { continue };
         match item_and_property(pointer) {
@@ -92,17 +92,18 @@ pub(super) fn animate(document: &mut Document, index: usize, context: &mut LoadC
         }
     };
     for (pointer, (list, changes)) in items {
-        let mut item = root.pointer_mut(pointer);
-        let mut moved = item.as_deref().cloned().unwrap_or_default();
+        let item = root.pointer_mut(pointer);
+        let mut moved = item.as_deref().cloned();
         for Change { channel, property, numbers } in &changes {
-            if item.is_none() || change(&mut moved, property, numbers).is_none() {
+            if moved.as_mut().and_then(|moved| change(moved, property, numbers)).is_none() {
                 still(*channel, &format!("{pointer}{property}"), context);
             }
         }
-        match &mut item {
-            Some(item) if (list.is_item)(&moved) => **item = moved,
-            Some(_) => still(changes[0].channel, pointer, context),
-            None => {}
+        let Some((item, moved)) = item.zip(moved) else { continue };
+        if (list.is_item)(&moved) {
+            *item = moved;
+        } else {
+            still(changes[0].channel, pointer, context);
         }
     }
 
@@ -114,12 +115,12 @@ pub(super) fn animate(document: &mut Document, index: usize, context: &mut LoadC
     Ok(())
 }
 
-/// What a channel with this pointer gives for one time, by the type of its accessor.
+/// The type of the value of a channel with this pointer, by its accessor's.
 fn animated(document: &Document, animation: usize, channel: usize, pointer: &str) -> Result<Animated> {
-    let animation_of_all = &document.root.animations[animation];
-    let sampler = animation_of_all.channels[channel].sampler;
+    let whole = &document.root.animations[animation];
+    let sampler = whole.channels[channel].sampler;
     // One that does not exist is an error where it is evaluated.
-    let Some(sampler) = animation_of_all.samplers.get(sampler.index()) else { return Ok(Animated::Weights) };
+    let Some(sampler) = whole.samplers.get(sampler.index()) else { return Ok(Animated::Weights) };
     let asked = format!("/animations/{animation}/channels/{channel}/sampler");
     Ok(match document.shape(sampler.output, &asked)? {
         (1, _) => Animated::Weights,

@@ -4,7 +4,8 @@
 //! trees of directional histograms: Müller, Gross & Novák 2017, here of next-event estimation as in Vorba et al. 2019). Each leaf
 //! has a histogram over directions, of the radiance of the environment that is visible from there, times the cosine. A guide
 //! never decides what light there is: directions are sampled by a mixture with another density, and what has density 0
-//! is left to BSDF sampling. `learn` makes guides where `gain` finds them worth it, `steps` are their histograms, `octahedron` is the square of directions.
+//! is left to BSDF sampling. `learn` makes guides, `gain` estimates what they are
+//! worth, `steps` are their histograms, `octahedron` is the square of directions.
 
 mod gain;
 mod learn;

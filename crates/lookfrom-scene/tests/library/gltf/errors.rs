@@ -1,4 +1,4 @@
-//! What is said of faults.
+//! Errors and warnings.
 
 use std::path::{Path, PathBuf};
 

@@ -1,12 +1,14 @@
-//! How much less error pictures have with a guide, estimated from what rays of the pre-pass found.
+//! The estimated gain of a guide: the ratio of the second moments of light samples without it and with it.
 
 /// The part of the light that surfaces reflect, as far as the gain of a guide is concerned.
 const REFLECTED: f32 = 0.5;
 
-/// The mean of numbers, and that of their squares.
+/// The first two moments of numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Moments {
+    /// The mean.
     pub(super) mean: f32,
+    /// The mean square.
     pub(super) square: f32,
 }
 
@@ -47,8 +49,8 @@ impl Lit {
     }
 }
 
-/// How many times smaller the mean square of light samples is with a guide, relative to the square of the light at each of the points,
-/// as estimated: light from other points is the same everywhere, and has their errors.
+/// The ratio of the second moments of light samples without a guide and with one, each relative to the squared light at its point. Of
+/// indirect light the same part reaches all points, with the second moment of all light samples.
 pub(super) fn gain(lit: &[Lit], points: usize) -> f32 {
     let over_points =
         |of: &dyn Fn(&Lit) -> f32| lit.iter().map(|lit| lit.count * of(lit)).sum::<f32>() / points as f32;

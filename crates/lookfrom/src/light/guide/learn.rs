@@ -73,23 +73,23 @@ impl GuidePoint {
 /// A ray whose visibility is asked for: the index of a point, and a unit direction.
 pub(crate) type Query = (u32, Vec3);
 
-/// The light of an environment as far as histograms are concerned.
+/// The radiance of an environment by cells of directions, without the excess of its brightest directions.
 struct CellLight {
     /// The integral of the radiance over the solid angle of each cell of directions.
     cells: Vec<f32>,
-    /// The radiance above which it is as if it were this.
+    /// The largest radiance that counts.
     most: f32,
 }
 
-/// What rays into directions that are sampled without a guide find. Each estimates the irradiance by itself.
+/// Estimates of the irradiance by single samples of the environment without a guide.
 struct Unguided {
-    /// The share of those that find the environment.
+    /// The share of samples that find the environment.
     found: f32,
-    /// Mean and mean square of the estimates.
+    /// The moments of the estimates.
     all: Moments,
-    /// Those by what is too bright for histograms.
+    /// Those of the estimates by radiance above [`CellLight::most`].
     excess: Moments,
-    /// An estimate by a ray that finds the environment.
+    /// The mean estimate by a sample that finds the environment, weighted by the estimate.
     of_one: f32,
 }
 
@@ -99,18 +99,17 @@ struct Learner<'a> {
     points: &'a [GuidePoint],
     /// The part of the light from outside that arrives along each ray.
     visibility: &'a dyn Fn(&[Query]) -> Vec<f32>,
-    /// What histograms know of the environment.
+    /// The radiance of the environment by cells.
     light: CellLight,
     guide: Guide,
-    /// What arrives at points that see the environment.
+    /// The irradiance in leaves that see the environment.
     lit: Vec<Lit>,
     /// Number of random numbers taken.
     count: u64,
 }
 
 impl Guide {
-    /// The guide to an environment from points that paths visit; `None` where it would not help, since what is sampled
-    /// without it is mostly visible, or nothing is.
+    /// The guide to an environment from points that paths visit; `None` where its estimated gain is not worth its time.
     pub(crate) fn learn(
         environment: &Environment,
         textures: &Textures,
@@ -264,7 +263,7 @@ impl Learner<'_> {
         }
     }
 
-    /// What rays from points into directions that are sampled without a guide find.
+    /// Estimates of the irradiance at points without a guide.
     fn unguided(&mut self, members: &[u32]) -> Unguided {
         let (queries, lights): (Vec<_>, Vec<_>) =
             (0..UNGUIDED_RAYS).filter_map(|_| self.unguided_ray(members)).unzip();
@@ -280,7 +279,7 @@ impl Learner<'_> {
     }
 
     /// A ray into a direction that is sampled without a guide: as light samples, or, where they leave an environment to BSDFs, by the
-    /// cosine. With the irradiance by this ray alone, and that by what is too bright for histograms.
+    /// cosine. With the estimate of the irradiance by this ray, and that by its excess.
     fn unguided_ray(&mut self, members: &[u32]) -> Option<(Query, [f32; 2])> {
         let (index, u) = self.any(members);
         let point = &self.points[index as usize];
