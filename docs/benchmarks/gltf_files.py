@@ -87,8 +87,9 @@ def fan(count=9):
 class File:
     """A glTF file that grows."""
 
-    def __init__(self, seed, without=()):
-        self.random, self.without, self.data = random.Random(seed), without, bytearray()
+    def __init__(self, seed, without=(), is_smooth=False):
+        """Animations of smooth motion have no steps, and rotations between keys that are near."""
+        self.random, self.without, self.data, self.is_smooth = random.Random(seed), without, bytearray(), is_smooth
         self.json = {
             key: []
             for key in "accessors bufferViews images samplers textures materials meshes nodes skins cameras animations".split()
@@ -327,21 +328,24 @@ class File:
         else:
             node["translation"] = list(place)
         index = self.add("nodes", node)
-        if "matrix" not in node and self.chance(0.3, "animations"):
+        if "matrix" not in node and self.chance(0.7 if self.is_smooth else 0.3, "animations"):
             path = self.random.choice(["translation", "scale", "rotation"])
-            keys = [
-                self.quaternion() if path == "rotation" else [x + self.between(-0.4, 0.4) for x in node[path]] for _ in range(4)
-            ]
-            self.animate(
-                index,
-                path,
-                np.array(keys),
-                "STEP" if path == "rotation" else self.random.choice(["STEP", "LINEAR"]),
-            )
+            if path == "rotation":
+                keys = [self.near(node[path]) if self.is_smooth else self.quaternion() for _ in range(4)]
+            else:
+                keys = [[x + self.between(-0.4, 0.4) for x in node[path]] for _ in range(4)]
+            self.animate(index, path, np.array(keys), "STEP" if path == "rotation" else None)
         return index
 
-    def animate(self, node, path, keys, interpolation):
+    def near(self, quaternion):
+        """A rotation that is another by half a radian or less."""
+        moved = np.array(quaternion) + [self.random.uniform(-0.12, 0.12) for _ in range(4)]
+        return (moved / np.linalg.norm(moved)).tolist()
+
+    def animate(self, node, path, keys, interpolation=None):
         """Keys at random times. Blender interpolates quaternions component by component."""
+        drawn = interpolation or self.random.choice(["STEP", "LINEAR"])
+        interpolation = "LINEAR" if self.is_smooth else drawn
         times = np.sort(np.array(self.random.sample(range(90), 4)) / 100)
         sampler = {
             "input": self.accessor(times),
@@ -381,7 +385,7 @@ class File:
             if self.chance(0.3, "animations"):
                 # Blender's weights in animations are not negative.
                 keys = np.array(self.numbers(4 * len(weights), 0, 1))
-                self.animate(len(self.json["nodes"]), "weights", keys, self.random.choice(["STEP", "LINEAR"]))
+                self.animate(len(self.json["nodes"]), "weights", keys)
         elif self.chance(0.15, "instances") and not is_closed:
             count = 3
             attributes = {
@@ -469,8 +473,12 @@ class File:
                 "type": "orthographic",
                 "orthographic": {"xmag": 3.2, "ymag": 2.4, "znear": 0.01, "zfar": 100.0},
             }
-        node = {**self.looking(eye, [0, 0.6, 0]), "camera": self.add("cameras", camera)}
-        self.roots.append(self.add("nodes", node))
+        node = self.add("nodes", {**self.looking(eye, [0, 0.6, 0]), "camera": self.add("cameras", camera)})
+        if self.is_smooth and self.chance(0.4):
+            above = self.add("nodes", {"children": [node]})
+            self.animate(above, "translation", np.array([self.numbers(3, -0.3, 0.3) for _ in range(4)]))
+            node = above
+        self.roots.append(node)
 
     def scene(self, kind=None):
         self.camera()

@@ -4,21 +4,19 @@ use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use glam::DMat4;
-use lookfrom_bvh::{Affine, Builder, Bvh, Quality, Triangles};
-use lookfrom_scene::light::LightKind;
+use lookfrom_bvh::{Builder, Bvh, Quality, Triangles};
 use lookfrom_scene::material::{Color, Material as Written, MaterialKind as WrittenKind};
-use lookfrom_scene::motion::Motion;
-use lookfrom_scene::scene::{Instance as WrittenInstance, MaterialId, Scene};
-use lookfrom_scene::settings::{Integrator as Kind, RenderSettings};
-use lookfrom_scene::shape::{Geometry, Shape};
+use lookfrom_scene::scene::Scene;
+use lookfrom_scene::settings::RenderSettings;
 use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 
+use super::ignored;
+use super::instancing::Instancing;
 use super::lights::Lights;
-use super::place::{self, Compiler, Group, Labels};
+use super::place::{Compiler, Group, Labels};
 use super::quality::quality;
 use super::{Instance, Medium, Names, World, origin, reflectance};
-use crate::core::math;
-use crate::light::{Light, LightChoice, LightMotion};
+use crate::light::{Light, LightChoice};
 use crate::primitive::Primitives;
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::material::{self, Material, MaterialKind};
@@ -82,29 +80,11 @@ impl World {
             let message = format!("more than {} materials and media", InteriorStack::MOST);
             return Err(Error::new(ErrorKind::Limit, &Location::default(), message));
         }
-        let kinds: Vec<_> =
-            std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect();
-        let textures = Textures::new(
-            &kinds,
-            std::mem::take(&mut scene.images),
-            std::mem::take(&mut scene.curves),
-            scene.render.color,
-        );
+        let textures = take_textures(&mut scene);
         let need_footprints = need_footprints(&scene.materials, &textures);
         let in_use = materials_in_use(&scene);
-        let mut compiler = Compiler {
-            scene: &scene,
-            warnings,
-            lights: Lights::new(&textures),
-            shapes: Vec::new(),
-            grains: grains(&scene.materials, &need_footprints),
-            has_instance_grain: false,
-            is_in_object: false,
-            light_motion: None,
-            alphas: Vec::new(),
-            medium_interfaces: Vec::new(),
-            vertex_data: Vec::new(),
-        };
+        let grains = grains(&scene.materials, &need_footprints);
+        let mut compiler = Compiler::new(&scene, warnings, Lights::new(&textures), grains);
 
         // Shapes that are not instanced.
         let mut in_world = Group::default();
@@ -112,93 +92,22 @@ impl World {
         for shape in scene.shapes.iter().zip(&labels.shapes) {
             compiler.place(shape, &render_from_world, None, &mut in_world)?;
         }
-        // Objects, each with a BVH of its own. Shapes in them that emit light are left to the instances.
-        let mut in_objects = Vec::new();
-        let labelled = |object: usize| scene.objects[object].shapes.iter().zip(&labels.objects[object]);
-        for index in 0..scene.objects.len() {
-            let mut group = Group::default();
-            compiler.is_in_object = true;
-            compiler.has_instance_grain = scene.instances.iter().any(|instance| {
-                let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
-                instance.object.index() == index && instance.material.is_some_and(is_grained)
-            });
-            for shape in labelled(index).filter(|(shape, _)| shape.emission.is_none()) {
-                compiler.place(shape, &DMat4::IDENTITY, None, &mut group)?;
-            }
-            in_objects.push(group);
-        }
-        (compiler.has_instance_grain, compiler.is_in_object) = (false, false);
-        let mut objects: Vec<Vec<Primitives>> = in_objects.into_iter().map(Group::into_primitives).collect();
+        // Objects, each with a tree of its own, and instances.
+        let mut instancing = Instancing::new(&mut compiler, &labels)?;
         let quality = quality(&scene);
-        let whole = before.filter(|(_, kept)| *kept == Kept::Trees).map(|(world, _)| world.bvh.clone());
-        let mut known = match before {
-            Some((world, Kept::ObjectTrees)) => world.object_trees(),
-            _ => HashMap::new(),
+        let (kept, known) = match before {
+            Some((world, Kept::Trees)) => (Some(world.bvh.clone()), HashMap::new()),
+            Some((world, Kept::ObjectTrees)) => (None, world.object_trees()),
+            None => (None, HashMap::new()),
         };
-        let built = if whole.is_none() { &*objects } else { &[] };
-        let trees = (0..)
-            .zip(built)
-            .map(|(object, primitives)| match known.remove(&object) {
-                Some(tree) => Ok(tree),
-                None => tree(primitives, Builder::new(), quality).map(Arc::new),
-            })
-            .collect::<Result<Vec<_>>>()?;
-        // There may be millions of instances: until the tree is built, only the kernel has their maps.
-        let mut builder = Builder::new();
-        let mut instanced = Vec::with_capacity(scene.instances.len());
-        let mut emitters = Vec::new();
-        let motions = scene.instances.iter().filter_map(|instance| instance.motion.as_deref());
-        let parts = motions.map(Motion::parts).max().unwrap_or(1);
-        for written in &scene.instances {
-            let material = written.material.map(|id| id.0);
-            let matrix = render_from_world * written.world_from_object;
-            place::inverse(&written.at, &matrix)?;
-            // Each instance of a shape that emits light is a light of its own.
-            let mut moving = Group::default();
-            let mut moves = false;
-            for shape in labelled(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
-                compiler.light_motion = light_motion(&scene, written, shape.0, &render_from_world);
-                match compiler.light_motion {
-                    None => compiler.place(shape, &matrix, material, &mut in_world)?,
-                    Some(_) => compiler.place(shape, &matrix, material, &mut moving)?,
-                }
-                moves |= compiler.light_motion.is_some();
-            }
-            if moves {
-                emitters.push((moving.into_primitives(), written.motion.clone(), matrix));
-            }
-            compiler.light_motion = None;
-            if let Some(tree) = trees.get(written.object.index()) {
-                match &written.motion {
-                    None => builder.instance(tree.clone(), math::affine(&matrix)),
-                    Some(motion) => {
-                        let maps = motion
-                            .in_parts(parts)
-                            .into_iter()
-                            .map(|map| math::affine(&(render_from_world * map)));
-                        builder.moving_instance(tree.clone(), &maps.collect::<Vec<_>>())
-                    }
-                };
-            }
-            instanced.push((written.object.0, material));
-        }
-        // Shapes that emit light and move are in objects of their own, where they are when the shutter opens.
-        for (primitives, motion, at_opening) in emitters {
-            if whole.is_none() {
-                let tree = Arc::new(tree(&primitives, Builder::new(), quality)?);
-                let back = at_opening.inverse();
-                let to_render = |map: DMat4| math::affine(&(render_from_world * map * back));
-                match motion {
-                    None => builder.instance(tree, Affine::IDENTITY),
-                    Some(motion) => {
-                        let maps: Vec<Affine> = motion.in_parts(parts).into_iter().map(to_render).collect();
-                        builder.moving_instance(tree, &maps)
-                    }
-                };
-            }
-            instanced.push((objects.len() as u32, None));
-            objects.push(primitives);
-        }
+        let trees = if kept.is_none() { Some(instancing.trees(known, quality)?) } else { None };
+        let builder = instancing.place(
+            &mut compiler,
+            &render_from_world,
+            &mut in_world,
+            trees.as_deref().map(|trees| (trees, quality)),
+        )?;
+        let Instancing { objects, placed, .. } = instancing;
         for light in &scene.lights {
             compiler.lights.add(light, origin);
         }
@@ -207,34 +116,7 @@ impl World {
         let (radius, around) = (bounds.radius() as f32, (bounds.center(), 2.0 * bounds.radius()));
         let Lights { lights, names: light_names, brightness, ambient, .. } = lights;
         let light_choice = LightChoice::new(scene.render.light_sampler, &lights, brightness, radius);
-        if let Some(light) = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }))
-            && matches!(scene.render.integrator, Kind::Path | Kind::SimplePath | Kind::RandomWalk)
-        {
-            let message = "ambient light belongs to Whitted's model: path tracing ignores it";
-            warnings.push(Warning::new(&light.at, message));
-        }
-        if scene.render.integrator == Kind::RandomWalk
-            && let Some(light) = scene.lights.iter().find(|light| !light.kind.has_size())
-        {
-            let message =
-                "\"random_walk\" finds no light without a size, since no path meets it: use \"path\"";
-            warnings.push(Warning::new(&light.at, message));
-        }
-        if camera.projection.is_measurement()
-            && let Some(light) = scene.lights.iter().find(|light| !light.kind.has_size())
-        {
-            let message = "a light without a size adds nothing to the irradiance that is measured, but by reflection, since no ray meets it";
-            warnings.push(Warning::new(&light.at, message));
-        }
-        if scene.render.media
-            && matches!(scene.render.integrator, Kind::Whitted | Kind::Raycast)
-            && let Some(medium) = scene.media.iter().find(|medium| medium.scatters() || medium.emits())
-        {
-            let integrator = scene.render.integrator.word();
-            let message =
-                format!("media neither scatter light nor emit it with {integrator:?}: use \"path\"");
-            warnings.push(Warning::new(&medium.at, message));
-        }
+        ignored::warn(&scene, &camera, warnings);
 
         // Build the BVH of the world, over those of the objects. What is compiled makes room for it.
         let written_materials = std::mem::take(&mut scene.materials);
@@ -242,35 +124,25 @@ impl World {
         let vertex_normals = scene.vertex_normals;
         drop((scene, labels));
         let primitives = in_world.into_primitives();
-        let bvh = match whole {
+        let bvh = match kept {
             None => Arc::new(tree(&primitives, builder, quality)?),
             Some(bvh) => bvh,
         };
-        let placed = instanced.into_iter().zip(0..);
         let instances: Arc<[Instance]> = placed
+            .into_iter()
+            .zip(0..)
             .map(|((object, material), id)| {
                 let moves = bvh.instance_map_at(id, 0.0).is_some();
                 Instance::new(object, material, bvh.instance_map(id), moves)
             })
             .collect();
 
-        let mut names = Names { shapes, lights: light_names, ..Names::default() };
-        let mut materials: Vec<Material> = Vec::new();
         let mut media: Vec<Medium> =
             written_media.iter().map(|written| Medium::compile(&textures, written, origin, around)).collect();
-        let mut compiler = material::Compiler::new(&textures, vertex_normals);
-        for (written, needs_footprint) in written_materials.into_iter().zip(need_footprints) {
-            let (mut material, absorption) = compiler.compile(&written);
-            material.needs_footprint = needs_footprint;
-            // An absorbing body is filled with a medium of its own.
-            material.medium = written.medium.map(|id| id.0);
-            if absorption != [0.0; 3] && material.medium.is_none() {
-                material.medium = Some(media.len() as u32);
-                media.push(Medium::absorbing(&textures, absorption));
-            }
-            materials.push(material);
-            names.materials.push(written.name);
-        }
+        let compiler = material::Compiler::new(&textures, vertex_normals);
+        let (materials, names_of_materials) =
+            compiled(compiler, written_materials.into_iter().zip(need_footprints), &textures, &mut media);
+        let names = Names { shapes, lights: light_names, materials: names_of_materials };
         let is_any_in_use = |is_so: fn(&Material) -> bool| {
             in_use.iter().filter_map(|&index| materials.get(index as usize)).any(is_so)
         };
@@ -315,25 +187,11 @@ impl World {
     }
 }
 
-/// The motion of the light of an instance's shape in render space, if it moves.
-fn light_motion(
-    scene: &Scene,
-    instance: &WrittenInstance,
-    shape: &Shape,
-    render_from_world: &DMat4,
-) -> Option<LightMotion> {
-    let deforms = match shape.geometry {
-        Geometry::Mesh(id) => !scene.meshes[id.index()].later.is_empty(),
-        _ => false,
-    };
-    if deforms {
-        return Some(LightMotion::deforming());
-    }
-    let motion = instance.motion.as_deref()?;
-    let back = (*render_from_world * motion.at_opening()).inverse();
-    let maps: Vec<Affine> =
-        motion.maps().iter().map(|map| math::affine(&(*render_from_world * *map * back))).collect();
-    Some(LightMotion::new(&maps))
+/// The textures of a scene, which has them no longer.
+fn take_textures(scene: &mut Scene) -> Textures {
+    let (images, curves) = (std::mem::take(&mut scene.images), std::mem::take(&mut scene.curves));
+    let kinds: Vec<_> = std::mem::take(&mut scene.textures).into_iter().map(|texture| texture.kind).collect();
+    Textures::new(&kinds, images, curves, scene.render.color)
 }
 
 /// By material: whether its textures depend on the footprint of pixels.
@@ -356,6 +214,26 @@ fn materials_in_use(scene: &Scene) -> BTreeSet<u32> {
     of_shapes.chain(scene.instances.iter().filter_map(|instance| instance.material)).map(|id| id.0).collect()
 }
 
+/// Compiled materials and their names. A body that absorbs light is filled with a medium of its own, which is added to others.
+fn compiled(
+    mut compiler: material::Compiler<'_>,
+    written: impl Iterator<Item = (Written, bool)>,
+    textures: &Textures,
+    media: &mut Vec<Medium>,
+) -> (Vec<Material>, Vec<String>) {
+    let materials = written.map(|(written, needs_footprint)| {
+        let (mut material, absorption) = compiler.compile(&written);
+        material.needs_footprint = needs_footprint;
+        material.medium = written.medium.map(|id| id.0);
+        if absorption != [0.0; 3] && material.medium.is_none() {
+            material.medium = Some(media.len() as u32);
+            media.push(Medium::absorbing(textures, absorption));
+        }
+        (material, written.name)
+    });
+    materials.unzip()
+}
+
 /// What is so of materials, and of mixtures if it is so of any of their parts.
 fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
     let mut has_changed = true;
@@ -374,7 +252,7 @@ fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
 }
 
 /// The BVH over primitives in their order, and what else the builder has.
-fn tree(primitives: &[Primitives], mut builder: Builder, quality: Quality) -> Result<Bvh> {
+pub(super) fn tree(primitives: &[Primitives], mut builder: Builder, quality: Quality) -> Result<Bvh> {
     builder.quality(quality);
     for primitives in primitives {
         match primitives {

@@ -105,6 +105,30 @@ impl Placing<'_> {
     }
 }
 
+impl<'a> Compiler<'a> {
+    /// Before any shape; `grains` by material.
+    pub(super) fn new(
+        scene: &'a Scene,
+        warnings: &'a mut Vec<Warning>,
+        lights: Lights<'a>,
+        grains: Vec<bool>,
+    ) -> Self {
+        Self {
+            scene,
+            warnings,
+            lights,
+            shapes: Vec::new(),
+            grains,
+            has_instance_grain: false,
+            is_in_object: false,
+            light_motion: None,
+            alphas: Vec::new(),
+            medium_interfaces: Vec::new(),
+            vertex_data: Vec::new(),
+        }
+    }
+}
+
 impl Compiler<'_> {
     /// Adds a shape with its label to a group; `group_from_parent` transforms to the group's space.
     pub(super) fn place(
