@@ -27,6 +27,9 @@ const TILE: u32 = 32;
 /// Maximum number of samples per pixel between two evaluations of the stop criteria.
 const LONGEST_ROUND: u32 = 64;
 
+/// Time of a pass that nobody would wait for: passes that are shorter are taken together, since each has its costs.
+const MOMENT: Duration = Duration::from_millis(100);
+
 /// Number of samples of each pixel of a part between two looks for a cancellation.
 const MOST_TOGETHER: u32 = 8;
 
@@ -42,8 +45,8 @@ impl Renderer {
     /// Renders the whole picture with all its samples on `threads` threads (`None` is one per processor). Without the
     /// feature `parallel` it renders on the caller's thread.
     ///
-    /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, so that a render that is
-    /// stopped leaves a whole picture behind. The film is the same for any number of threads.
+    /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, or of as many as take a moment, so that a
+    /// render that is stopped leaves a whole picture behind. The film is the same for any number of threads.
     ///
     /// # Errors
     /// `Limit` if memory for the film or threads are not available.
@@ -175,21 +178,19 @@ impl Work<'_> {
         clock: &mut Clock,
     ) -> Result<(u32, StopReason)> {
         let first = self.wanted.start;
-        let mut samples = 0;
-        for round in rounds(wanted.clone()).filter(|round| round.end > first) {
-            let mut start = round.start.max(first);
-            while start < round.end {
-                let length = stop.time.map_or(u32::MAX, |time| clock.affordable(time));
-                let pass = start..round.end.min(start.saturating_add(length));
-                match self.pass(pass.clone())? {
-                    Pass::Cancelled => return Ok((samples, StopReason::Cancelled)),
-                    Pass::Complete => {}
-                    Pass::Done => clock.taken += pass.end - pass.start,
-                }
-                (start, samples) = (pass.end, pass.end - first);
-                if stop.time.is_some_and(|time| clock.started.elapsed() >= time) && start < wanted.end {
-                    return Ok((samples, StopReason::Time));
-                }
+        let (mut start, mut samples) = (wanted.start.max(first), 0);
+        while start < wanted.end {
+            let most = stop.time.map_or(u32::MAX, |time| clock.affordable(time));
+            let length = (end_of_round(start) - start).max(clock.in_a_moment()).min(most);
+            let pass = start..wanted.end.min(start.saturating_add(length));
+            match self.pass(pass.clone())? {
+                Pass::Cancelled => return Ok((samples, StopReason::Cancelled)),
+                Pass::Complete => {}
+                Pass::Done => clock.taken += pass.end - pass.start,
+            }
+            (start, samples) = (pass.end, pass.end - first);
+            if stop.time.is_some_and(|time| clock.started.elapsed() >= time) && start < wanted.end {
+                return Ok((samples, StopReason::Time));
             }
         }
         Ok((samples, StopReason::Samples))
@@ -365,6 +366,12 @@ impl Clock {
     fn affordable(&self, time: Duration) -> u32 {
         affordable(self.taken, self.started.elapsed(), time)
     }
+
+    /// Number of samples per pixel that take no longer than [`MOMENT`], or one.
+    fn in_a_moment(&self) -> u32 {
+        let elapsed = self.started.elapsed();
+        affordable(self.taken, elapsed, elapsed + MOMENT)
+    }
 }
 
 /// Number of samples per pixel in the next pass, if `samples` took `elapsed`: enough to reach the time limit, not to
@@ -408,15 +415,12 @@ fn area(tile: &PixelBounds) -> u64 {
     u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
 }
 
-/// 0..1, 1..2, 2..4, 4..8 … up to the end of the samples, or as many from their start on.
-fn rounds(samples: Range<u32>) -> impl Iterator<Item = Range<u32>> {
-    let Range { mut start, end } = samples;
-    std::iter::from_fn(move || {
-        let length = start.clamp(1, LONGEST_ROUND).min(end.saturating_sub(start));
-        let round = start..start + length;
-        start = round.end;
-        (!round.is_empty()).then_some(round)
-    })
+/// The end of the round that a sample is in: 0..1, 1..2, 2..4, 4..8 …, and from [`LONGEST_ROUND`] on as many each.
+fn end_of_round(sample: u32) -> u32 {
+    match sample < LONGEST_ROUND {
+        true => (sample + 1).next_power_of_two(),
+        false => (sample / LONGEST_ROUND + 1).saturating_mul(LONGEST_ROUND),
+    }
 }
 
 #[cfg(test)]
@@ -424,14 +428,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rounds_are_aligned_and_whole() {
-        for samples in [1, 2, 3, 64, 65, 100, 1000] {
-            let rounds: Vec<_> = rounds(0..samples).collect();
-            assert_eq!((rounds[0].start, rounds[rounds.len() - 1].end), (0, samples));
-            assert!(rounds.windows(2).all(|pair| pair[0].end == pair[1].start));
-            assert!(rounds.iter().all(|round| round.len() <= 64));
-        }
-        assert_eq!(rounds(20..90).collect::<Vec<_>>(), [20..40, 40..80, 80..90]);
+    fn rounds_double_and_are_never_long() {
+        assert_eq!([0, 1, 2, 3, 4, 31, 32, 63].map(end_of_round), [1, 2, 4, 4, 8, 32, 64, 64]);
+        assert_eq!([64, 127, 128, u32::MAX - 1].map(end_of_round), [128, 128, 192, u32::MAX]);
+    }
+
+    #[test]
+    fn quick_samples_are_taken_together() {
+        let at_once = Clock { started: Stopwatch::start(), taken: 1 << 20 };
+        assert!(at_once.in_a_moment() > 1000);
+        assert_eq!(Clock { taken: 0, ..at_once }.in_a_moment(), 1);
     }
 
     #[test]

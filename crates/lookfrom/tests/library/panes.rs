@@ -173,3 +173,46 @@ fn layers_of_light_paths_know_of_panes() {
     assert!((total(0) / 64.0 / mean(&film) - 1.0).abs() < 1e-3, "{} {}", total(0), mean(&film));
     assert_eq!(total(1), 0.0);
 }
+
+#[test]
+fn panes_have_their_colour_in_whitteds_model() {
+    // A white wall that shines, seen straight on through a pane: 1 − 2R / (1 + R) of its light, by R = ((η − 1) / (η + 1))².
+    let text = format!(
+        r#"
+        [image]
+        width = 4
+        height = 4
+        [render]
+        integrator = "whitted"
+        samples = 4
+        [camera]
+        lookfrom = [0, 0, 5]
+        lookat = [0, 0, 0]
+        fov = 1
+        [materials.glass]
+        type = "thin_dielectric"
+        ior = {ETA}
+        specular_transmittance = [0.5, 1, 0.25]
+        [materials.wall]
+        diffuse = 0
+        emission = 1
+        [[quad]]
+        corner = [-1, -1, 0]
+        edge_u = [2, 0, 0]
+        edge_v = [0, 2, 0]
+        material = "wall"
+        [[quad]]
+        corner = [-9, -9, 1]
+        edge_u = [18, 0, 0]
+        edge_v = [0, 18, 0]
+        material = "glass"
+        "#
+    );
+    let once = ((ETA - 1.0) / (ETA + 1.0)).powi(2);
+    let through = 1.0 - 2.0 * once / (1.0 + once);
+    let picture = Compiled::new(scene(&text)).film().picture();
+    let [r, g, b] = picture.pixels[5].map(f64::from);
+    for (found, expected) in [(r, 0.5), (g, 1.0), (b, 0.25)] {
+        assert!((found - expected * through).abs() < 1e-3, "{found} {}", expected * through);
+    }
+}

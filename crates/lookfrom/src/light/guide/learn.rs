@@ -35,9 +35,9 @@ const BRIGHT: f32 = 0.15;
 /// The least part of the samples that is worth a histogram.
 const LEAST_SHARE: f32 = 0.1;
 
-/// The least gain that is worth a guide: samples with one take 1.4 to 1.9 times as long, and estimated gains are about twice those of
+/// The least gain that is worth a guide: samples with one take 1.3 to 1.9 times as long, and estimated gains are about twice those of
 /// pictures.
-const LEAST_GAIN: f32 = 4.0;
+const LEAST_GAIN: f32 = 3.0;
 
 /// The part of the sphere that is as bright as its brightest direction, as far as histograms are concerned: what is brighter, like the
 /// sun, is found without guides.

@@ -2,7 +2,7 @@
 
 use lookfrom_scene::material::{
     Color, Disney, Ior, MaterialKind, Metal, OpenPbr, Pigment, Principled, Roughness, Scalar,
-    SubsurfaceMedium, Whitted,
+    SubsurfaceMedium, Tint, Whitted,
 };
 
 use crate::core::spectrum::Spectrum;
@@ -31,9 +31,7 @@ pub(super) fn in_whitteds_model(
         MaterialKind::Dielectric { eta, tint, .. } => {
             Whitted { transmission: tint.transmittance, fresnel: true, ior: ior(eta, textures), ..plain }
         }
-        MaterialKind::ThinDielectric { .. } => {
-            Whitted { transmission: Color::gray(1.0 - COAT), mirror: Color::gray(COAT), ior: 1.0, ..plain }
-        }
+        MaterialKind::ThinDielectric { eta, tint } => pane(ior(eta, textures), tint),
         MaterialKind::CoatedDiffuse { reflectance, coat } => coated(*reflectance, &coat.roughness),
         MaterialKind::Plastic(plastic) => {
             let alpha = Scalar::Value(plastic.alpha);
@@ -77,6 +75,23 @@ pub(super) fn in_whitteds_model(
         MaterialKind::ShadowCatcher { .. } => Whitted { diffuse: Color::gray(0.5), ..plain },
         MaterialKind::Interface => Whitted { transmission: Color::gray(1.0), ior: 1.0, ..plain },
     }
+}
+
+/// A pane as it is straight on: its two surfaces reflect 2R / (1 + R), with all that goes to and fro between them. Of a tint by a
+/// texture only that of the transmitted light counts.
+fn pane(ior: f32, tint: &Tint) -> Whitted {
+    let of_one = fresnel::dielectric(1.0, ior);
+    let reflected = 2.0 * of_one / (1.0 + of_one);
+    let part = |part: f32, color: Color| match color {
+        Color::Value(color) => Color::Value(color.map(|channel| part * channel)),
+        texture => texture,
+    };
+    let mirror = match tint.reflectance {
+        Color::Value(_) => part(reflected, tint.reflectance),
+        _ => Color::gray(reflected),
+    };
+    let transmission = part(1.0 - reflected, tint.transmittance);
+    Whitted { diffuse: Color::BLACK, transmission, mirror, ior: 1.0, ..Whitted::default() }
 }
 
 /// A diffuse surface under a dielectric one.
