@@ -10,7 +10,8 @@ import numpy as np
 ASPECT = 4 / 3
 FORMATS = {"f4": 5126, "u1": 5121, "i1": 5120, "u2": 5123, "i2": 5122, "u4": 5125}
 KINDS = ["emission", "matte", "metal", "plastic", "glass", "coat"]
-FEATURES = "animations colors coordinates instances matrix mirrored morph normals opacity quantized skin sparse transform".split()
+FEATURES = "animations colors coordinates instances matrix mirrored morph normals opacity pointers".split()
+FEATURES += "quantized skin sparse transform".split()
 
 
 def png(texels):
@@ -343,7 +344,16 @@ class File:
         return (moved / np.linalg.norm(moved)).tolist()
 
     def animate(self, node, path, keys, interpolation=None):
-        """Keys at random times. Blender interpolates quaternions component by component."""
+        """Blender interpolates quaternions component by component."""
+        self.animate_target({"node": node, "path": path}, keys, interpolation)
+
+    def animate_property(self, pointer, *keys, interpolation=None):
+        """By four keys, each a number or a list."""
+        extensions = self.uses("KHR_animation_pointer", {"pointer": pointer})
+        self.animate_target({"path": "pointer", "extensions": extensions}, np.array(keys, float), interpolation)
+
+    def animate_target(self, target, keys, interpolation=None):
+        """Four keys at random times."""
         drawn = interpolation or self.random.choice(["STEP", "LINEAR"])
         interpolation = "LINEAR" if self.is_smooth else drawn
         times = np.sort(np.array(self.random.sample(range(90), 4)) / 100)
@@ -356,7 +366,6 @@ class File:
             self.json["animations"].append({"samplers": [], "channels": []})
         animation = self.json["animations"][0]
         animation["samplers"].append(sampler)
-        target = {"node": node, "path": path}
         animation["channels"].append({"sampler": len(animation["samplers"]) - 1, "target": target})
 
     def thing(self, place, kind):
@@ -489,6 +498,22 @@ class File:
             self.thing(place, kind or self.random.choice(KINDS))
         for _ in range(self.random.randint(1, 2)):
             self.light()
+        if self.chance(0.5, "pointers") and not self.is_smooth:
+            self.animate_properties()
+
+    def animate_properties(self):
+        """Of a material, lights and the camera. Blender moves one material only, takes intensities for others, interpolates
+        the focal length, and ends at most other pointers."""
+        shining = [index for index, look in enumerate(self.json["materials"]) if "emissiveFactor" in look]
+        if shining:
+            index = self.random.choice(shining)
+            self.animate_property(f"/materials/{index}/emissiveFactor", *(self.numbers(3, 0.1, 1) for _ in range(4)))
+        for index in range(len(self.lights)):
+            if self.chance(0.5):
+                pointer = f"/extensions/KHR_lights_punctual/lights/{index}/color"
+                self.animate_property(pointer, *(self.numbers(3, 0.3, 1) for _ in range(4)))
+        if "perspective" in self.json["cameras"][0] and self.chance(0.4):
+            self.animate_property("/cameras/0/perspective/yfov", *self.numbers(4, 0.5, 0.9), interpolation="STEP")
 
     def write(self, path):
         self.json["scenes"] = [{"nodes": self.roots}]
