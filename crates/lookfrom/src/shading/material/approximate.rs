@@ -82,15 +82,15 @@ pub(super) fn in_whitteds_model(
 fn pane(ior: f32, tint: &Tint) -> Whitted {
     let of_one = fresnel::dielectric(1.0, ior);
     let reflected = 2.0 * of_one / (1.0 + of_one);
-    let part = |part: f32, color: Color| match color {
-        Color::Value(color) => Color::Value(color.map(|channel| part * channel)),
-        texture => texture,
-    };
+    let scaled = |[r, g, b]: [f32; 3], by: f32| Color::Value([r * by, g * by, b * by]);
     let mirror = match tint.reflectance {
-        Color::Value(_) => part(reflected, tint.reflectance),
+        Color::Value(color) => scaled(color, reflected),
         _ => Color::gray(reflected),
     };
-    let transmission = part(1.0 - reflected, tint.transmittance);
+    let transmission = match tint.transmittance {
+        Color::Value(color) => scaled(color, 1.0 - reflected),
+        texture => texture,
+    };
     Whitted { diffuse: Color::BLACK, transmission, mirror, ior: 1.0, ..Whitted::default() }
 }
 
