@@ -81,7 +81,9 @@ impl<'a> Instancing<'a> {
         for written in &self.scene.instances {
             let matrix = *render_from_world * written.world_from_object;
             place::inverse(&written.at, &matrix)?;
-            if let Some(lights) = self.place_lights(compiler, written, render_from_world, in_world)? {
+            if let Some(lights) =
+                self.place_lights(compiler, (written, &matrix), render_from_world, in_world)?
+            {
                 moving_lights.push((lights.into_primitives(), written, matrix));
             }
             if let Some((trees, _)) = trees {
@@ -107,16 +109,15 @@ impl<'a> Instancing<'a> {
         Ok(builder)
     }
 
-    /// Places the shapes of an instance that emit light, each a light of its own: in the world those that stand still. Returns those that
-    /// move, if there are any.
+    /// Places the shapes of an instance that emit light, each a light of its own, by the instance's matrix to render space: in the world
+    /// those that stand still. Returns those that move, if there are any.
     fn place_lights(
         &self,
         compiler: &mut Compiler<'_>,
-        written: &WrittenInstance,
+        (written, matrix): (&WrittenInstance, &DMat4),
         render_from_world: &DMat4,
         in_world: &mut Group,
     ) -> Result<Option<Group>> {
-        let matrix = *render_from_world * written.world_from_object;
         let material = written.material.map(|id| id.0);
         let mut moving = None;
         for shape in self.shapes(written.object.index()).filter(|(shape, _)| shape.emission.is_some()) {
@@ -125,7 +126,7 @@ impl<'a> Instancing<'a> {
                 None => &mut *in_world,
                 Some(_) => moving.get_or_insert_with(Group::default),
             };
-            compiler.place(shape, &matrix, material, group)?;
+            compiler.place(shape, matrix, material, group)?;
         }
         compiler.light_motion = None;
         Ok(moving)

@@ -88,7 +88,7 @@ fn a_window_is_found() {
     assert!(noise_of_found < 0.5 * noise, "{noise_of_found}, not far below {noise}");
 }
 
-/// Where openings are asked for and nothing is gained by them, this is told, and the picture is as without.
+/// A guide that is given up: a notice, and the bits of the picture without one.
 #[test]
 fn what_is_given_up_is_told() {
     let under_a_sky = |more: &str| {
