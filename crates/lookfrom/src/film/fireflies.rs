@@ -11,8 +11,11 @@
 //! in a picture that converges. The excess above the median goes in equal parts to the 5 × 5 pixels around.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 
+use super::plane::SIDE;
 use super::{Film, Picture};
+use crate::core::parallel;
 use lookfrom_scene::settings::PixelBounds;
 
 /// Number of standard errors beyond which a difference is significant.
@@ -38,19 +41,14 @@ pub struct Firefly {
     pub pixel: [u32; 2],
     /// Its luminance beyond the median of its neighbours.
     pub excess: f64,
+    /// The fraction of its light that it keeps where the excess is spread.
+    pub kept: f64,
 }
 
 impl Film {
     /// The fireflies of the film, those with the largest excess first.
     pub fn fireflies(&self) -> Vec<Firefly> {
-        let area = self.area();
-        let mut found: Vec<Firefly> = (area.y0..area.y1)
-            .flat_map(|y| (area.x0..area.x1).map(move |x| [x, y]))
-            .filter_map(|[x, y]| {
-                let [own, median] = self.outlier(x, y)?;
-                Some(Firefly { pixel: [x, y], excess: own - median })
-            })
-            .collect();
+        let mut found = self.fireflies_by_rows();
         found.sort_by(|a, b| b.excess.total_cmp(&a.excess));
         found
     }
@@ -59,6 +57,10 @@ impl Film {
     /// sum over the picture is the same up to rounding.
     pub fn picture_without_fireflies(&self) -> Picture {
         let mut picture = self.picture();
+        let mut fireflies = self.fireflies_by_rows().into_iter().peekable();
+        if fireflies.peek().is_none() {
+            return picture;
+        }
         let area = self.area();
         let width = self.width as usize;
         // The light that rows get, from row `y - RADIUS` on.
@@ -66,11 +68,9 @@ impl Film {
         for y in area.y0..area.y1 + RADIUS {
             let first = y.saturating_sub(RADIUS);
             spread.resize((y + RADIUS + 1 - first) as usize, vec![[0.0; 3]; width]);
-            for x in if y < area.y1 { area.x0..area.x1 } else { 0..0 } {
-                let kept = self.kept(x, y);
-                if kept >= 1.0 {
-                    continue;
-                }
+            while let Some(Firefly { pixel: [x, _], kept, .. }) =
+                fireflies.next_if(|found| found.pixel[1] == y)
+            {
                 let light = &mut picture.pixels[y as usize * width + x as usize];
                 let excess = light.map(|light| f64::from(light) * (1.0 - kept));
                 *light = light.map(|light| (f64::from(light) * kept) as f32);
@@ -100,36 +100,79 @@ impl Film {
         picture
     }
 
-    /// The fraction of its light that a pixel keeps: 1 unless it is a firefly.
-    fn kept(&self, x: u32, y: u32) -> f64 {
-        self.outlier(x, y).map_or(1.0, |[own, median]| median / own)
+    /// The fireflies of the film, row by row.
+    fn fireflies_by_rows(&self) -> Vec<Firefly> {
+        let PixelBounds { y0, y1, .. } = self.area();
+        let first = y0 / SIDE;
+        // Rows of blocks, each of which is decoded once, but for the rows that it shares with the next.
+        let found = parallel::collect(y1.div_ceil(SIDE).saturating_sub(first) as usize, |number| {
+            let top = (first + number as u32) * SIDE;
+            self.fireflies_of_rows(top.max(y0)..(top + SIDE).min(y1))
+        });
+        found.concat()
     }
 
-    /// The luminance of a firefly, and the median of its neighbours; `None` for other pixels.
-    fn outlier(&self, x: u32, y: u32) -> Option<[f64; 2]> {
-        let at = |x, y| self.pixel(x, y).map(|pixel| (pixel.luminance(), pixel.standard_error()));
-        let (own, own_error) = at(x, y)?;
-        // Few pixels are carried by few samples: only these are compared with others.
-        if !(own > 0.0 && own_error > CARRIED_BY_FEW * own) {
-            return None;
-        }
-        let others = |radius| {
-            let area = around(self.area(), x, y, radius);
-            (area.y0..area.y1)
-                .flat_map(move |row| (area.x0..area.x1).map(move |column| (column, row)))
-                .filter(move |&place| place != (x, y))
-                .filter_map(move |(column, row)| at(column, row))
+    /// The fireflies of these rows of [`Film::area`].
+    fn fireflies_of_rows(&self, rows: Range<u32>) -> Vec<Firefly> {
+        let PixelBounds { x0, y0, x1, y1 } = self.area();
+        let area = PixelBounds {
+            x0,
+            y0: rows.start.saturating_sub(RADIUS).max(y0),
+            x1,
+            y1: (rows.end + RADIUS).min(y1),
         };
-        let is_alone = others(1).all(|(light, _)| light < NOT_ALONE * own);
-        let is_at_edge =
-            others(RADIUS).any(|(light, error)| error <= CARRIED_BY_FEW * light && light >= AT_EDGE * own);
-        if !is_alone || is_at_edge {
+        let mut pixels = Vec::with_capacity((area.x1 - area.x0) as usize * (area.y1 - area.y0) as usize);
+        for y in area.y0..area.y1 {
+            self.pixels.row(y, x0, x1, |pixel| pixels.push([pixel.luminance(), pixel.standard_error()]));
+        }
+        let known = Known { area, pixels };
+        let places = rows.flat_map(|y| (x0..x1).map(move |x| [x, y]));
+        places.filter_map(|pixel| known.firefly(pixel)).collect()
+    }
+}
+
+/// What is known of the pixels of an area.
+struct Known {
+    area: PixelBounds,
+    /// Luminance and its standard error, row by row.
+    pixels: Vec<[f64; 2]>,
+}
+
+impl Known {
+    fn at(&self, [x, y]: [u32; 2]) -> [f64; 2] {
+        let PixelBounds { x0, y0, x1, .. } = self.area;
+        self.pixels[(y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize]
+    }
+
+    /// The other pixels at most `radius` away along each axis.
+    fn others(&self, [x, y]: [u32; 2], radius: u32) -> impl Iterator<Item = [f64; 2]> {
+        let area = around(self.area, x, y, radius);
+        (area.y0..area.y1)
+            .flat_map(move |row| (area.x0..area.x1).map(move |column| [column, row]))
+            .filter(move |&place| place != [x, y])
+            .map(|place| self.at(place))
+    }
+
+    /// The firefly that a pixel is, if it is one: see the head of this file.
+    fn firefly(&self, pixel: [u32; 2]) -> Option<Firefly> {
+        let [own, error] = self.at(pixel);
+        // Few pixels are carried by few samples: only these are compared with others.
+        if !(own > 0.0 && error > CARRIED_BY_FEW * own) {
             return None;
         }
-        let (mut lights, mut errors): (Vec<f64>, Vec<f64>) = others(1).unzip();
+        if self.others(pixel, 1).any(|[light, _]| light >= NOT_ALONE * own) {
+            return None;
+        }
+        let mut at_edge = self.others(pixel, RADIUS);
+        if at_edge.any(|[light, error]| error <= CARRIED_BY_FEW * light && light >= AT_EDGE * own) {
+            return None;
+        }
+        let (mut lights, mut errors): (Vec<f64>, Vec<f64>) =
+            self.others(pixel, 1).map(|[light, error]| (light, error)).unzip();
         let (median, error) = (median(&mut lights)?, median(&mut errors)?);
         // The error of a pixel with one sample is infinite; infinities compare as they should.
-        (median >= 0.0 && own - median > STANDARD_ERRORS * error).then_some([own, median])
+        let is_one = median >= 0.0 && own - median > STANDARD_ERRORS * error;
+        is_one.then(|| Firefly { pixel, excess: own - median, kept: median / own })
     }
 }
 

@@ -10,6 +10,7 @@ use super::{Film, common};
 use crate::aov::{Aovs, DenoiserFeatures};
 use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64};
 use crate::core::hash;
+use crate::core::parallel;
 
 impl Film {
     /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.
@@ -100,13 +101,16 @@ impl Film {
         let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
         let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
         let PixelBounds { x0, y0, x1, y1 } = common(part, self.area);
-        for y in y0..y1 {
-            let start = (y - part.y0) as usize * width as usize;
-            let row = &mut pixels[start + (x0 - part.x0) as usize..start + (x1 - part.x0) as usize];
-            let mut means = row.iter_mut();
-            self.pixels.row(y, x0, x1, |pixel| {
-                if let Some(mean) = means.next() {
-                    *mean = pixel.mean();
+        if x0 < x1 {
+            parallel::for_chunks_mut(&mut pixels, width as usize, |row, pixels| {
+                let y = part.y0 + row as u32;
+                if (y0..y1).contains(&y) {
+                    let mut means = pixels[(x0 - part.x0) as usize..].iter_mut();
+                    self.pixels.row(y, x0, x1, |pixel| {
+                        if let Some(mean) = means.next() {
+                            *mean = pixel.mean();
+                        }
+                    });
                 }
             });
         }
@@ -118,8 +122,10 @@ impl Film {
         if self.alphas.is_empty() {
             return Vec::new();
         }
-        let rows = (part.y0..part.y1).flat_map(|y| (part.x0..part.x1).map(move |x| (x, y)));
-        rows.filter_map(|(x, y)| self.alpha(x, y)).collect()
+        let rows = parallel::collect((part.y1 - part.y0) as usize, |row| -> Vec<f32> {
+            (part.x0..part.x1).filter_map(|x| self.alpha(x, part.y0 + row as u32)).collect()
+        });
+        rows.concat()
     }
 
     /// The mean alpha of a pixel, 0 without samples; `None` if the film has no alpha.

@@ -407,6 +407,59 @@ fn edges_and_lamps_are_no_fireflies() {
     assert_eq!(film.fireflies(), []);
 }
 
+/// Fireflies of a noisy film, in rows of blocks, are those of the definition, pixel by pixel: also beside the borders of
+/// blocks and of the film.
+#[test]
+fn fireflies_are_those_of_the_definition() {
+    const SIZE: [u32; 2] = [37, 70];
+    let area = PixelBounds { x0: 1, y0: 5, x1: 36, y1: 69 };
+    let mut film = Film::new(SIZE[0], SIZE[1], Some(area)).unwrap();
+    for [x, y] in (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| [x, y])) {
+        // One sample here and there, whose error is infinite.
+        let samples = if mix(u64::from(y * 37 + x)).is_multiple_of(9) { 1 } else { 8 };
+        for sample in 0..samples {
+            let bits = mix(u64::from(y * 37 + x) << 8 | u64::from(sample));
+            let light = if bits.is_multiple_of(200) { 1e3 } else { (bits >> 40) as f32 / 16_777_216.0 };
+            film.add(x, y, sample, [light; 3]);
+        }
+    }
+    let known = |x: u32, y: u32| {
+        let pixel = film.pixel(x, y)?;
+        Some([pixel.luminance(), pixel.standard_error()])
+    };
+    let others = |x: u32, y: u32, radius: i32| -> Vec<[f64; 2]> {
+        let offsets = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| [dx, dy]));
+        let places = offsets
+            .filter(|offset| *offset != [0, 0])
+            .filter_map(|[dx, dy]| Some([x.checked_add_signed(dx)?, y.checked_add_signed(dy)?]));
+        places.filter_map(|[x, y]| known(x, y)).collect()
+    };
+    let median = |mut numbers: Vec<f64>| {
+        numbers.sort_by(f64::total_cmp);
+        numbers[(numbers.len() - 1) / 2]
+    };
+    let is_firefly = |&[x, y]: &[u32; 2]| {
+        let Some([light, error]) = known(x, y) else { return false };
+        let near = others(x, y, 1);
+        let [lights, errors] = [0, 1].map(|index| near.iter().map(|known| known[index]).collect());
+        light > 0.0
+            && error > 0.7 * light
+            && near.iter().all(|[other, _]| *other < 0.25 * light)
+            && !others(x, y, 2).iter().any(|[other, error]| *error <= 0.7 * other && *other >= 0.5 * light)
+            && light - median(lights) > 3.0 * median(errors)
+    };
+    let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]));
+    let expected: Vec<_> = places.filter(is_firefly).collect();
+    let mut found: Vec<_> = film.fireflies().iter().map(|firefly| firefly.pixel).collect();
+    found.sort_by_key(|&[x, y]| [y, x]);
+    assert_eq!(found, expected);
+    let rows = [[5, 6], [30, 33], [62, 65], [67, 68]];
+    assert!(
+        rows.iter().all(|[first, last]| expected.iter().any(|[_, y]| (first..=last).contains(&y))),
+        "{expected:?}"
+    );
+}
+
 #[test]
 fn channels_have_their_variance() {
     use lookfrom_scene::settings::Sensor;

@@ -9,6 +9,7 @@ mod tonemap;
 
 use std::sync::LazyLock;
 
+use crate::core::parallel;
 use crate::film::Picture;
 use lookfrom_scene::settings::Tonemap;
 
@@ -44,43 +45,53 @@ pub fn srgba16(picture: &Picture, exposure: f32, tonemap: Tonemap) -> Vec<u16> {
 }
 
 /// The display colours over a background, each component encoded.
-fn shown_before<T>(
+fn shown_before<T: Copy + Default + Send>(
     picture: &Picture,
     background: [f32; 3],
     exposure: f32,
     tonemap: Tonemap,
-    encode: impl Fn(f32) -> T,
+    encode: impl Fn(f32) -> T + Sync,
 ) -> Vec<T> {
     let scale = scale(exposure);
-    let mut encoded = Vec::with_capacity(3 * picture.pixels.len());
-    for (index, &rgb) in picture.pixels.iter().enumerate() {
-        let Some(&alpha) = picture.alpha.get(index) else {
-            encoded.extend(display(rgb, scale, tonemap).map(&encode));
-            continue;
+    of_each_pixel(picture, |rgb, alpha| {
+        let Some(alpha) = alpha else {
+            return display(rgb, scale, tonemap).map(&encode);
         };
         let (straight, alpha) = straight(rgb, alpha);
         let shown = display(straight, scale, tonemap);
-        encoded.extend([0, 1, 2].map(|c| encode(alpha * shown[c] + (1.0 - alpha) * background[c])));
-    }
-    encoded
+        [0, 1, 2].map(|c| encode(alpha * shown[c] + (1.0 - alpha) * background[c]))
+    })
 }
 
 /// The straight display colours and alphas, each encoded.
-fn straight_rgba<T>(
+fn straight_rgba<T: Copy + Default + Send>(
     picture: &Picture,
     exposure: f32,
     tonemap: Tonemap,
-    encode: impl Fn(f32) -> T,
-    encode_alpha: impl Fn(f32) -> T,
+    encode: impl Fn(f32) -> T + Sync,
+    encode_alpha: impl Fn(f32) -> T + Sync,
 ) -> Vec<T> {
     let scale = scale(exposure);
-    let mut encoded = Vec::with_capacity(4 * picture.pixels.len());
-    for (index, &rgb) in picture.pixels.iter().enumerate() {
-        let (straight, alpha) = straight(rgb, picture.alpha.get(index).copied().unwrap_or(1.0));
-        encoded.extend(display(straight, scale, tonemap).map(&encode));
-        encoded.push(encode_alpha(alpha));
-    }
-    encoded
+    of_each_pixel(picture, |rgb, alpha| {
+        let (straight, alpha) = straight(rgb, alpha.unwrap_or(1.0));
+        let [r, g, b] = display(straight, scale, tonemap).map(&encode);
+        [r, g, b, encode_alpha(alpha)]
+    })
+}
+
+/// `N` numbers of each pixel, by its light and its alpha, if it has one.
+fn of_each_pixel<T: Copy + Default + Send, const N: usize>(
+    picture: &Picture,
+    numbers: impl Fn([f32; 3], Option<f32>) -> [T; N] + Sync,
+) -> Vec<T> {
+    const PIXELS: usize = 4096;
+    let mut all = vec![[T::default(); N]; picture.pixels.len()];
+    parallel::for_chunks_mut(&mut all, PIXELS, |chunk, all| {
+        for (index, all) in (chunk * PIXELS..).zip(all) {
+            *all = numbers(picture.pixels[index], picture.alpha.get(index).copied());
+        }
+    });
+    all.into_flattened()
 }
 
 /// Straight colour from one premultiplied by alpha, and the alpha clamped to 0 … 1.

@@ -65,7 +65,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ),
     ("film", "accumulator aov fixed_point hash lanes parallel sampler spectrum"),
     ("denoise", "film parallel"),
-    ("develop", "film"),
+    ("develop", "film parallel"),
     ("exposure", "film math"),
     ("view", "camera"),
     (
