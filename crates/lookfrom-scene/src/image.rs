@@ -26,6 +26,6 @@ pub use self::read::{By, Reading, decode, read, read_as, read_data, read_encoded
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};
 pub use self::texels::{Image, Quad};
 pub use self::write::{
-    Pixels, encode_hdr, encode_jpeg, encode_pfm, encode_png, encode_png_of, encode_png_with_alpha,
-    encode_ppm, encode_webp, without_alpha, write_jpeg, write_png, write_webp,
+    Pixels, encode_hdr, encode_jpeg, encode_pfm, encode_png, encode_png_of, encode_png_to_show, encode_ppm,
+    encode_webp, without_alpha, write_jpeg, write_png, write_webp,
 };

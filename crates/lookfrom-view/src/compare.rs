@@ -6,7 +6,7 @@ use lookfrom::session::Developed;
 use lookfrom_scene::Result;
 use lookfrom_scene::image::compare::MOST_STANDARD_ERRORS;
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
-use lookfrom_scene::image::{Image, encode_png};
+use lookfrom_scene::image::{Image, Pixels, encode_png_to_show};
 
 use crate::heat::{byte, heat};
 use crate::message::Comparing;
@@ -26,11 +26,11 @@ pub(crate) fn pictures(
     let (exposure, tonemap) = (developed.development.exposure, developed.development.tonemap);
     let shown = |pixels: Vec<[f32; 3]>| {
         let picture = Picture { width, height, pixels, alpha: Vec::new() };
-        encode_png(width, height, &srgb8(&picture, exposure, tonemap))
+        encode_png_to_show([width, height], Pixels::Rgb8(&srgb8(&picture, exposure, tonemap)))
     };
     let colored = |colors: Vec<[f32; 3]>| {
         let bytes: Vec<u8> = colors.into_iter().flat_map(|color| color.map(byte)).collect();
-        encode_png(width, height, &bytes)
+        encode_png_to_show([width, height], Pixels::Rgb8(&bytes))
     };
     let pairs = || pixels.iter().zip(&other);
     Ok(match comparing {

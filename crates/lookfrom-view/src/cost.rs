@@ -5,7 +5,7 @@ use std::thread::ScopedJoinHandle;
 use lookfrom::render::{Cost, SampleId};
 use lookfrom::session::Session;
 use lookfrom_scene::Result;
-use lookfrom_scene::image::encode_png;
+use lookfrom_scene::image::{Pixels, encode_png_to_show};
 
 use crate::heat::{byte, heat};
 
@@ -63,7 +63,7 @@ impl CostMap {
     /// The map as a PNG: black is 0, the brightest colour the largest count.
     ///
     /// # Errors
-    /// As [`encode_png`].
+    /// As [`encode_png_to_show`].
     pub(crate) fn png(&self, counted: Counted) -> Result<Vec<u8>> {
         let count = |cost: &Cost| match counted {
             Counted::Rays => cost.rays,
@@ -72,7 +72,8 @@ impl CostMap {
         };
         let most = self.costs.iter().map(count).max().unwrap_or(0).max(1);
         let color = |cost: &Cost| heat(count(cost) as f32 / most as f32).map(byte);
-        encode_png(self.width, self.height, &self.costs.iter().flat_map(color).collect::<Vec<u8>>())
+        let rgb: Vec<u8> = self.costs.iter().flat_map(color).collect();
+        encode_png_to_show([self.width, self.height], Pixels::Rgb8(&rgb))
     }
 }
 

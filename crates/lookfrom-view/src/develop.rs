@@ -5,7 +5,7 @@ use std::io::Cursor;
 use lookfrom::film::Film;
 use lookfrom::session::{Development, Format, Session};
 use lookfrom_scene::Result;
-use lookfrom_scene::image::encode_png;
+use lookfrom_scene::image::{Pixels, encode_png_to_show, without_alpha};
 
 use crate::compare;
 use crate::cost::Counted;
@@ -139,14 +139,20 @@ impl Shown<'_> {
     pub(crate) fn pictures(&self) -> Result<Vec<Vec<u8>>> {
         let layer = layer_of(self.request)?;
         if layer != Layer::Color {
-            let (width, height) = (self.film.width(), self.film.height());
-            return Ok(vec![encode_png(width, height, &self.layer(layer))?]);
+            let size = [self.film.width(), self.film.height()];
+            return Ok(vec![encode_png_to_show(size, Pixels::Rgb8(&self.layer(layer)))?]);
         }
+        let developed = self.session.develop(self.film, &self.development()?);
         if let (Some(request), Some(reference)) = (self.request.compare, &self.loaded.reference) {
-            let developed = self.session.develop(self.film, &self.development()?);
             return compare::pictures(&developed, self.film, reference, request.mode);
         }
-        Ok(vec![self.file(Format::Png)?])
+        let shown = developed.shown();
+        let size = [shown.width, shown.height];
+        let png = match shown.has_alpha {
+            true => encode_png_to_show(size, Pixels::Rgba8(&shown.rgba)),
+            false => encode_png_to_show(size, Pixels::Rgb8(&without_alpha(&shown.rgba))),
+        };
+        Ok(vec![png?])
     }
 
     /// The picture as a file.

@@ -9,7 +9,7 @@ use lookfrom::view::View;
 use lookfrom::view::camera::Camera;
 use lookfrom_scene::Result;
 use lookfrom_scene::camera::{Camera as Written, Projection};
-use lookfrom_scene::image::{encode_png_with_alpha, srgb_from_linear};
+use lookfrom_scene::image::{Pixels, encode_png_to_show, srgb_from_linear};
 use lookfrom_scene::settings::{FilterShape, ImageSettings, Integrator, Layers, RenderSettings};
 
 use crate::heat::byte;
@@ -47,14 +47,15 @@ pub(crate) fn frame(session: &Session, id: u64, request: &CameraRequest, size: [
         ..session.settings().clone()
     })?;
     let film = renderer.render_onto(Film::for_image(&image)?, 0, &StopCriteria::default(), None, &())?.film;
-    let first_hits =
-        || (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| film.aovs(x, y));
-    let pixels: Vec<u8> =
-        first_hits().flat_map(|aovs| aovs.map_or([0; 4], |aovs| headlight(&aovs))).collect();
-    let png = encode_png_with_alpha(width, height, &pixels)?;
-    let depths: Vec<u8> = first_hits()
-        .flat_map(|aovs| aovs.map_or(f32::INFINITY, |aovs| aovs.position[2]).to_le_bytes())
-        .collect();
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let (colors, depths): (Vec<[u8; 4]>, Vec<[u8; 4]>) = places
+        .map(|(x, y)| match film.aovs(x, y) {
+            Some(aovs) => (headlight(&aovs), aovs.position[2].to_le_bytes()),
+            None => ([0; 4], f32::INFINITY.to_le_bytes()),
+        })
+        .unzip();
+    let png = encode_png_to_show([width, height], Pixels::Rgba8(colors.as_flattened()))?;
+    let depths = depths.as_flattened();
     let matrix = screen_from_world(renderer.view().camera());
     let header = Header::Space {
         id,
@@ -63,7 +64,7 @@ pub(crate) fn frame(session: &Session, id: u64, request: &CameraRequest, size: [
         screen_from_world: matrix.transpose().to_cols_array(),
         sizes: [png.len(), depths.len()],
     };
-    Ok(header.frame(&[&png, &depths]))
+    Ok(header.frame(&[&png, depths]))
 }
 
 /// The colour of a first hit under a light at the camera.

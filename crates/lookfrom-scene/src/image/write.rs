@@ -69,13 +69,14 @@ pub fn encode_png(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
     encode_png_of([width, height], Pixels::Rgb8(rgb), None)
 }
 
-/// The bytes of a PNG of 8-bit sRGB colours with straight (not premultiplied) alpha, row 0 on top. The same input gives the
-/// same bytes.
+/// The bytes of a PNG that is shown once and not kept: more bytes in less time than those of [`encode_png_of`].
 ///
 /// # Errors
-/// `Invalid` if `rgba` is not `4 * width * height` bytes.
-pub fn encode_png_with_alpha(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>> {
-    encode_png_of([width, height], Pixels::Rgba8(rgba), None)
+/// `Invalid` if there are not as many pixels as `size` (width and height) says.
+pub fn encode_png_to_show(size: [u32; 2], pixels: Pixels) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write_png_by(CompressionType::Fast, size, pixels, None, &mut bytes)?;
+    Ok(bytes)
 }
 
 /// The bytes of a PNG, and what is told of it. The same input gives the same bytes.
@@ -98,8 +99,18 @@ pub fn write_png(
     metadata: Option<&Metadata>,
     out: &mut impl Write,
 ) -> Result<()> {
+    write_png_by(CompressionType::Default, size, pixels, metadata, out)
+}
+
+fn write_png_by(
+    compression: CompressionType,
+    size: [u32; 2],
+    pixels: Pixels,
+    metadata: Option<&Metadata>,
+    out: &mut impl Write,
+) -> Result<()> {
     pixels.encode(size, |samples, color| {
-        let mut encoder = PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive);
+        let mut encoder = PngEncoder::new_with_quality(out, compression, FilterType::Adaptive);
         Metadata::tell(metadata, &mut encoder)?;
         encoder.write_image(samples, size[0], size[1], color)
     })
