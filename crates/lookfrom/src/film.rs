@@ -4,7 +4,7 @@
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
 //! denoiser, are in [`crate::aov`]; what the sums tell of a pixel, in `means`; noise estimates in `noise`; firefly suppression in
-//! `fireflies`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion
+//! `fireflies`; blocks to which threads add, in `detached`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion
 //! for display is in [`crate::post::develop`].
 //!
 //! In a tile, which a thread fills, a pixel takes 112 bytes, as many for variances in the sensor's channels, and those of AOVs, where they are
@@ -12,6 +12,7 @@
 
 pub mod allocation;
 mod buckets;
+mod detached;
 mod fireflies;
 mod first_hits;
 mod layout;
@@ -185,18 +186,9 @@ impl Film {
     /// # Errors
     /// As [`Film::merge`].
     pub fn add_tile(&mut self, tile: &FilmTile) -> Result<()> {
-        let area = tile.area;
-        self.check_same(area, tile.layout)?;
-        self.ledger.merge(&tile.ledger).map_err(|overlap| twice(&overlap))?;
-        let columns = area.x1.saturating_sub(area.x0) as usize;
-        let index = |x: u32, y: u32| (y - area.y0) as usize * columns + (x - area.x0) as usize;
-        for_each_plane!([&mut] self => mine, [&] tile => theirs; {
-            // Of denoiser features, only the first samples of a pixel have any.
-            if theirs.iter().any(|sums| *sums != Default::default()) {
-                mine.change(area, |x, y, sums| Sums::merge(sums, &theirs[index(x, y)]));
-            }
-        });
-        self.drop_samples(tile.dropped, tile.first_dropped);
+        let mut detached = self.detach(tile)?;
+        detached.add(tile);
+        self.attach(detached);
         Ok(())
     }
 

@@ -56,7 +56,7 @@ impl<T: Sums> Plane<T> {
 
     /// The sums of a pixel of the picture; `None` if there are none of this kind.
     pub(super) fn get(&self, x: u32, y: u32) -> Option<T> {
-        let block = self.blocks.get(self.index(x / SIDE, y / SIDE))?;
+        let block = self.blocks.get(index(self.width, [x / SIDE, y / SIDE]))?;
         let columns = SIDE.min(self.width - x / SIDE * SIDE);
         Some(Packed::of(block).get((y % SIDE * columns + x % SIDE) as usize))
     }
@@ -67,67 +67,109 @@ impl<T: Sums> Plane<T> {
         while x < x1 {
             let left = x / SIDE * SIDE;
             let columns = SIDE.min(self.width - left);
-            let packed = Packed::of(&self.blocks[self.index(x / SIDE, y / SIDE)]);
+            let packed = Packed::of(&self.blocks[index(self.width, [x / SIDE, y / SIDE])]);
             let end = x1.min(left + columns);
             (x..end).for_each(|x| each(packed.get((y % SIDE * columns + x - left) as usize)));
             x = end;
         }
     }
 
-    /// Changes the sums of the pixels of an area, by their columns and rows.
-    pub(super) fn change(&mut self, area: PixelBounds, mut each: impl FnMut(u32, u32, &mut T)) {
-        let PixelBounds { x0, y0, x1, y1 } = area;
-        if self.is_empty() || x0 >= x1 || y0 >= y1 {
+    /// Moves the blocks that an area touches out of the plane, row by row: their pixels have no sums in it.
+    pub(super) fn take(&mut self, area: PixelBounds) -> impl Iterator<Item = Box<[u8]>> {
+        let touched = (!self.is_empty()).then(|| touched(area));
+        touched.into_iter().flatten().map(|place| std::mem::take(&mut self.blocks[index(self.width, place)]))
+    }
+
+    /// Adds the sums of such blocks. Where the plane has none, as after [`Plane::take`], they are moved.
+    pub(super) fn put(&mut self, area: PixelBounds, blocks: &mut impl Iterator<Item = Box<[u8]>>) {
+        if self.is_empty() {
             return;
         }
-        let (mut sums, mut bytes) = (Vec::new(), Vec::new());
-        for row in y0 / SIDE..y1.div_ceil(SIDE) {
-            for column in x0 / SIDE..x1.div_ceil(SIDE) {
-                let [left, top] = [column * SIDE, row * SIDE];
-                let (columns, rows) = (SIDE.min(self.width - left), SIDE.min(self.height - top));
-                let index = self.index(column, row);
-                unpack(&self.blocks[index], (columns * rows) as usize, &mut sums);
-                for y in y0.max(top)..y1.min(top + rows) {
-                    for x in x0.max(left)..x1.min(left + columns) {
-                        each(x, y, &mut sums[((y - top) * columns + x - left) as usize]);
-                    }
-                }
-                pack(&sums, &mut bytes);
-                replace(&mut self.blocks[index], &bytes);
+        for (place, block) in touched(area).zip(blocks) {
+            let mine = &mut self.blocks[index(self.width, place)];
+            match mine.is_empty() {
+                true => *mine = block,
+                false => merge::<T>(mine, &block, count(inside([self.width, self.height], place))),
             }
         }
     }
 
     /// Adds the sums of another plane of the same picture.
     pub(super) fn merge(&mut self, other: &Self) {
-        let (mut sums, mut others, mut bytes) = (Vec::<T>::new(), Vec::new(), Vec::new());
         let columns = self.width.div_ceil(SIDE);
-        let sizes = (self.width, self.height);
-        for ((index, block), theirs) in (0..).zip(&mut self.blocks).zip(&other.blocks) {
-            if theirs.is_empty() {
-                continue;
-            }
-            let side = |size: u32, at: u32| SIDE.min(size - at * SIDE) as usize;
-            let count = side(sizes.0, index % columns) * side(sizes.1, index / columns);
-            unpack(block, count, &mut sums);
-            unpack(theirs, count, &mut others);
-            sums.iter_mut().zip(&others).for_each(|(sums, others)| sums.merge(others));
-            pack(&sums, &mut bytes);
-            replace(block, &bytes);
+        let size = [self.width, self.height];
+        for ((number, mine), theirs) in (0..).zip(&mut self.blocks).zip(&other.blocks) {
+            merge::<T>(mine, theirs, count(inside(size, [number % columns, number / columns])));
         }
     }
 
     /// Makes the pixels of blocks that end within these rows pixels without sums.
     pub(super) fn forget(&mut self, rows: &Range<u32>) {
-        let blocks = self.index(0, rows.start / SIDE)..self.index(0, rows.end / SIDE);
+        let blocks = index(self.width, [0, rows.start / SIDE])..index(self.width, [0, rows.end / SIDE]);
         for block in self.blocks.get_mut(blocks).unwrap_or_default() {
             *block = Box::default();
         }
     }
+}
 
-    fn index(&self, column: u32, row: u32) -> usize {
-        row as usize * self.width.div_ceil(SIDE) as usize + column as usize
+/// Columns and rows of the blocks that an area touches, row by row.
+fn touched(PixelBounds { x0, y0, x1, y1 }: PixelBounds) -> impl Iterator<Item = [u32; 2]> {
+    let rows = if x0 < x1 && y0 < y1 { y0 / SIDE..y1.div_ceil(SIDE) } else { 0..0 };
+    rows.flat_map(move |row| (x0 / SIDE..x1.div_ceil(SIDE)).map(move |column| [column, row]))
+}
+
+/// The number of a block in a picture of this width.
+fn index(width: u32, [column, row]: [u32; 2]) -> usize {
+    row as usize * width.div_ceil(SIDE) as usize + column as usize
+}
+
+/// The pixels of a block in a picture of this size.
+fn inside([width, height]: [u32; 2], [column, row]: [u32; 2]) -> PixelBounds {
+    let [x0, y0] = [column * SIDE, row * SIDE];
+    PixelBounds { x0, y0, x1: width.min(x0 + SIDE), y1: height.min(y0 + SIDE) }
+}
+
+fn count(PixelBounds { x0, y0, x1, y1 }: PixelBounds) -> usize {
+    (x1 - x0) as usize * (y1 - y0) as usize
+}
+
+/// The number of blocks that an area touches.
+pub(super) fn count_of_blocks(area: PixelBounds) -> usize {
+    touched(area).count()
+}
+
+/// Changes the sums of the pixels of an area, by their columns and rows, in the blocks that it touches of a picture of this size.
+pub(super) fn change<T: Sums>(
+    size: [u32; 2],
+    area: PixelBounds,
+    blocks: &mut [Box<[u8]>],
+    mut each: impl FnMut(u32, u32, &mut T),
+) {
+    let (mut sums, mut bytes) = (Vec::new(), Vec::new());
+    for (place, block) in touched(area).zip(blocks) {
+        let all = inside(size, place);
+        unpack(block, count(all), &mut sums);
+        for y in area.y0.max(all.y0)..area.y1.min(all.y1) {
+            for x in area.x0.max(all.x0)..area.x1.min(all.x1) {
+                each(x, y, &mut sums[((y - all.y0) * (all.x1 - all.x0) + x - all.x0) as usize]);
+            }
+        }
+        pack(&sums, &mut bytes);
+        replace(block, &bytes);
     }
+}
+
+/// Adds the sums of a block of `count` pixels to those of another.
+fn merge<T: Sums>(mine: &mut Box<[u8]>, theirs: &[u8], count: usize) {
+    if theirs.is_empty() {
+        return;
+    }
+    let (mut sums, mut others, mut bytes) = (Vec::<T>::new(), Vec::new(), Vec::new());
+    unpack(mine, count, &mut sums);
+    unpack(theirs, count, &mut others);
+    sums.iter_mut().zip(&others).for_each(|(sums, others)| sums.merge(others));
+    pack(&sums, &mut bytes);
+    replace(mine, &bytes);
 }
 
 /// Replaces a block, in its own memory if the new one has the same length.
@@ -285,6 +327,12 @@ mod tests {
         )
     }
 
+    fn set(plane: &mut Plane<Pixel>, area: PixelBounds, sums_of: impl Fn(u32, u32) -> Pixel) {
+        let mut blocks: Vec<_> = plane.take(area).collect();
+        change([plane.width, plane.height], area, &mut blocks, |x, y, sums| *sums = sums_of(x, y));
+        plane.put(area, &mut blocks.into_iter());
+    }
+
     proptest! {
         #[test]
         fn numbers_come_back(sums in prop::collection::vec(pixel(), 1..30)) {
@@ -301,7 +349,7 @@ mod tests {
             let mut plane = Plane::<Pixel>::new(70, 40).unwrap();
             let mut slow = vec![Pixel::default(); 70 * 40];
             for (x, y, sums) in pixels {
-                plane.change(PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |_, _, pixel| *pixel = sums);
+                set(&mut plane, PixelBounds { x0: x, y0: y, x1: x + 1, y1: y + 1 }, |_, _| sums);
                 slow[(y * 70 + x) as usize] = sums;
             }
             for y in 0..40 {
@@ -313,7 +361,7 @@ mod tests {
             // The same sums have the same bytes, however they came.
             let mut anew = Plane::<Pixel>::new(70, 40).unwrap();
             let all = PixelBounds { x0: 0, y0: 0, x1: 70, y1: 40 };
-            anew.change(all, |x, y, pixel| *pixel = slow[(y * 70 + x) as usize]);
+            set(&mut anew, all, |x, y| slow[(y * 70 + x) as usize]);
             prop_assert_eq!(anew, plane);
         }
     }

@@ -127,6 +127,26 @@ proptest! {
         prop_assert_eq!(tiled, whole);
     }
 
+    /// Threads that have detached the same blocks at the same time add to each other's sums.
+    #[test]
+    fn blocks_may_be_detached_by_many(samples in prop::collection::vec(any_sample(), 0..60), seed: u64) {
+        let tiles: Vec<FilmTile> = (0..4).map(|hand| {
+            let mut tile = FilmTile::new(PixelBounds { x0: 0, y0: 0, x1: SIZE, y1: SIZE }).unwrap();
+            for (i, &(x, y, sample, rgb)) in samples.iter().enumerate() {
+                if mix(seed.wrapping_add(i as u64)) % 4 == hand {
+                    tile.add(x, y, sample, rgb);
+                }
+            }
+            tile
+        }).collect();
+        let mut film = Film::new(SIZE, SIZE, None).unwrap();
+        film.add_tile(&tiles[0]).unwrap();
+        let mut detached: Vec<_> = tiles[1..].iter().map(|tile| film.detach(tile).unwrap()).collect();
+        detached.iter_mut().zip(&tiles[1..]).for_each(|(blocks, tile)| blocks.add(tile));
+        detached.into_iter().rev().for_each(|blocks| film.attach(blocks));
+        prop_assert_eq!(film, film_of(&samples));
+    }
+
     #[test]
     fn sums_are_the_true_ones(lights in prop::collection::vec(any_light(), 1..60)) {
         let mut film = Film::new(1, 1, None).unwrap();

@@ -237,9 +237,11 @@ impl Work<'_> {
         locked(&self.batches).push(batch);
         let Some(rays) = rays else { return Ok(false) };
         let wants_pixels = self.progress.wants_pixels();
+        let mut detached = locked(&self.film).0.detach(&tile)?;
+        detached.add(&tile);
         let (rays, picture) = {
             let mut guard = locked(&self.film);
-            guard.0.add_tile(&tile)?;
+            guard.0.attach(detached);
             guard.1 += rays;
             (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(around)))
         };
