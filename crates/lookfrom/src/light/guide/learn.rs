@@ -35,10 +35,6 @@ const BRIGHT: f32 = 0.15;
 /// The least part of the samples that is worth a histogram.
 const LEAST_SHARE: f32 = 0.1;
 
-/// The least gain that is worth a guide: samples with one take 1.3 to 1.9 times as long, and estimated gains are about twice those of
-/// pictures.
-const LEAST_GAIN: f32 = 3.0;
-
 /// The part of the sphere that is as bright as its brightest direction, as far as histograms are concerned: what is brighter, like the
 /// sun, is found without guides.
 const BRIGHTEST: f64 = 0.01;
@@ -109,12 +105,13 @@ struct Learner<'a> {
 }
 
 impl Guide {
-    /// The guide to an environment from points that paths visit; `None` where its estimated gain is not worth its time.
+    /// The guide to an environment from points that paths visit; `None` where its estimated gain is `least_gain` or less.
     pub(crate) fn learn(
         environment: &Environment,
         textures: &Textures,
         points: &[GuidePoint],
         visibility: &dyn Fn(&[Query]) -> Vec<f32>,
+        least_gain: f32,
     ) -> Option<Self> {
         let light = CellLight::of(environment, textures);
         let guide = Self::default();
@@ -127,7 +124,7 @@ impl Guide {
                 learner.guide.roots[class] = Some(learner.branch(&mut members, None));
             }
         }
-        (gain(&learner.lit, points.len()) > LEAST_GAIN).then_some(learner.guide)
+        (gain(&learner.lit, points.len()) > least_gain).then_some(learner.guide)
     }
 }
 

@@ -60,7 +60,7 @@ fn learn_of(
         let lit = |(index, wi): &Query| is_lit(points[*index as usize].point, *wi);
         queries.iter().map(|query| f32::from(u8::from(lit(query)))).collect()
     };
-    Guide::learn(environment, textures, points, &visibility)
+    Guide::learn(environment, textures, points, &visibility, 3.0)
 }
 
 #[test]

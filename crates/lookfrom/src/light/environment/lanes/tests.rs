@@ -107,7 +107,7 @@ fn compare(layout: MapLayout, picture_v: [f32; 2], mode: &SpectralMode) {
         queries.iter().map(|query| f32::from(u8::from(is_seen(query)))).collect()
     };
     let with_guide = |environment: &Environment| {
-        let guide = Guide::learn(environment, &textures, &points, &visibility).expect("a guide");
+        let guide = Guide::learn(environment, &textures, &points, &visibility, 3.0).expect("a guide");
         Environment { guide: Some(Arc::new(guide)), ..environment.clone() }
     };
     let guided = with_guide(&unguided);
