@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
 
 use super::animation::{Animated, channel_value};
@@ -26,15 +26,17 @@ struct List {
 }
 
 const LISTS: [List; 5] = [
-    List { items: "/nodes/", is_item: |item| Node::deserialize(item).is_ok() },
-    List { items: "/materials/", is_item: |item| Material::deserialize(item).is_ok() },
-    List { items: "/cameras/", is_item: |item| Camera::deserialize(item).is_ok() },
-    List { items: "/meshes/", is_item: |item| Mesh::deserialize(item).is_ok() },
-    List {
-        items: "/extensions/KHR_lights_punctual/lights/",
-        is_item: |item| Light::deserialize(item).is_ok(),
-    },
+    List { items: "/nodes/", is_item: is::<Node> },
+    List { items: "/materials/", is_item: is::<Material> },
+    List { items: "/cameras/", is_item: is::<Camera> },
+    List { items: "/meshes/", is_item: is::<Mesh> },
+    List { items: "/extensions/KHR_lights_punctual/lights/", is_item: is::<Light> },
 ];
+
+/// Whether a value is a structure, by its text: structures are made of text alone, so that serde's code for each is compiled once.
+fn is<T: DeserializeOwned>(value: &Value) -> bool {
+    serde_json::from_str::<T>(&value.to_string()).is_ok()
+}
 
 /// The value that a channel gives to a property.
 struct Change<'a> {
@@ -81,7 +83,8 @@ pub(super) fn animate(document: &mut Document, index: usize, context: &mut LoadC
     let at = document.at(&format!("/animations/{index}"));
     let bytes = document.json();
     let values = bytes.iter().filter(|byte| b",[{".contains(byte)).count() as u64;
-    let memory = bytes.len() as u64 + values * VALUE;
+    // Of texts the file's and the changed one.
+    let memory = 2 * bytes.len() as u64 + values * VALUE;
     let _memory =
         context.budget.reserve(memory, "the values of the JSON, which an animation changes", &at)?;
     let mut root: Value = match serde_json::from_str(&json::text(bytes)) {
@@ -108,7 +111,7 @@ pub(super) fn animate(document: &mut Document, index: usize, context: &mut LoadC
     }
 
     // Back to structures.
-    match serde_json::from_value::<Root>(root) {
+    match serde_json::from_str::<Root>(&root.to_string()) {
         Ok(root) => document.root = root,
         Err(error) => context.warn(&at, format!("properties stay as they are: {error}")),
     }
