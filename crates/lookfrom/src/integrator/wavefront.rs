@@ -14,7 +14,7 @@ use lookfrom_bvh::Hit;
 pub(super) use bare_hits::BareHits;
 pub(super) use bins::{Bins, Eight};
 pub(super) use departure::{Boundary, Departure};
-pub(super) use interfaces::{Behind, Interfaces};
+pub(super) use interfaces::{Behind, InterfaceKind, Interfaces};
 pub(super) use light_samples::{LightSamples, Receivers};
 pub(super) use modes::Modes;
 pub(super) use rounds::Rounds;

@@ -32,25 +32,65 @@ pub(super) fn prepare(
     options: &Options,
     warnings: &mut Vec<Warning>,
 ) -> Result<Prepared> {
-    let mut warn = |message: &str| {
-        warnings.push(Warning::new(&Location::file(file), message));
-    };
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
     if let Some(format) = options.format {
         format.check_background(scene.image.background)?;
     }
-    let origin = scene.source_format;
     decide_settings(scene, options);
+    let at = Location::file(file);
+    warnings.extend(unsuitable(scene, file, options).into_iter().map(|message| Warning::new(&at, message)));
+
+    let up = options.up.or(scene.z_is_up.then_some(DVec3::Z));
+    if scene.z_is_up && options.up.is_none() {
+        let notice = Warning::notice(&at, "z is up, as is the custom of this format");
+        warnings.push(notice.remedy(Remedy::Up("y")));
+    }
+    // A view from above has another camera than the scene.
+    let chooses_view = options.chooses_view();
+    let up = up.or_else(|| chooses_view.then(|| studio::up_of_camera(scene).unwrap_or(DVec3::Y)));
+
+    // The camera comes first: inside a room other lights are added.
+    let lacks_camera = chooses_view || scene.camera.is_none();
+    let turntable = place_camera(scene, up, options)?;
+    let is_model = scene.source_format != SourceFormat::Scene;
+    let has_added_lights = add_lights(scene, up, options);
+    let mut added = Vec::new();
+    if lacks_camera {
+        added.push("camera");
+    }
+    if has_added_lights {
+        added.push("lights");
+    }
+    let is_lit_anew = has_added_lights || options.environment.is_some();
+    let has_own_lights = is_model && !is_lit_anew && scene.render.integrator.needs_light();
+
+    // A view that is asked for is no addition.
+    let is_framed = chooses_view || options.import.camera == CameraChoice::None;
+    if let Some(message) = told(lacks_camera && !is_framed, has_added_lights)
+        && !is_model
+        && !scene.bounds().is_empty()
+    {
+        warnings.push(Warning::notice(&at, message));
+    }
+    if options.floor {
+        studio::add_floor(scene, up, options.framed);
+        added.push("floor");
+    }
+    Ok(Prepared { added, turntable, has_own_lights })
+}
+
+/// Messages about options and settings that do not suit a scene; settings that cannot be are replaced.
+fn unsuitable(scene: &mut Scene, file: &Path, options: &Options) -> Vec<String> {
+    let mut messages = Vec::new();
     if scene.render.allocation == Allocation::Adaptive && scene.render.samples < LEAST_MEAN {
         let samples = scene.render.samples;
-        warn(&format!(
+        messages.push(format!(
             "adaptive allocation needs at least {LEAST_MEAN} samples per pixel: all pixels get {samples}"
         ));
         scene.render.allocation = Allocation::Uniform;
     }
-    let is_empty = scene.bounds().is_empty();
-    if is_empty {
-        warn("this scene has no geometry: the picture shows only the background");
+    if scene.bounds().is_empty() {
+        messages.push("this scene has no geometry: the picture shows only the background".to_owned());
     }
     let mut of_gltf = ImportOptions { instanced_lights: false, ..options.import.clone() };
     // The camera of any file can be ignored, and any scene may have a clock.
@@ -58,30 +98,32 @@ pub(super) fn prepare(
         of_gltf.camera = CameraChoice::First;
     }
     let may_be_toml = load::is_toml(file) || file == Path::new(load::PIPE);
-    if origin == SourceFormat::Scene && may_be_toml {
+    if scene.source_format == SourceFormat::Scene && may_be_toml {
         (of_gltf.at, of_gltf.shutter) = (None, None);
     }
-    if of_gltf != ImportOptions::default() && origin != SourceFormat::Gltf {
-        warn("`animation`, `at`, `variant`, `scene` and `camera` are for glTF files; this file is not one");
+    if of_gltf != ImportOptions::default() && scene.source_format != SourceFormat::Gltf {
+        messages.push(
+            "`animation`, `at`, `variant`, `scene` and `camera` are for glTF files; this file is not one"
+                .to_owned(),
+        );
     }
     if options.floor && !scene.render.integrator.is_path_traced() {
-        warn("a shadow-catching floor needs the path tracer; with this integrator it is grey");
+        messages.push(
+            "a shadow-catching floor needs the path tracer; with this integrator it is grey".to_owned(),
+        );
     }
+    messages
+}
 
-    let viewpoint = options.viewpoint();
-    let mut up = options.up.or(scene.z_is_up.then_some(DVec3::Z));
-    if scene.z_is_up && options.up.is_none() {
-        let notice = Warning::notice(&Location::file(file), "z is up, as is the custom of this format");
-        warnings.push(notice.remedy(Remedy::Up("y")));
-    }
+/// Gives a scene the camera that options ask for, or one that it lacks. Returns the turntable, if it is to turn.
+///
+/// # Errors
+/// As [`Options::apply_to_camera`].
+fn place_camera(scene: &mut Scene, up: Option<DVec3>, options: &Options) -> Result<Option<Turntable>> {
     if options.chooses_view() {
-        // The camera of a view from above has another one.
-        up = up.or_else(|| studio::up_of_camera(scene)).or(Some(DVec3::Y));
         scene.camera = None;
     }
-    let had_camera = scene.camera.is_some();
-    let lights = scene.lights.len();
-    // The camera comes first: inside a room other lights are added.
+    let viewpoint = options.viewpoint();
     let turntable = options.turn.map(|_| Turntable::new(scene, up, options.lookat));
     match &turntable {
         Some(turntable) => turntable.frame(scene, &viewpoint),
@@ -91,42 +133,30 @@ pub(super) fn prepare(
     if let Some(camera) = &mut scene.camera {
         options.apply_to_camera(camera, middle)?;
     }
+    Ok(turntable)
+}
+
+/// Gives a scene the environment that options ask for, or the lights that it lacks. Returns whether it lacked any.
+fn add_lights(scene: &mut Scene, up: Option<DVec3>, options: &Options) -> bool {
+    let lights = scene.lights.len();
     if let Some(environment) = &options.environment {
         studio::surround(scene, environment.clone(), up);
     }
-    match origin {
-        SourceFormat::Scene => studio::add_lights_and_camera(scene, up),
-        _ => studio::add_studio_and_camera(scene, up),
+    let is_model = scene.source_format != SourceFormat::Scene;
+    match is_model {
+        false => studio::add_lights_and_camera(scene, up),
+        true => studio::add_studio_and_camera(scene, up),
     }
-    let mut added = Vec::new();
-    if !had_camera {
-        added.push("camera");
-    }
-    if scene.lights.len() > lights && options.environment.is_none() {
-        added.push("lights");
-    }
+    let has_added = scene.lights.len() > lights && options.environment.is_none();
     // The studio is one of the camera, wherever that is.
-    let around = viewpoint.azimuth - Viewpoint::THREE_QUARTER.azimuth;
-    let (is_model, has_studio) = (origin != SourceFormat::Scene, added.contains(&"lights"));
-    if is_model && has_studio && around != 0.0 {
+    let around = options.viewpoint().azimuth - Viewpoint::THREE_QUARTER.azimuth;
+    if is_model && has_added && around != 0.0 {
         studio::turn_environments(scene, up, around);
     }
-    let is_lit_anew = has_studio || options.environment.is_some();
-    let has_own_lights = is_model && !is_lit_anew && scene.render.integrator.needs_light();
     if let Some(degrees) = options.rotate_environment {
         studio::turn_environments(scene, up, degrees);
     }
-    // A view that is asked for is no addition.
-    let is_framed = options.chooses_view() || options.import.camera == CameraChoice::None;
-    let lacks_camera = added.contains(&"camera") && !is_framed;
-    if let Some(message) = told(lacks_camera, has_studio).filter(|_| !is_model && !is_empty) {
-        warnings.push(Warning::notice(&Location::file(file), message));
-    }
-    if options.floor {
-        studio::add_floor(scene, up, options.framed);
-        added.push("floor");
-    }
-    Ok(Prepared { added, turntable, has_own_lights })
+    has_added
 }
 
 /// What a scene lacked and was given.

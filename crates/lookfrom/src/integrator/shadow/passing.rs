@@ -9,7 +9,7 @@ use super::{ShadowLight, ShadowTransparency, Shadows, rest};
 use crate::core::hash;
 use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
-use crate::integrator::wavefront::{Behind, Interfaces};
+use crate::integrator::wavefront::{Behind, InterfaceKind, Interfaces};
 use crate::integrator::{Event, LightPaths, Probe, Queues};
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::SurfaceInteraction;
@@ -66,51 +66,22 @@ pub(super) fn let_through<P: Probe>(
                 }
                 origin_primitive = OriginPrimitive::of(&hit);
             } else {
-                let mode = &modes[light.slot as usize];
-                let interface = Interfaces::kind(world, &hit).filter(|_| !is_blocked);
-                let surface = (hit.is_hit() && !is_blocked && interface.is_none())
-                    .then(|| world.surface_at(&ray, &hit, at.of(place)));
-                let through_surface = match &surface {
-                    Some(surface) => light.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
-                    None if is_blocked => Spectrum::BLACK,
-                    None => mode.one(),
+                let arrival = Arrival {
+                    ray,
+                    origin_primitive,
+                    hit,
+                    is_blocked,
+                    mode: &modes[light.slot as usize],
+                    time: at.of(place),
+                    through_medium: through_media.at(place),
                 };
-                let passed = match through_surface.is_black() {
-                    true => Spectrum::BLACK,
-                    false => {
-                        let t = if hit.is_hit() { hit.t } else { ray.t_max };
-                        let through_medium = through_media.at(place);
-                        through_surface
-                            * through_medium.unwrap_or_else(|| light.transmittance(world, &ray, t, mode))
-                    }
-                };
-                probe.notice(|| Event::Shadow { shadow: light.of(ray, origin_primitive), hit, passed });
-                light.contribution *= passed;
-                if !hit.is_hit() || light.contribution.is_black() {
-                    continue;
+                let Some(onward) = light.pass(world, shadow_transparency, &arrival, probe) else { continue };
+                if onward.is_behind_pane {
+                    light.leave_pane(light_paths, last_scatterings);
                 }
                 // Behind interfaces rays go on side by side.
-                match (&surface, interface) {
-                    (Some(surface), _) => {
-                        let crosses = light.go_on_behind(world, &mut ray, &hit, surface);
-                        if crosses
-                            && shadow_transparency == ShadowTransparency::Panes
-                            && world.materials[surface.material as usize].is_pane()
-                        {
-                            light.leave_pane(light_paths, last_scatterings);
-                        }
-                        origin_primitive = surface.origin_primitive;
-                    }
-                    (None, Some(kind)) => {
-                        interfaces.push(kind, count);
-                        origin_primitive = OriginPrimitive::of(&hit);
-                    }
-                    (None, None) => continue,
-                }
-                ray.t_max = match shadow_transparency {
-                    ShadowTransparency::AlphaTested | ShadowTransparency::Panes => rest(ray.t_max, hit.t),
-                    ShadowTransparency::Transparent => ray.t_max - hit.t,
-                };
+                onward.interface.into_iter().for_each(|kind| interfaces.push(kind, count));
+                (ray, origin_primitive) = (onward.ray, onward.origin_primitive);
             }
             (rays[count], origin_primitives[count], hits[count]) = (ray, origin_primitive, hit);
             left[count] = left[place];
@@ -150,7 +121,82 @@ pub(super) fn let_through<P: Probe>(
     traced
 }
 
+/// A shadow ray that passes surfaces alone, at the next of them or at its end.
+struct Arrival<'a> {
+    ray: Ray,
+    origin_primitive: OriginPrimitive,
+    hit: Hit,
+    /// Whether no light passes the hit.
+    is_blocked: bool,
+    mode: &'a SpectralMode,
+    time: f32,
+    /// The transmittance of the medium on the way, if it is known already.
+    through_medium: Option<Spectrum>,
+}
+
+/// How a shadow ray goes on behind a hit.
+struct Onward {
+    /// From its old origin where it has hit an interface.
+    ray: Ray,
+    origin_primitive: OriginPrimitive,
+    /// The interface behind which it is still to be brought.
+    interface: Option<InterfaceKind>,
+    is_behind_pane: bool,
+}
+
 impl ShadowLight {
+    /// Attenuates the light by the medium and by the surface that the ray has hit, if any. `None` where the ray ends: where it is
+    /// blocked, and at the light.
+    #[inline]
+    fn pass<P: Probe>(
+        &mut self,
+        world: &World,
+        shadow_transparency: ShadowTransparency,
+        arrival: &Arrival<'_>,
+        probe: &mut P,
+    ) -> Option<Onward> {
+        let &Arrival { mut ray, origin_primitive, hit, is_blocked, mode, time, through_medium } = arrival;
+        let interface = Interfaces::kind(world, &hit).filter(|_| !is_blocked);
+        let surface =
+            (hit.is_hit() && !is_blocked && interface.is_none()).then(|| world.surface_at(&ray, &hit, time));
+        let through_surface = match &surface {
+            Some(surface) => self.passed(world, shadow_transparency, (&ray, &hit), surface, mode),
+            None if is_blocked => Spectrum::BLACK,
+            None => mode.one(),
+        };
+        let passed = match through_surface.is_black() {
+            true => Spectrum::BLACK,
+            false => {
+                let t = if hit.is_hit() { hit.t } else { ray.t_max };
+                through_surface * through_medium.unwrap_or_else(|| self.transmittance(world, &ray, t, mode))
+            }
+        };
+        probe.notice(|| Event::Shadow { shadow: self.of(ray, origin_primitive), hit, passed });
+        self.contribution *= passed;
+        if !hit.is_hit() || self.contribution.is_black() {
+            return None;
+        }
+        let (origin_primitive, is_behind_pane) = match &surface {
+            Some(surface) => {
+                let crosses = self.go_on_behind(world, &mut ray, &hit, surface);
+                let is_pane = || world.materials[surface.material as usize].is_pane();
+                let are_passed = shadow_transparency == ShadowTransparency::Panes;
+                (surface.origin_primitive, crosses && are_passed && is_pane())
+            }
+            None => (OriginPrimitive::of(&hit), false),
+        };
+        ray.t_max = match shadow_transparency {
+            ShadowTransparency::AlphaTested | ShadowTransparency::Panes => rest(ray.t_max, hit.t),
+            ShadowTransparency::Transparent => ray.t_max - hit.t,
+        };
+        (surface.is_some() || interface.is_some()).then_some(Onward {
+            ray,
+            origin_primitive,
+            interface,
+            is_behind_pane,
+        })
+    }
+
     /// Transmittance of a surface.
     fn passed(
         &self,
