@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::Session;
 use crate::core::math::luminance;
+use crate::core::parallel;
 use crate::film::{Film, Firefly};
 use crate::inspect::light_seen_by_bounces;
 use crate::render::SampleId;
@@ -43,19 +44,24 @@ impl Session {
     /// The samples of each are traced again: one of them has to carry the pixel, by light that it found after a bounce. A
     /// small lamp that the camera sees itself makes few samples bright, too, and nothing is wrong with it.
     pub fn fireflies(&self, film: &Film, most: usize) -> Outliers {
-        let mut outliers = Outliers::default();
+        let fireflies = film.fireflies();
         let mut traced = 0;
-        for firefly in film.fireflies() {
-            let samples = samples_of(film, firefly.pixel);
-            traced += samples.len();
-            if traced > MOST_TRACED {
-                break;
-            }
-            let Some(brightest) = self.carrying_sample(&firefly, &samples) else { continue };
-            let Some(expression) = light_seen_by_bounces(self.renderer(), brightest) else { continue };
+        let samples: Vec<Vec<SampleId>> = fireflies
+            .iter()
+            .map(|firefly| samples_of(film, firefly.pixel))
+            .take_while(|samples| {
+                traced += samples.len();
+                traced <= MOST_TRACED
+            })
+            .collect();
+        let found = parallel::collect(samples.len(), |index| {
+            let brightest = self.carrying_sample(&fireflies[index], &samples[index])?;
+            Some((brightest, light_seen_by_bounces(self.renderer(), brightest)?))
+        });
+        let mut outliers = Outliers::default();
+        for (SampleId { pixel: [x, y], sample }, expression) in found.into_iter().flatten() {
             outliers.count += 1;
             if outliers.brightest.len() < most {
-                let SampleId { pixel: [x, y], sample } = brightest;
                 outliers.brightest.push(Outlier { x, y, sample, expression });
             }
         }

@@ -83,7 +83,10 @@ pub(super) const MODULES: &[(&str, &str)] = &[
         "bsdf camera develop film integrator light material math medium render primitive spectrum interaction \
          texture world",
     ),
-    ("session", "math clock color denoise develop exposure film inspect integrator render view world"),
+    (
+        "session",
+        "math clock color parallel denoise develop exposure film inspect integrator render view world",
+    ),
 ];
 
 /// The modules of another crate, rung by rung: a module may use those of all rungs above its own.
