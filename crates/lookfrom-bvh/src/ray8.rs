@@ -23,7 +23,7 @@ pub(crate) const NO_BLOCK: i32 = -1;
 pub(crate) struct Ray8<S: Simd> {
     pub(crate) origin: [f32x8<S>; 3],
     pub(crate) direction: [f32x8<S>; 3],
-    /// Where each ray starts, with a margin.
+    /// The start of each ray, with a margin.
     pub(crate) start: f32x8<S>,
     /// The lanes of usual rays; the contents of the others are meaningless.
     pub(crate) usual: u32,

@@ -17,7 +17,7 @@ pub(crate) enum Vectors<'py> {
     Single(PyReadonlyArray2<'py, f32>),
 }
 
-/// The same, seen without the GIL.
+/// Rows of numbers, seen without the GIL.
 #[derive(Clone, Copy)]
 pub(crate) enum Rows<'a> {
     Double(ArrayView2<'a, f64>),

@@ -232,7 +232,7 @@ impl<T: Copy + Default + PartialEq> Grid<T> {
         size_of_val(&*self.bricks) + size_of_val(&*self.values)
     }
 
-    /// The same grid of other values; zero must become zero.
+    /// A grid of the images of its values; that of zero must be zero.
     pub fn map<U>(&self, of: impl Fn(T) -> U) -> Grid<U> {
         let values = self.values.iter().map(|value| of(*value)).collect();
         Grid { size: self.size, count: self.count, bricks: self.bricks.clone(), values }

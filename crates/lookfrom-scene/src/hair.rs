@@ -85,7 +85,7 @@ pub(crate) fn is_hair(bytes: &[u8]) -> bool {
 /// The arrays of a file.
 struct Arrays<'a> {
     strands: u32,
-    /// Of strands, if they differ.
+    /// The numbers of segments of strands, if they differ.
     segments: Option<Array<'a>>,
     points: Array<'a>,
     thickness: Option<Array<'a>>,

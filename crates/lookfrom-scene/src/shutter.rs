@@ -23,7 +23,7 @@ const MOST_PARTS: usize = 16;
 /// Lets a scene move for a number of frames from its time on, by reading it again at later times with `read`.
 ///
 /// # Errors
-/// Those of `read`, and `Limit` where the meshes that move need more memory than there is.
+/// Errors of `read`, and `Limit` where the meshes that move need more memory than there is.
 pub(crate) fn open(
     scene: &mut Scene,
     frames: f64,
@@ -69,14 +69,14 @@ pub(crate) fn open(
     Ok(())
 }
 
-/// What moves of a scene, at one time.
+/// The moving parts of a scene, at one time.
 struct Pose {
     /// The camera's frame in the world.
     camera: Option<DMat4>,
     /// Maps of shapes outside of objects, and their geometry where that is no mesh.
     shapes: Vec<(DMat4, Option<Geometry>)>,
     instances: Vec<DMat4>,
-    /// Of a scene that is read again; none of the first, which has its own.
+    /// The meshes of a scene that is read again; none of the first, which has its own.
     meshes: Vec<MeshPose>,
 }
 

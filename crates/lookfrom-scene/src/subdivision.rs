@@ -266,7 +266,7 @@ struct Around {
     on_creases: DVec3,
 }
 
-/// How a vertex moves.
+/// The rule by which a vertex moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum VertexRule {
     Fixed,

@@ -26,7 +26,7 @@ const MOST_PIECES: f64 = 64.0;
 /// Cosine of the greatest angle between neighbouring sides of a solid that are smooth: 35°.
 const SMOOTH: f64 = 0.82;
 
-/// How text is set.
+/// The layout of a text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextLayout {
     /// The em.

@@ -165,7 +165,7 @@ fn check_instance(part: &Part<'_>, instance: &Instance) -> Result<()> {
 struct Part<'a> {
     scene: &'a Scene,
     at: &'a Location,
-    /// Such as `material`.
+    /// The kind of thing, such as `material`.
     kind: &'a str,
     /// The index among parts of its kind and its own name, if it has them.
     index: Option<usize>,

@@ -17,7 +17,7 @@ const STYLES: [&str; 3] = ["style.css", "panels.css", "figures.css"];
 /// The page that begins with a module, and holds JSON in the element of this id. It may load nothing and connect to nobody.
 ///
 /// # Errors
-/// Where a file of the page is missing.
+/// An error where a file of the page is missing.
 pub(crate) fn page(entry: &str, id: &str, data: &str) -> Result<String> {
     let script = script(entry)?;
     let style = STYLES.map(text).into_iter().collect::<Result<String>>()?;

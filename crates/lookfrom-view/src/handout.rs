@@ -26,7 +26,7 @@ const MOST_SAMPLES: usize = 8;
 /// brightest samples, and shows that of this number first, if there is one.
 ///
 /// # Errors
-/// What is wrong with the scene; `Request` for a pixel or a sample that it does not have.
+/// Errors of the scene; `Request` for a pixel or a sample that it does not have.
 pub fn handout(
     settings: Settings,
     files: SharedFiles,

@@ -74,7 +74,7 @@ pub(crate) struct CameraRequest {
     pub(crate) fov: Option<f64>,
 }
 
-/// How the picture is compared with the reference.
+/// A comparison of the picture with the reference.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 pub(crate) struct CompareRequest {
     pub(crate) mode: Comparing,

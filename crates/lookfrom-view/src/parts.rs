@@ -35,7 +35,7 @@ impl ViewRender {
     /// Renders a part of the picture of another worker, and returns its film as a file.
     ///
     /// # Errors
-    /// Where the session keeps no films, and for no samples.
+    /// An error where the session keeps no films, and for no samples.
     pub(crate) fn render_part(&self, part: &Part) -> Result<Vec<u8>> {
         let settings = RenderSettings { samples: part.samples.end, ..self.session.settings().clone() };
         let renderer = self.session.renderer().with_settings(settings)?;

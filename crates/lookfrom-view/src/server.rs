@@ -42,7 +42,7 @@ const POLICY: &str =
 /// Who may show the page in a frame where that is allowed: pages of this machine, and those of notebooks in VS Code.
 const FRAMES: &str = "http://localhost:* http://127.0.0.1:* vscode-webview:";
 
-/// Where a page is served.
+/// The address at which a page is served.
 #[derive(Clone, Copy, Debug)]
 pub struct Address {
     /// The address to listen at.
@@ -77,7 +77,7 @@ impl Server {
     /// Binds the address. Nothing is read yet.
     ///
     /// # Errors
-    /// Where the address is in use or not this machine's, or where the system has no entropy for a token.
+    /// An error where the address is in use or not this machine's, or where the system has no entropy for a token.
     pub fn bind(settings: Settings, at: Address) -> io::Result<Self> {
         let listener = TcpListener::bind((at.host, at.port))?;
         let address = listener.local_addr()?;
@@ -118,7 +118,7 @@ impl Server {
     /// Serves until `stopped`. Then all renders end.
     ///
     /// # Errors
-    /// Where the system refuses to listen or to start threads.
+    /// An error where the system refuses to listen or to start threads.
     pub fn run(self, stopped: impl Fn() -> bool + Sync) -> io::Result<()> {
         let Self { listener, state, patience, .. } = self;
         listener.set_nonblocking(true)?;

@@ -237,7 +237,7 @@ impl Film {
         Ok(())
     }
 
-    /// Which samples of which pixels it holds.
+    /// The ledger of the samples that it holds, pixel by pixel.
     pub fn ledger(&self) -> &SampleLedger {
         &self.ledger
     }

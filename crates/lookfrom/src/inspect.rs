@@ -58,7 +58,7 @@ pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     inspection
 }
 
-/// The same without segments to draw, and without the tests of primitives, which take most of the time.
+/// An inspection without segments to draw, and without the tests of primitives, which take most of the time.
 fn inspect_without_tests(renderer: &Renderer, id: SampleId) -> Inspection {
     trace(renderer, id, false)
 }

@@ -105,7 +105,7 @@ pub struct Session {
     fireflies: Fireflies,
     threads: Option<usize>,
     format: Option<Format>,
-    /// What the scene was read from, if the film is to be kept.
+    /// The identity of what the scene was read from, if the film is to be kept.
     identity: Option<Identity>,
     budget: Budget,
     /// The memory of the world.
@@ -158,7 +158,7 @@ impl Session {
     /// A session of a scene or model file on disk.
     ///
     /// # Errors
-    /// Those of the file's reader and of [`World::compile`], and `Request` where the options do not suit the scene.
+    /// Errors of the file's reader and of [`World::compile`], and `Request` where the options do not suit the scene.
     pub fn open(path: impl AsRef<Path>, options: &Options) -> Result<Self> {
         Self::open_in(path, &(Arc::new(Disk) as SharedFiles), options)
     }
@@ -409,7 +409,7 @@ impl Session {
         Ok(self.finish(rendered))
     }
 
-    /// What the film of this session's picture is of, for its file.
+    /// The origin of the film of this session's picture, for its file.
     ///
     /// # Errors
     /// `Request` for a session without [`Options::film`].
@@ -421,7 +421,7 @@ impl Session {
         Ok(identity.provenance(self))
     }
 
-    /// How pictures of this session are developed.
+    /// The settings by which pictures of this session are developed.
     pub fn development(&self) -> Development {
         Development::of_image(self.image(), self.fireflies)
     }

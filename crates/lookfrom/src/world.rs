@@ -209,7 +209,7 @@ impl World {
         }
     }
 
-    /// Where the point of a surface that `ray` met at `hit` at a time of the shutter is at other times, in render space.
+    /// The places, at other times and in render space, of the surface point that `ray` met at `hit` at a time of the shutter.
     pub(crate) fn point_at<const N: usize>(
         &self,
         ray: &Ray,

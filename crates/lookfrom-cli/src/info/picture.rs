@@ -35,7 +35,7 @@ struct Film {
     samples: u32,
     /// Samples of all pixels together.
     samples_taken: u64,
-    /// Which samples of which pixels, a line a band of rows.
+    /// The samples that it holds of each pixel: a line for each band of rows.
     ledger: String,
     /// Numbers of the samples that each pixel was to have; `None` if all are there.
     goal: Option<[u32; 2]>,

@@ -12,7 +12,7 @@ const NAME: &str = "scene.toml";
 /// The one material of a text.
 ///
 /// # Errors
-/// Those of the reader; `Invalid` where it needs textures, which the scene of a session cannot be given.
+/// Errors of the reader; `Invalid` where it needs textures, which the scene of a session cannot be given.
 pub(super) fn material(text: &str) -> Result<Material> {
     let mut scene = parsed(text)?;
     scene.materials.pop().ok_or_else(|| Error::invalid(&Location::default(), "no material is given"))

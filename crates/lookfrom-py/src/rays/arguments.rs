@@ -1,4 +1,4 @@
-//! What Python passes: geometry for a tree, rays for a query.
+//! Arguments from Python: geometry for a tree, rays for a query.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -166,7 +166,7 @@ impl RaysArgument<'_> {
     }
 }
 
-/// Which of the numbers of a ray make no sense.
+/// A message about the numbers of a ray that make no sense.
 fn senseless_ray(rays: &Rays<'_>, number: usize) -> String {
     let (origin, direction) = (rays.origins.row(number), rays.directions.row(number));
     let is_finite = |v: [f64; 3]| v.iter().all(|x| x.is_finite());

@@ -83,7 +83,7 @@ impl Relation {
 /// The memory of a thread for its chunks.
 #[derive(Default)]
 pub(super) struct Chunk {
-    /// Where the results of the rays go, counted from the start of their share.
+    /// The places of the rays' results, counted from the start of their share.
     places: Vec<u32>,
     origins: Vec<[f64; 3]>,
     directions: Vec<[f64; 3]>,

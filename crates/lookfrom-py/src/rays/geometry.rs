@@ -1,4 +1,4 @@
-//! What a tree is made of, as it was given: in f64.
+//! Geometry of a tree as it was given: in f64.
 
 use std::sync::Arc;
 

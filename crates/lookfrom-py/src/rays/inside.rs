@@ -1,4 +1,4 @@
-//! Which points are inside: by the parity of a ray's crossings where meshes are closed, and by the generalised winding number
+//! Tests whether points are inside: by the parity of a ray's crossings where meshes are closed, and by the generalised winding number
 //! (Jacobson, Kavan, Sorkine-Hornung 2013) where they are not.
 //!
 //! The winding number is what a ray crosses, with signs, and the solid angles of triangles between the boundary's edges and the

@@ -9,7 +9,7 @@ use super::frame::subtract;
 /// Width and height of a tile.
 const SIDE: usize = 8;
 
-/// How many times as far apart as neighbours in a row those in a column may be: then they are still neighbours.
+/// The greatest distance of neighbours in a column, in distances of neighbours in a row.
 const STRETCH: f64 = 16.0;
 
 /// Partition of rays among threads, and the order in which a thread casts its share of them.

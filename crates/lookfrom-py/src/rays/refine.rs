@@ -1,4 +1,4 @@
-//! Where a ray hits a primitive, in f64: the numbers of a hit, given the kernel's.
+//! Refined hits of rays and primitives, in f64, given the kernel's.
 //!
 //! The kernel has decided that the ray hits, for positions rounded to f32. Here Cramer's rule (Möller & Trumbore 1997) gives t
 //! and the weights on the positions as they were given. Where these say that the ray passes beside the triangle, by less than

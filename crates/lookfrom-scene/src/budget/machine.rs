@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-/// Where nobody tells.
+/// The memory of a machine that does not tell it.
 const FALLBACK: u64 = 8 << 30;
 
 /// Bytes.

@@ -69,18 +69,18 @@ pub fn read_encoded(path: &Path, context: &mut LoadContext<'_>, encoding: Encodi
     read_as(path, &Reading::new(encoding), context)
 }
 
-/// How a picture file is understood.
+/// The interpretation of a picture file.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading<'a> {
     /// The encoding of 8- and 16-bit values.
     pub encoding: Encoding<'a>,
     /// The layer or part of an OpenEXR file; `None` is the first with colours.
     pub layer: Option<&'a str>,
-    /// Whose rules apply.
+    /// The program whose rules apply.
     pub by: By,
 }
 
-/// Whose rules apply where programs differ.
+/// The program whose rules apply where programs differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum By {
     /// The formats' own: the picture is an OpenEXR file's display window, light is divided by a Radiance picture's exposure,

@@ -35,9 +35,9 @@ pub enum Pigment {
     Reflectance(Color),
     /// By the concentrations of the pigments of human hair, ≥ 0: 0 is white, 0.3 of eumelanin blond, 1.3 brown, 8 black.
     Melanin {
-        /// Of the brown pigment.
+        /// The concentration of the brown pigment.
         eumelanin: Scalar,
-        /// Of the red pigment.
+        /// The concentration of the red pigment.
         pheomelanin: Scalar,
     },
 }

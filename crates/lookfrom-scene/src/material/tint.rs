@@ -6,9 +6,9 @@ use super::Color;
 /// what it absorbs inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tint {
-    /// Of the reflected light.
+    /// The factor of the reflected light.
     pub reflectance: Color,
-    /// Of the transmitted light.
+    /// The factor of the transmitted light.
     pub transmittance: Color,
 }
 

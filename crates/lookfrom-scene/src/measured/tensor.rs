@@ -20,7 +20,7 @@ pub(super) struct Tensors<'a> {
     fields: Vec<(&'a [u8], Entry)>,
 }
 
-/// Where a field is, and its shape.
+/// The place of a field in the file, and its shape.
 struct Entry {
     kind: u8,
     offset: u64,

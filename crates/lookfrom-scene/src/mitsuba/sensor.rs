@@ -22,7 +22,7 @@ const MOST_SAMPLES: i64 = 1 << 24;
 const DEEPEST: u32 = 1000;
 
 const SENSORS: &[&str] = &["distant", "orthographic", "perspective", "radiancemeter", "thinlens"];
-/// Those that are parts of a shape.
+/// The sensors that are parts of a shape.
 const SENSORS_OF_SHAPES: &[&str] = &["irradiancemeter"];
 /// The name of shapes without an `id` whose irradiance is measured.
 const MEASURED: &str = "measured surface";

@@ -17,7 +17,7 @@ const FEW_STEPS: f64 = 4.0;
 /// Boxes are large beside rounding if their sides have so many steps.
 const MANY_STEPS: f64 = (1 << 18) as f64;
 
-/// Where the positions of a file are.
+/// The place of a file's positions in the world.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
     /// The point that positions are relative to: 0 on axes along which they are near the origin.

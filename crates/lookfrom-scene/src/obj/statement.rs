@@ -53,7 +53,7 @@ pub(super) struct Group {
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) positions: Vec<Vec3>,
-    /// Where the positions are.
+    /// The place of the positions in the world.
     pub(super) place: Place,
     /// Linear colours of positions; may be shorter than `positions`: the rest is white.
     pub(super) colors: Vec<[f32; 3]>,

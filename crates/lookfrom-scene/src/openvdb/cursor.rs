@@ -59,7 +59,7 @@ impl<'a> Cursor<'a> {
     /// Passes metadata, and tells of the name, the position and the bytes of each value.
     ///
     /// # Errors
-    /// Those of `of` besides.
+    /// Errors of `of`, besides.
     pub(super) fn metadata(&mut self, mut of: impl FnMut(&[u8], u64, &[u8]) -> Result<()>) -> Result<()> {
         for _ in 0..self.u32()? {
             let name = self.text("the name of a value")?;

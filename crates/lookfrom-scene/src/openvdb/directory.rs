@@ -23,7 +23,7 @@ const SEPARATOR: char = '\u{1e}';
 pub(super) struct Descriptor {
     /// Its name and, if there are several of that name, its number after a separator.
     pub(super) unique: String,
-    /// The same for readers: `name[number]`.
+    /// The name for people: `name[number]`.
     shown: String,
     /// The type of its tree.
     pub(super) tree: String,

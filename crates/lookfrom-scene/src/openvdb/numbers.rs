@@ -16,9 +16,9 @@ const TYPES: [(&str, Precision); 4] = [
 /// Bytes of numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Precision {
-    /// Of single ones: backgrounds, tiles of roots, inactive values.
+    /// Bytes of a single number: of backgrounds, tiles of roots, inactive values.
     pub(super) single: u64,
-    /// Of those in the arrays of nodes.
+    /// Bytes of a number in the arrays of nodes.
     pub(super) array: u64,
 }
 

@@ -22,7 +22,7 @@ use crate::plural::{are, counted};
 pub(super) struct Content {
     /// Not necessarily finite.
     pub(super) positions: Vec<Vec3>,
-    /// Where the positions are.
+    /// The place of the positions in the world.
     pub(super) place: Place,
     /// Empty, or one per vertex.
     pub(super) normals: Vec<Vec3>,

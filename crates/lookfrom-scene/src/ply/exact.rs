@@ -45,7 +45,7 @@ impl Columns {
         }
     }
 
-    /// Those that properties with these names stand for; `None` where others do not stand for any.
+    /// The columns that properties with these names are; `None` if there are other names among them.
     fn of_names(names: &[&str]) -> Option<Self> {
         let has = |name: &str| names.contains(&name);
         let count = |first: usize, name: &dyn Fn(usize) -> String| {

@@ -68,7 +68,7 @@ impl ImageSettings {
         Self { width, height, crop: None, denoise: false, ..self.clone() }.without_layers()
     }
 
-    /// The same picture, with no layers of an EXR beside it.
+    /// Settings of the picture alone, without layers of an EXR beside it.
     #[must_use]
     pub fn without_layers(self) -> Self {
         let spectral_film = self.spectral_film.as_ref().map(SpectralFilm::of_picture);

@@ -9,7 +9,7 @@ use crate::scene::{Bounds, Scene};
 use crate::shape::Geometry;
 use crate::studio::bounds_of;
 
-/// How many times larger than the subject a ground has to be, to be left out of the framing.
+/// The least size of a ground that is left out of the framing, in sizes of the subject.
 const LARGER: f64 = 3.0;
 /// The height of a plane, of a slab, and the length of an edge of a large triangle, in radii of the whole.
 const PLANE: f64 = 1e-5;

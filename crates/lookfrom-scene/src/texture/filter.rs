@@ -27,9 +27,9 @@ pub enum MipFilter {
     Nearest,
     /// The four nearest ones of that level.
     Bilinear,
-    /// Those of the two levels whose texels are just smaller and just larger, interpolated.
+    /// The texels of the two levels whose texels are just smaller and just larger, interpolated.
     Trilinear,
-    /// Those in an ellipse, with the weights of a Gaussian (Heckbert 1989: elliptical weighted average).
+    /// The texels in an ellipse, with the weights of a Gaussian (Heckbert 1989: elliptical weighted average).
     Ewa {
         /// The greatest ratio of the ellipse's axes; longer ones are widened: 1 to [`MipFilter::MOST_ANISOTROPY`].
         anisotropy: f32,

@@ -38,7 +38,7 @@ pub(super) const KEYS: &[&str] = &[
     "motion",
     "surface",
 ];
-/// Those that only a lens system has.
+/// The keys that only a lens system has.
 const OF_LENS: [&str; 5] = ["film", "aperture_shape", "millimetre", "stop", "lens_convention"];
 /// The words for conventions of lens systems.
 pub(super) const CONVENTIONS: &[(&str, LensConvention)] =

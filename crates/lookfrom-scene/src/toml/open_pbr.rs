@@ -63,7 +63,7 @@ pub(super) const KEYS: &[&str] = &[
 /// The largest asymmetry of a medium: at 1 light would not be scattered.
 const GREATEST_G: f32 = 0.99;
 
-/// What a table says of a material besides its emission and opacity.
+/// The parts of a material's table, but emission and opacity.
 pub(super) struct Read {
     pub(super) kind: MaterialKind,
     /// The medium inside.

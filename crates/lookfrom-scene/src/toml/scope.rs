@@ -25,7 +25,7 @@ use crate::suggest::nearest;
 /// Names that every scene has.
 const BUILT_IN: [&str; 5] = ["t", "frame", "pi", "true", "false"];
 
-/// Where a variable is defined.
+/// The definition of a variable.
 #[derive(Clone, Copy)]
 struct Definition<'a> {
     document: &'a Document,

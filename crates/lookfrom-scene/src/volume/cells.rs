@@ -11,7 +11,7 @@ use crate::grid::{BLOCK, BRICK, Grid};
 /// `values` are asked for leaf by leaf, by their index, in order: the values of each with z fastest.
 ///
 /// # Errors
-/// Those of `values`; `Invalid` for values that are not finite; `Limit` for too many cells, or too little memory.
+/// Errors of `values`; `Invalid` for values that are not finite; `Limit` for too many cells, or too little memory.
 pub(crate) fn grid(
     tree: &Nodes,
     mut values: impl FnMut(usize) -> Result<[f32; BLOCK]>,

@@ -131,7 +131,7 @@ impl Film {
     }
 }
 
-/// What is known of the pixels of an area.
+/// Luminances of the pixels of an area, with their errors.
 struct Known {
     area: PixelBounds,
     /// Luminance and its standard error, row by row.

@@ -163,7 +163,7 @@ fn light_of(ray: &RayReport, addition: &Addition) -> String {
     }
 }
 
-/// How the surface scatters the light of a light that was sampled there.
+/// The letters of the scattering of the light of a lamp that was sampled there.
 fn letters_toward_light(ray: &RayReport, addition: &Addition) -> String {
     if let (Some(scattering), Some(sample)) =
         (&ray.scattering, ray.light_sample.as_ref().and_then(|light| light.sample.as_ref()))
@@ -194,7 +194,7 @@ impl NamedFactor {
         Self { name, value: most(lanes), is_divisor: false }
     }
 
-    /// What it multiplies the light by.
+    /// The factor by which it multiplies the light.
     fn multiplier(&self) -> f32 {
         if self.is_divisor { 1.0 / self.value } else { self.value }
     }
@@ -256,7 +256,7 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
 /// Growth of the throughput at one hit that is told beside the largest factor.
 const MUCH: f32 = 4.0;
 
-/// What a factor above 1 means.
+/// The meaning of a factor above 1.
 fn reason(
     inspection: &Inspection,
     ray: &RayReport,
@@ -301,7 +301,7 @@ impl Display for Growth {
     }
 }
 
-/// Where the throughput has grown most on the way to a ray.
+/// The place on the way to a ray where the throughput has grown most.
 fn grown(inspection: &Inspection, ray: &RayReport) -> Option<Growth> {
     let mut most_grown: Option<Growth> = None;
     let mut next = ray.parent;

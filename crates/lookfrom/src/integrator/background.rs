@@ -69,7 +69,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     }
 }
 
-/// What has passed media, by the throughput of a path from the camera: the mean of its lanes.
+/// The part of light that has passed media, by the throughput of a path from the camera: the mean of its lanes.
 fn passed(beta: Spectrum, mode: &SpectralMode) -> f32 {
     beta.sum() / mode.one().sum()
 }

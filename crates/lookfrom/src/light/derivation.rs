@@ -1,4 +1,4 @@
-//! Where the numbers of a light sample come from: formulas of its radiance, its density and its choice, with their operands,
+//! Derivations of the numbers of a light sample: formulas of its radiance, its density and its choice, with their operands,
 //! for people who compute them anew.
 //!
 //! Those of lights that project pictures are in `pictures`; area lights, environments, portals and the light tree have theirs

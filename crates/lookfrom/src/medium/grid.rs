@@ -40,7 +40,7 @@ const CHOICE: u64 = 0x6365_6c6c;
 const ANOTHER: u64 = 0x7365_636f_6e64;
 
 impl<W: Width> Lookup<W> {
-    /// The same by a choice that does not depend on this one.
+    /// A look-up at the same place, by a choice that does not depend on this one.
     #[inline(always)]
     pub(super) fn another(self) -> Self {
         match self {

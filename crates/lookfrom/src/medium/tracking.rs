@@ -31,7 +31,7 @@ pub(crate) struct TrackedRay<'a> {
     pub(crate) mode: &'a SpectralMode,
 }
 
-/// What is asked of rays.
+/// The quantity that is estimated along rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Estimate {
     /// The distance at which the medium scatters a ray, and the light that it emits on the way.

@@ -10,7 +10,7 @@ use crate::core::hash;
 pub(crate) struct Way {
     /// In render space.
     pub(crate) origin: Vec3,
-    /// Of unit length.
+    /// The direction, of unit length.
     pub(crate) direction: Vec3,
     pub(crate) length: f32,
 }

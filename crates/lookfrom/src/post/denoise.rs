@@ -56,7 +56,7 @@ pub fn denoise(film: &Film, picture: &mut Picture) {
     denoise_in_bands(film, picture, BAND);
 }
 
-/// The same with another number of rows in a band, a multiple of [`filter::ROWS`].
+/// [`denoise`] with this number of rows in a band, a multiple of [`filter::ROWS`].
 fn denoise_in_bands(film: &Film, picture: &mut Picture, rows: usize) {
     assert_eq!((film.width(), film.height()), (picture.width, picture.height), "a picture of another film");
     if picture.alpha.is_empty() {

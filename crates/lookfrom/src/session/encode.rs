@@ -24,7 +24,7 @@ use crate::post::develop::{srgb8_before, srgb16_before, srgba8, srgba16};
 pub enum Format {
     /// 8-bit sRGB after exposure and tone map, with alpha where the background is transparent.
     Png,
-    /// The same in 16 bits.
+    /// A PNG of 16 bits.
     Png16,
     /// 8-bit sRGB after exposure and tone map, with losses: of a quality of 1 to 100.
     Jpeg(u8),
@@ -203,7 +203,7 @@ impl Finished {
     }
 }
 
-/// What is written, in memory.
+/// The bytes that are written, in memory.
 pub(super) fn bytes(write: impl FnOnce(&mut Cursor<Vec<u8>>) -> Result<()>) -> Result<Vec<u8>> {
     let mut out = Cursor::new(Vec::new());
     write(&mut out)?;

@@ -25,7 +25,7 @@ use crate::film::{Film, Layout, MOST_PIXELS, SampleId, SampleLedger, StoredRows,
 pub struct FilmFile {
     /// The film.
     pub film: Film,
-    /// What it is of.
+    /// The origin of the film.
     pub provenance: Provenance,
 }
 
@@ -109,7 +109,7 @@ pub(super) struct Opened<B> {
     /// Its rows, and among their numbers the place of each channel of the film.
     pub(super) rows: ExrRows<B>,
     pub(super) places: Vec<usize>,
-    /// What it is of, with a film that knows its samples but has no sums.
+    /// The origin of the film, with one that knows its samples but has no sums.
     pub(super) file: FilmFile,
 }
 

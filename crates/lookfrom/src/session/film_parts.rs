@@ -27,14 +27,14 @@ const BAND: u32 = 32;
 /// Bytes of a pixel of a band while it is read and written: its sums in a tile and in the film, its numbers in the files.
 const OF_BAND: u64 = 1500;
 
-/// Those of each bucket of a spectral film.
+/// Bytes of a pixel for each bucket of a spectral film.
 const OF_BUCKET: u64 = 80;
 
 /// Films of parts of a picture, of which only the headers are in memory.
 pub struct FilmParts<'a> {
     files: &'a dyn Files,
     budget: Budget,
-    /// What all are of, with a film that knows their samples but has no sums.
+    /// The provenance of all parts, with a film that knows their samples but has no sums.
     whole: Option<FilmFile>,
     parts: Vec<PartFile>,
 }
@@ -181,7 +181,7 @@ impl<'a> FilmParts<'a> {
     }
 }
 
-/// What is reserved for the rows of a merged film that are in memory.
+/// The bytes reserved for the rows of a merged film that are in memory.
 fn band_bytes(film: &Film) -> u64 {
     u64::from(film.width()) * u64::from(BAND) * (OF_BAND + film.buckets() as u64 * OF_BUCKET)
 }

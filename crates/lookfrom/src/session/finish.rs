@@ -10,14 +10,14 @@ use crate::film::{Film, Picture};
 use crate::post::denoise::denoise;
 use crate::render::Rendered;
 
-/// How a film becomes a picture: what can be changed without rendering anew.
+/// The settings by which a film becomes a picture, which can be changed without rendering anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Development {
     /// In stops: 8-bit pictures are multiplied by 2^exposure before tone mapping.
     pub exposure: f32,
     /// The tone mapping of 8-bit pictures.
     pub tonemap: Tonemap,
-    /// What is behind a film with alpha.
+    /// The background of a film with alpha.
     pub background: Background,
     /// Whether the picture is denoised; guided by the first hits if the film has denoiser features.
     pub denoise: bool,
@@ -46,7 +46,7 @@ pub struct Developed {
     pub header: Vec<(String, String)>,
     /// Whether it is denoised.
     pub denoised: bool,
-    /// How it was developed, and will be encoded.
+    /// The settings by which it was developed, and will be encoded.
     pub development: Development,
 }
 

@@ -1,4 +1,4 @@
-//! What decides the samples of a session's picture, in short: digests of its files and options. Films of equal identity
+//! The identity of the samples of a session's picture: digests of its files and options. Films of equal identity
 //! and header are of the same picture.
 
 use std::fmt::Write as _;
@@ -37,14 +37,14 @@ fn as_ever(import: &ImportOptions) -> String {
 }
 
 impl Identity {
-    /// Of a scene read from files.
+    /// The identity of a scene read from files.
     pub(super) fn of_files(files: Digested<'_>, path: &Path, options: &Options) -> Self {
         let digests = files.digests(path.parent().unwrap_or(Path::new("")));
         let inputs = digests.into_iter().map(|(path, digest)| (path.display().to_string(), digest.sha256));
         Self::new(inputs.collect(), options)
     }
 
-    /// Of a scene in memory.
+    /// The identity of a scene in memory.
     pub(super) fn of_scene(scene: &Scene, options: &Options) -> Self {
         let mut digest = Digest::default();
         // Writing to a digest does not fail.
@@ -52,7 +52,7 @@ impl Identity {
         Self::new(vec![("scene".to_owned(), digest.finish())], options)
     }
 
-    /// The same options with a scene that has been changed.
+    /// The identity with the same options of a scene that has been changed.
     pub(super) fn with_scene(&self, scene: &Scene) -> Self {
         let mut digest = Digest::default();
         let _ = write!(digest, "{scene:?}");

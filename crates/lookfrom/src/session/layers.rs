@@ -26,7 +26,7 @@ const NOISY: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
 pub(super) enum Layers<'a> {
     /// By their names, of all pixels.
     Given(&'a [(String, Vec<f32>)]),
-    /// Of a film.
+    /// The layers of a film.
     OfFilm {
         /// The film.
         film: &'a Film,

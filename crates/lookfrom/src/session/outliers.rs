@@ -21,7 +21,7 @@ const CARRIED_BY_ONE: f64 = 0.5;
 pub struct Outliers {
     /// Number of all, as far as their samples were traced again.
     pub count: usize,
-    /// Those with the largest excess over their neighbours.
+    /// The fireflies with the largest excess over their neighbours.
     pub brightest: Vec<Outlier>,
 }
 

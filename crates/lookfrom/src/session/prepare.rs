@@ -159,7 +159,7 @@ fn add_lights(scene: &mut Scene, up: Option<DVec3>, options: &Options) -> bool {
     has_added
 }
 
-/// What a scene lacked and was given.
+/// A message about what a scene lacked and was given.
 fn told(lacks_camera: bool, lacks_lights: bool) -> Option<&'static str> {
     match (lacks_camera, lacks_lights) {
         (true, true) => {

@@ -16,7 +16,7 @@ pub(super) const FORMAT: &str = "1";
 /// The prefix of our attributes and channels, and the name of the attribute with the version.
 pub(super) const PREFIX: &str = "film";
 
-/// What a film is of, and what its reader needs besides the sums.
+/// The origin of a film, and what its reader needs besides the sums.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// The texts of the header that any number of samples has in common, sorted by name.
@@ -27,7 +27,7 @@ pub struct Provenance {
     pub(super) options: String,
     /// [`SAMPLING_VERSION`].
     pub(super) sampling: u32,
-    /// How the picture is developed.
+    /// The settings by which the picture is developed.
     pub development: Development,
     /// The path of the scene, as its maker tells: of an unfinished film relative to its folder.
     pub scene: Option<String>,
@@ -50,7 +50,7 @@ impl Texts<'_> {
         found.map(|(_, text)| text.as_str())
     }
 
-    /// What a text says, as `read` understands it.
+    /// The value of a text, as `read` understands it.
     ///
     /// # Errors
     /// `Syntax` where there is none, or it cannot be understood.
@@ -66,7 +66,7 @@ impl Texts<'_> {
 }
 
 impl Provenance {
-    /// What the texts of a film's file tell.
+    /// The provenance in the texts of a film's file.
     ///
     /// # Errors
     /// `Syntax` where they are damaged.

@@ -98,7 +98,7 @@ impl Series {
     /// in [`Options::framed`], for which the scene is read at several times.
     ///
     /// # Errors
-    /// Those of the file's reader.
+    /// Errors of the file's reader.
     pub fn framed(&self, path: &Path, files: &dyn Files, options: &Options) -> Result<Options> {
         let Self::Frames { frames, .. } = self else { return Ok(options.clone()) };
         let mut bounds = Bounds::EMPTY;

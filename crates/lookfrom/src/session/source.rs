@@ -32,7 +32,7 @@ impl fmt::Debug for Source {
 }
 
 impl Source {
-    /// The same world with another camera at the origin of render space, and its memory.
+    /// The world of the scene with another camera at the origin of render space, and its memory.
     ///
     /// # Errors
     /// As [`Session::open`](super::Session::open); `Request` where the scene cannot be read again.

@@ -35,9 +35,9 @@ pub struct PixelFootprint {
 /// The part of a surface that a pixel shows: changes from one pixel to the next, in x and in y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceFootprint {
-    /// Of the first set of texture coordinates.
+    /// Differentials of the first set of texture coordinates.
     pub uv: [Vec2; 2],
-    /// Of the position in the world.
+    /// Differentials of the position in the world.
     pub p: [Vec3; 2],
 }
 

@@ -384,7 +384,7 @@ fn equirectangular(u: f64, v: f64) -> DVec3 {
     DVec3::new(-sin_theta * libm::sin(phi), libm::cos(theta), sin_theta * libm::cos(phi))
 }
 
-/// The same for pbrt's spherical camera: φ = 2π u from the viewer's right toward the front.
+/// The direction of a point of pbrt's spherical camera: φ = 2π u from the viewer's right toward the front.
 fn equirectangular_pbrt(u: f64, v: f64) -> DVec3 {
     let (theta, phi) = (std::f64::consts::PI * (1.0 - v), std::f64::consts::TAU * u);
     let sin_theta = libm::sin(theta);

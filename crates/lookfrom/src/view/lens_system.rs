@@ -63,7 +63,7 @@ struct Surface {
 #[derive(Clone, Copy, Debug)]
 struct LensRay<F: Float> {
     p: Vector<F>,
-    /// Of unit length.
+    /// The direction, of unit length.
     d: Vector<F>,
     /// Their points in the plane of the stop, x and y.
     on_stop: [F; 2],
@@ -75,7 +75,7 @@ struct LensRay<F: Float> {
 pub(crate) struct LeavingRay<R: Real> {
     /// The point on the front surface.
     pub(crate) origin: Vector<R::Double>,
-    /// Of unit length.
+    /// The direction, of unit length.
     pub(crate) direction: Vector<R::Double>,
     /// The factor of its light; 0 where it is blocked, and the ray means nothing.
     pub(crate) weight: R,

@@ -234,7 +234,7 @@ fn compiled(
     materials.unzip()
 }
 
-/// What is so of materials, and of mixtures if it is so of any of their parts.
+/// A property of materials, which mixtures have if any of their parts has it.
 fn of_mixtures(materials: &[Written], mut are_so: Vec<bool>) -> Vec<bool> {
     let mut has_changed = true;
     while has_changed {

@@ -7,7 +7,7 @@ use ::exr::meta::attribute::IntegerBounds;
 use crate::error::Location;
 use crate::files::LoadContext;
 
-/// Which window is the picture.
+/// The window that is the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::image) enum Windows {
     /// The display window: the file format's rule.

@@ -81,7 +81,7 @@ struct Share {
 }
 
 impl Share {
-    /// Those of a texel of the level that is half as wide as `size` texels.
+    /// The shares of a texel of the level that is half as wide as `size` texels.
     fn new(index: u32, size: u32) -> Self {
         let half = size / 2;
         match (half, size % 2) {

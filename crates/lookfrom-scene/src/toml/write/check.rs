@@ -12,7 +12,7 @@ impl Written {
     /// Reads the document back, and compares.
     ///
     /// # Errors
-    /// Those of the reader, and `Unsupported` for a document that says something else than the scene: with the first line that does.
+    /// Errors of the reader, and `Unsupported` for a document that says something else than the scene: with the first line that does.
     pub fn check(&self, folder: &str, budget: &Budget) -> Result<()> {
         let name = format!("{folder}.toml");
         let files = OfDocument { written: self, name: &name };

@@ -66,14 +66,14 @@ pub fn noise(p: Vec3) -> f32 {
 pub struct Octaves {
     /// All that there are.
     all: u32,
-    /// Those that are whole.
+    /// The octaves that are whole.
     whole: u32,
     /// The share of the next one.
     next: f32,
 }
 
 impl Octaves {
-    /// Those whose detail is not finer than a width, in units of the noise: all for 0.
+    /// The octaves whose detail is not finer than a width, in units of the noise: all for 0.
     pub fn new(all: u32, detail: f32) -> Self {
         let all = all.min(super::MOST_OCTAVES);
         if !(detail > 0.0) {

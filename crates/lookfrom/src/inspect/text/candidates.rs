@@ -32,7 +32,7 @@ pub(super) fn write_candidates(f: &mut String, ray: &RayReport, others: usize, p
     Ok(())
 }
 
-/// What a traversal did, with `of` behind its nodes.
+/// The work of a traversal, with `of` behind its nodes.
 pub(super) fn work(&TraversalReport { nodes, culled, tests }: &TraversalReport, of: &str) -> String {
     let [nodes, culled, tests] = [(nodes, "node"), (culled, "box"), (tests, "primitive")]
         .map(|(count, noun)| counted(count, noun).to_string());

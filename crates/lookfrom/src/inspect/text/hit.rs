@@ -35,7 +35,7 @@ pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Resu
     writeln!(f)
 }
 
-/// What a medium absorbs on the way.
+/// The absorption by a medium on the way.
 pub(super) fn write_absorption(f: &mut String, ray: &RayReport, pad: &str) -> fmt::Result {
     let Some(absorption) = &ray.absorption else { return Ok(()) };
     let AbsorptionReport { material, sigma, scale, length, transmittance, throughput } = absorption;

@@ -314,7 +314,7 @@ impl Excerpt<'_> {
     }
 }
 
-/// How light sampling at the surface before finds a light.
+/// The density with which light sampling at the surface before finds a light.
 fn write_found_sampling(f: &mut String, sampling: Option<&FoundSampling>) -> fmt::Result {
     let Some(FoundSampling { probability, choice, density, derivations }) = sampling else { return Ok(()) };
     let (probability, density) = (full(*probability), full(*density));

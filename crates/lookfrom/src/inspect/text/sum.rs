@@ -22,7 +22,7 @@ impl Inspection {
         writeln!(f, "  = {}   what the film received: {verdict}", lanes(&self.film))
     }
 
-    /// What the sensor does to a sample, where it does anything.
+    /// The steps of the sensor, where it changes a sample.
     fn write_sensor(&self, f: &mut String) -> fmt::Result {
         if self.wavelengths.is_some() {
             writeln!(f, "  measured by the camera's sensor")?;

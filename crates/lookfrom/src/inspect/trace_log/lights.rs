@@ -70,7 +70,7 @@ impl TraceLogBuilder<'_> {
         Some((LightSampleContext { point, n, time: self.time }, incomplete_pdf))
     }
 
-    /// The same at a point, without the radiance of an area light.
+    /// The derivations at a point, without the radiance of an area light.
     fn derivations_at(
         &self,
         at: &LightSampleContext,
@@ -87,7 +87,7 @@ impl TraceLogBuilder<'_> {
         self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.mode)
     }
 
-    /// How light sampling at the surface before finds the light that a ray hit.
+    /// The density with which light sampling at the surface before finds the light that a ray hit.
     pub(super) fn found_sampling(
         &self,
         address: u64,

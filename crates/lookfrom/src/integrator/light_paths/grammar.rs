@@ -30,7 +30,7 @@ const MOST_LABELS: usize = 29;
 /// Number of events at the end of a way, by [`Ending`]: without a name, and with each.
 const WITH_LABELS: u32 = 1 + MOST_LABELS as u32;
 
-/// Where light comes from.
+/// The source of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
     Light,
@@ -141,7 +141,7 @@ impl Fault {
     }
 }
 
-/// What light of media is called, and its expression.
+/// The name of the light of media, and its expression.
 const VOLUME: [&str; 2] = ["volume", "CV.*"];
 
 /// Whether a layer has the transmittance of media.

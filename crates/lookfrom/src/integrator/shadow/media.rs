@@ -14,7 +14,7 @@ use crate::world::World;
 pub(super) struct Transmittances(Vec<Option<Spectrum>>);
 
 impl Transmittances {
-    /// Those of so many rays. `of` tells of a place the ray, its light, and the distance as far as which media count; `None` of a ray that
+    /// The transmittances of so many rays. `of` tells of a place the ray, its light, and the distance as far as which media count; `None` of a ray that
     /// is blocked.
     pub(super) fn estimate<'a>(
         world: &World,

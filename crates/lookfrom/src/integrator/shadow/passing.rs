@@ -134,7 +134,7 @@ struct Arrival<'a> {
     through_medium: Option<Spectrum>,
 }
 
-/// How a shadow ray goes on behind a hit.
+/// A shadow ray behind a hit.
 struct Onward {
     /// From its old origin where it has hit an interface.
     ray: Ray,

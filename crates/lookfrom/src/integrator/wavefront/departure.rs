@@ -21,7 +21,7 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
 /// The media on the other side of a surface.
 #[derive(Clone, Copy)]
 pub(in crate::integrator) enum Boundary<'a> {
-    /// Those that the surface separates.
+    /// The media that the surface separates.
     Surface(&'a SurfaceInteraction),
     /// A surface that declares no media: the body of its material, if it is one, or out of it where the path has met it from inside.
     Bare {
@@ -30,7 +30,7 @@ pub(in crate::integrator) enum Boundary<'a> {
         /// Whether the path has met the outside.
         front: bool,
     },
-    /// The same as on this side.
+    /// The medium of this side.
     None,
 }
 

@@ -13,7 +13,7 @@ pub struct CurveLight {
 }
 
 impl CurveLight {
-    /// Of curves whose transform scales lengths by `scale`. None for curves without length.
+    /// A light of curves whose transform scales lengths by `scale`. None for curves without length.
     pub fn new(curves: &Curves, scale: f64) -> Option<Self> {
         let (mut area, mut bounds) = (0.0, [DVec3::INFINITY, DVec3::NEG_INFINITY]);
         for primitive in 0..curves.count() {

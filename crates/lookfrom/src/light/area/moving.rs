@@ -54,7 +54,7 @@ fn is_rotation(map: &Affine) -> bool {
     is_even && x.cross(y).dot(z) > 0.0
 }
 
-/// Where a light is at a time: the map from where it was, and back.
+/// The place of a light at a time: the map from where it was, and back.
 pub(crate) struct LightPlace {
     now: Affine,
     back: Affine,

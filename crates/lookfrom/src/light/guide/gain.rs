@@ -13,7 +13,7 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Those of this number of terms, of which others than those given are zero.
+    /// The moments of this number of terms, of which others than those given are zero.
     pub(super) fn of(terms: impl Iterator<Item = f32>, count: u32) -> Self {
         let (sum, squares) =
             terms.fold((0.0, 0.0), |(sum, squares), term| (sum + term, squares + term * term));

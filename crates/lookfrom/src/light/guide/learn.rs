@@ -83,7 +83,7 @@ struct Unguided {
     found: f32,
     /// The moments of the estimates.
     all: Moments,
-    /// Those of the estimates by radiance above [`CellLight::most`].
+    /// The moments of the estimates by radiance above [`CellLight::most`].
     excess: Moments,
     /// The mean estimate by a sample that finds the environment, weighted by the estimate.
     of_one: f32,

@@ -18,7 +18,7 @@ impl Direction {
         Self(Vec3::new(x - fold.copysign(x), y - fold.copysign(y), z))
     }
 
-    /// Of a vector of unit length.
+    /// The direction of a vector of unit length.
     #[inline]
     pub(super) fn of_unit(direction: Vec3) -> Self {
         let size = direction.abs();

@@ -123,7 +123,7 @@ impl<const N: usize> Planes<N> {
     }
 }
 
-/// What alpha is divided by to count as much as the mean light of the picture.
+/// The divisor by which alpha counts as much as the mean light of the picture.
 pub(super) fn alpha_divisor(film: &Film) -> f32 {
     let mean = film.mean_luminance().abs() as f32;
     if mean > 0.0 { 1.0 / mean } else { 1.0 }

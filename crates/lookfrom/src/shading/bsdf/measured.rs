@@ -66,7 +66,7 @@ impl Measured {
         Self { tables: [tables], is_isotropic, is_adaptive, wavelengths }
     }
 
-    /// The same for other wavelengths.
+    /// The look at other wavelengths.
     #[cfg(test)]
     pub(super) fn at(self, wavelengths: Option<[f32; 4]>) -> Self {
         Self { wavelengths, ..self }
@@ -225,7 +225,7 @@ fn normal_at<R: Real>([x, y]: [R; 2], phi: R) -> Vector<R> {
     Vector { x: sin * cos_phi, y: sin * sin_phi, z: cos }
 }
 
-/// What one density of normals in tables is over solid angle of incident directions.
+/// The density over solid angle of incident directions that is one in tables of normals.
 #[inline(always)]
 fn jacobian<R: Real>(wo: Vector<R>, wm: Vector<R>, [x, _]: [R; 2]) -> R {
     let area = x * (2.0 * PI * PI) * across(wm);

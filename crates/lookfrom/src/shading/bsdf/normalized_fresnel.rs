@@ -25,7 +25,7 @@ pub struct NormalizedFresnel {
 }
 
 impl NormalizedFresnel {
-    /// Of the boundary with this index of refraction.
+    /// The light that leaves by a boundary with this index of refraction.
     pub fn new(eta: f32) -> Self {
         let eta = fresnel::valid_eta(eta);
         let norm = PI * (1.0 - 2.0 * fresnel_moment(eta.into(), 1)) as f32;

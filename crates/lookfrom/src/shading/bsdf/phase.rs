@@ -68,7 +68,7 @@ pub(crate) struct Phases<R: Real> {
 }
 
 impl<R: Real> Phases<R> {
-    /// Those of lanes.
+    /// The phase functions of lanes.
     #[inline(always)]
     pub(crate) fn by_lane<W: Width<Real = R>>(width: W, of: impl Fn(usize) -> Phase) -> Self {
         let henyey_greenstein = HenyeyGreenstein::of(width.f32s(

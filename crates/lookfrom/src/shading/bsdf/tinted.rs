@@ -13,9 +13,9 @@ use crate::core::vector::Vector;
 /// Factors of reflected and of transmitted light, within 0 … 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tint<R = f32> {
-    /// Of reflected light.
+    /// The factor of reflected light.
     pub(crate) reflectance: Spectrum<R>,
-    /// Of transmitted light.
+    /// The factor of transmitted light.
     pub(crate) transmittance: Spectrum<R>,
 }
 

@@ -37,7 +37,7 @@ impl BeamDiffusion {
         self.single(albedo, r) + self.multiple(albedo, r)
     }
 
-    /// Of light scattered more than once.
+    /// The profile of light scattered more than once.
     fn multiple(&self, scattering: f64, r: f64) -> f64 {
         let absorption = 1.0 - scattering;
         // Reduced coefficients: as if scattering were the same in all directions (similarity theory).
@@ -67,7 +67,7 @@ impl BeamDiffusion {
         albedo * albedo * self.mean(of_sample)
     }
 
-    /// Of light scattered once.
+    /// The profile of light scattered once.
     fn single(&self, albedo: f64, r: f64) -> f64 {
         // Light from above this depth is reflected totally.
         let critical = r * (self.eta * self.eta - 1.0).max(0.0).sqrt();

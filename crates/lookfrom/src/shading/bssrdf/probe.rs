@@ -37,7 +37,7 @@ pub struct ProbeSegment {
     pub radius: f32,
     /// In render space.
     pub start: Vec3,
-    /// Of unit length.
+    /// The direction, of unit length.
     pub direction: Vec3,
     /// As far as the sphere within which points are looked for.
     pub length: f32,

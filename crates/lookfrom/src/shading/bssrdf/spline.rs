@@ -7,7 +7,7 @@
 pub(super) struct Weights {
     /// The interval that contains the point: between the nodes of this index and the next.
     interval: usize,
-    /// Of the nodes `interval` − 1 … `interval` + 2; 0 for those that do not exist.
+    /// The weights of the nodes `interval` − 1 … `interval` + 2; 0 for those that do not exist.
     weights: [f64; 4],
 }
 

@@ -221,7 +221,7 @@ pub struct CoatMaterial {
     pub max_depth: u16,
     /// Number of random walks that are averaged.
     pub samples: u16,
-    /// How they are weighted.
+    /// The weights of these samples.
     pub estimate: CoatEstimate,
     /// Knowledge of its inside, where the coat is the same everywhere and has no particles, and is not pbrt's.
     pub interior: Option<CoatInterior>,
@@ -230,9 +230,9 @@ pub struct CoatMaterial {
 /// Colours of a dielectric, see [`lookfrom_scene::material::Tint`].
 #[derive(Clone, Debug)]
 pub struct TintTextures {
-    /// Of reflected light.
+    /// The factor of reflected light.
     pub reflectance: SpectrumTexture,
-    /// Of transmitted light.
+    /// The factor of transmitted light.
     pub transmittance: SpectrumTexture,
 }
 

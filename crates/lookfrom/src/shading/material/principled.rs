@@ -28,7 +28,7 @@ fn straight(ior: f32) -> f32 {
     ratio * ratio
 }
 
-/// How a material bends light.
+/// The refraction of a material.
 #[derive(Clone, Copy)]
 pub(super) struct Refraction {
     /// Index of refraction; 0 means infinite.

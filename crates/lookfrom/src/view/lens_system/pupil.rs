@@ -22,7 +22,7 @@ const FINE_GRID: usize = 256;
 const FINEST_GRID: usize = 1024;
 const ALONG: usize = 64;
 const ACROSS: usize = 16;
-/// How much finer grids are for a stop that is no circle, and may have narrow points.
+/// The factor by which grids are finer for a stop that is no circle, and may have narrow points.
 const DETAIL: usize = 4;
 /// Cells by which bounds may be wrong: the points of a circle's pupil, where two arcs meet, are blunt, those of a star are not.
 const MARGIN: f64 = 1.0;

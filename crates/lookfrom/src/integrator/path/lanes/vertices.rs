@@ -184,7 +184,7 @@ impl VertexColumns {
 }
 
 impl GuardColumns {
-    /// Those of vertices, if any of them has one.
+    /// The guards of vertices, if any of them has one.
     fn of_vertices(vertices: &[&Vertex]) -> Option<Self> {
         if vertices.iter().all(|vertex| vertex.shading.guard().is_none()) {
             return None;

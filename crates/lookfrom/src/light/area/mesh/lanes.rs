@@ -55,7 +55,7 @@ pub(crate) fn sample_triangles<S: Simd>(
 struct Seen<S: Simd> {
     /// From the points.
     corners: [Vector<f64x8<S>>; 3],
-    /// Where they are large enough to be sampled by direction: as [`Triangle::worth_direction`] decides it.
+    /// The triangles large enough to be sampled by direction, as [`Triangle::worth_direction`] decides it.
     is_large: mask32x8<S>,
 }
 

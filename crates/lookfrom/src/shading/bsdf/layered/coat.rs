@@ -29,7 +29,7 @@ pub struct CoatLayer {
     pub max_depth: u16,
     /// Number of walks that are averaged, at least one.
     pub samples: u16,
-    /// How they are weighted.
+    /// The weights of these samples.
     pub estimate: CoatEstimate,
     /// Knowledge of its inside, which replaces walks over a diffuse base.
     pub interior: Option<CoatInterior>,

@@ -6,7 +6,7 @@ use super::Principled;
 use super::open_pbr::OpenPbr;
 use crate::core::vector::Vector;
 
-/// What a model adds to the layers. It is known when the program is compiled, so that glTF's costs nothing more.
+/// The additions of a model to the layers. They are known when the program is compiled, so that glTF's costs nothing more.
 pub trait Model<R: Real>: Copy {
     /// The additions of OpenPBR; `None` for glTF's model.
     fn open_pbr(&self) -> Option<&OpenPbr<R>>;

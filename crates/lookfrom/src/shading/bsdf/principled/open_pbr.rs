@@ -1,4 +1,4 @@
-//! What OpenPBR 1.1 adds to the layers of principled surfaces.
+//! Additions of OpenPBR 1.1 to the layers of principled surfaces.
 //!
 //! Portsmouth, Kutz & Hill et al. 2024, "OpenPBR Surface Specification" (Academy Software Foundation):
 //! - **metal** whose reflectance is tinted near grazing incidence;

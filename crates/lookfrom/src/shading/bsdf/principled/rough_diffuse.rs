@@ -26,7 +26,7 @@ pub(super) struct RoughDiffuse<R> {
 }
 
 impl<R: Real> RoughDiffuse<R> {
-    /// Of a roughness of 0 … 1; 0 is Lambert's.
+    /// Reflection of a roughness of 0 … 1; 0 is Lambert's.
     #[inline(always)]
     pub(super) fn new(roughness: R) -> Self {
         Self { roughness, norm: roughness.like(1.0) / (roughness * NORM + 1.0) }
