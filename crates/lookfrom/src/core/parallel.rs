@@ -45,6 +45,14 @@ pub(crate) fn for_chunks_mut<T: Send>(items: &mut [T], size: usize, each: impl F
     });
 }
 
+/// The number of threads that loops use.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    1
+}
+
 /// Runs both closures, in parallel if possible, and returns both results.
 #[cfg(feature = "parallel")]
 pub(crate) fn join<A: Send, B: Send>(

@@ -30,6 +30,9 @@ const LONGEST_ROUND: u32 = 64;
 /// Time of a pass that nobody would wait for: passes that are shorter are taken together, since each has its costs.
 const MOMENT: Duration = Duration::from_millis(100);
 
+/// Number of parts of a pass for each of several threads: those of small pictures are divided by their samples.
+const PARTS: usize = 4;
+
 /// Number of samples of each pixel of a part between two looks for a cancellation.
 const MOST_TOGETHER: u32 = 8;
 
@@ -198,10 +201,13 @@ impl Work<'_> {
 
     /// Adds the samples to every pixel that lacks them and is not clean.
     fn pass(&self, samples: Range<u32>) -> Result<Pass> {
+        // Pictures of a tile come in the order of its samples.
+        let threads = if self.progress.wants_pixels() { 1 } else { parallel::threads() };
         let missing = || -> Vec<TilePart> {
             let guard = locked(&self.film);
             let of_tile = |tile: &PixelBounds| parts(guard.0.ledger().missing(*tile, &samples));
-            self.tiles.iter().flat_map(of_tile).collect()
+            let parts = self.tiles.iter().flat_map(of_tile).collect();
+            if threads > 1 { divided(parts, PARTS * threads) } else { parts }
         };
         let mut parts = missing();
         if parts.is_empty() {
@@ -236,14 +242,19 @@ impl Work<'_> {
         let rays = self.rays_of_part(&mut batch, areas, samples.clone(), &mut tile)?;
         locked(&self.batches).push(batch);
         let Some(rays) = rays else { return Ok(false) };
-        let wants_pixels = self.progress.wants_pixels();
-        let mut detached = locked(&self.film).0.detach(&tile)?;
-        detached.add(&tile);
-        let (rays, picture) = {
+        let (rays, picture) = if self.progress.wants_pixels() {
+            // Under one lock, so that no block is missing from the picture.
+            let mut guard = locked(&self.film);
+            guard.0.add_tile(&tile)?;
+            guard.1 += rays;
+            (guard.1.total(), Some(guard.0.picture_of(around)))
+        } else {
+            let mut detached = locked(&self.film).0.detach(&tile)?;
+            detached.add(&tile);
             let mut guard = locked(&self.film);
             guard.0.attach(detached);
             guard.1 += rays;
-            (guard.1.total(), wants_pixels.then(|| guard.0.picture_of(around)))
+            (guard.1.total(), None)
         };
         let of_part = areas.iter().map(area).sum::<u64>() * u64::from(samples.end - samples.start);
         self.progress.tile(TileDone {
@@ -398,6 +409,19 @@ fn parts(missing: Vec<(PixelBounds, Range<u32>)>) -> Vec<TilePart> {
     parts
 }
 
+/// Divides parts by their samples until there are `count`, if they are fewer and have as many samples.
+fn divided(parts: Vec<TilePart>, count: usize) -> Vec<TilePart> {
+    let pieces = count.div_ceil(parts.len().max(1));
+    let divide = |TilePart { areas, samples: Range { start, end } }| {
+        let length = (end - start).div_ceil(pieces as u32).max(1);
+        (start..end).step_by(length as usize).map(move |start| TilePart {
+            areas: areas.clone(),
+            samples: start..end.min(start.saturating_add(length)),
+        })
+    };
+    if pieces > 1 { parts.into_iter().flat_map(divide).collect() } else { parts }
+}
+
 /// The parts of an area that threads work on.
 fn tiles(area: PixelBounds) -> Vec<PixelBounds> {
     let rows = (area.y0..area.y1).step_by(TILE as usize);
@@ -433,6 +457,24 @@ mod tests {
     fn rounds_double_and_are_never_long() {
         assert_eq!([0, 1, 2, 3, 4, 31, 32, 63].map(end_of_round), [1, 2, 4, 4, 8, 32, 64, 64]);
         assert_eq!([64, 127, 128, u32::MAX - 1].map(end_of_round), [128, 128, 192, u32::MAX]);
+    }
+
+    #[test]
+    fn few_parts_are_divided_by_their_samples() {
+        let areas = tiles(PixelBounds { x0: 0, y0: 0, x1: 32, y1: 40 });
+        let samples_of = |samples: &[Range<u32>], count| -> Vec<Range<u32>> {
+            let part = |(area, samples): (&PixelBounds, &Range<u32>)| TilePart {
+                areas: vec![*area],
+                samples: samples.clone(),
+            };
+            let parts = areas.iter().zip(samples).map(part).collect();
+            divided(parts, count).into_iter().map(|part| part.samples).collect()
+        };
+        let all = [[8..11, 11..14, 14..16], [0..2, 2..4, 4..5]].concat();
+        assert_eq!(samples_of(&[8..16, 0..5], 6), all);
+        assert_eq!(samples_of(&[8..16, 0..5], 2), [8..16, 0..5]);
+        assert_eq!(samples_of(&[7..9, 0..1], 64), [7..8, 8..9, 0..1]);
+        assert_eq!(samples_of(&[], 64), []);
     }
 
     #[test]

@@ -65,7 +65,8 @@ pub struct TileDone {
 
 /// Receives the progress of a render, and may cancel it. Called from many threads; no lock is held during the call.
 pub trait Progress: Sync {
-    /// A tile has received more samples. Tiles may come in any order, those of one area in the order of their samples.
+    /// A tile has received more samples. Tiles may come in any order; those of one area come in the order of their samples if they have
+    /// [pictures](Progress::wants_pixels).
     fn tile(&self, _done: TileDone) {}
 
     /// Whether tiles should come with their pictures.
