@@ -8,7 +8,7 @@
 //! for display is in [`crate::post::develop`].
 //!
 //! In a tile, which a thread fills, a pixel takes 112 bytes, as many for variances in the sensor's channels, and those of AOVs, where they are
-//! enabled. The film keeps them packed, in `plane`: in about half of that.
+//! enabled. The film keeps them packed, in `plane` and `packed`: in about half of that.
 
 pub mod allocation;
 mod buckets;
@@ -21,6 +21,7 @@ mod light_paths;
 mod means;
 mod motion;
 mod noise;
+mod packed;
 mod picture;
 mod pixel;
 mod plane;

@@ -12,6 +12,7 @@ mod footprint;
 mod guide;
 mod interior;
 mod labels;
+mod parts;
 mod progress;
 mod sensor;
 mod spectral_film;

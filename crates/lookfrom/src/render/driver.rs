@@ -14,15 +14,13 @@ use std::time::Duration;
 use lookfrom_scene::settings::{Allocation, PixelBounds, RenderSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
+use super::parts::{TilePart, area, divided, parts, rows, tiles};
 use super::progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 use super::{Batch, Rays, Renderer};
 use crate::core::clock::Stopwatch;
 use crate::core::parallel;
 use crate::film::allocation::{self, LEAST_MEAN};
 use crate::film::{Film, FilmTile, union};
-
-/// Side of a tile in pixels. One sample of each pixel of a tile is a batch.
-const TILE: u32 = 32;
 
 /// Maximum number of samples per pixel between two evaluations of the stop criteria.
 const LONGEST_ROUND: u32 = 64;
@@ -139,13 +137,6 @@ struct Work<'a> {
     total: AtomicU64,
     /// Time of a sample in the last piece of work, in nanoseconds; 0 before the first.
     cost: AtomicU64,
-}
-
-/// Pixels of a tile that lack the same samples.
-struct TilePart {
-    /// Disjoint.
-    areas: Vec<PixelBounds>,
-    samples: Range<u32>,
 }
 
 impl Work<'_> {
@@ -356,12 +347,6 @@ enum Pass {
     Cancelled,
 }
 
-/// The rows of an area.
-fn rows(area: &PixelBounds) -> impl Iterator<Item = PixelBounds> + use<> {
-    let area = *area;
-    (area.y0..area.y1).map(move |y| PixelBounds { y0: y, y1: y + 1, ..area })
-}
-
 /// The value that a mutex guards, though a thread may have panicked while it held it.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
@@ -397,50 +382,6 @@ fn affordable(samples: u32, elapsed: Duration, time: Duration) -> u32 {
     ((left * f64::from(samples) / elapsed.as_secs_f64().max(1e-9)) as u32).max(1)
 }
 
-/// The missing samples of a tile's pixels, those with the same samples together.
-fn parts(missing: Vec<(PixelBounds, Range<u32>)>) -> Vec<TilePart> {
-    let mut parts: Vec<TilePart> = Vec::new();
-    for (area, samples) in missing {
-        match parts.iter_mut().find(|part| part.samples == samples) {
-            Some(part) => part.areas.push(area),
-            None => parts.push(TilePart { areas: vec![area], samples }),
-        }
-    }
-    parts
-}
-
-/// Divides parts by their samples until there are `count`, if they are fewer and have as many samples.
-fn divided(parts: Vec<TilePart>, count: usize) -> Vec<TilePart> {
-    let pieces = count.div_ceil(parts.len().max(1));
-    let divide = |TilePart { areas, samples: Range { start, end } }| {
-        let length = (end - start).div_ceil(pieces as u32).max(1);
-        (start..end).step_by(length as usize).map(move |start| TilePart {
-            areas: areas.clone(),
-            samples: start..end.min(start.saturating_add(length)),
-        })
-    };
-    if pieces > 1 { parts.into_iter().flat_map(divide).collect() } else { parts }
-}
-
-/// The parts of an area that threads work on.
-fn tiles(area: PixelBounds) -> Vec<PixelBounds> {
-    let rows = (area.y0..area.y1).step_by(TILE as usize);
-    rows.flat_map(|y0| {
-        let columns = (area.x0..area.x1).step_by(TILE as usize);
-        columns.map(move |x0| PixelBounds {
-            x0,
-            y0,
-            x1: (x0 + TILE).min(area.x1),
-            y1: (y0 + TILE).min(area.y1),
-        })
-    })
-    .collect()
-}
-
-fn area(tile: &PixelBounds) -> u64 {
-    u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
-}
-
 /// The end of the round that a sample is in: 0..1, 1..2, 2..4, 4..8 …, and from [`LONGEST_ROUND`] on as many each.
 fn end_of_round(sample: u32) -> u32 {
     match sample < LONGEST_ROUND {
@@ -457,24 +398,6 @@ mod tests {
     fn rounds_double_and_are_never_long() {
         assert_eq!([0, 1, 2, 3, 4, 31, 32, 63].map(end_of_round), [1, 2, 4, 4, 8, 32, 64, 64]);
         assert_eq!([64, 127, 128, u32::MAX - 1].map(end_of_round), [128, 128, 192, u32::MAX]);
-    }
-
-    #[test]
-    fn few_parts_are_divided_by_their_samples() {
-        let areas = tiles(PixelBounds { x0: 0, y0: 0, x1: 32, y1: 40 });
-        let samples_of = |samples: &[Range<u32>], count| -> Vec<Range<u32>> {
-            let part = |(area, samples): (&PixelBounds, &Range<u32>)| TilePart {
-                areas: vec![*area],
-                samples: samples.clone(),
-            };
-            let parts = areas.iter().zip(samples).map(part).collect();
-            divided(parts, count).into_iter().map(|part| part.samples).collect()
-        };
-        let all = [[8..11, 11..14, 14..16], [0..2, 2..4, 4..5]].concat();
-        assert_eq!(samples_of(&[8..16, 0..5], 6), all);
-        assert_eq!(samples_of(&[8..16, 0..5], 2), [8..16, 0..5]);
-        assert_eq!(samples_of(&[7..9, 0..1], 64), [7..8, 8..9, 0..1]);
-        assert_eq!(samples_of(&[], 64), []);
     }
 
     #[test]
