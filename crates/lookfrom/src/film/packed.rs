@@ -148,14 +148,14 @@ pub(super) fn pack<T: Stored + Default + PartialEq>(sums: &[T], bytes: &mut Vec<
 #[cfg(test)]
 mod tests {
     use super::super::Pixel;
-    use super::super::plane::tests::pixel;
+    use super::super::pixel::any_pixel;
     use super::*;
     use crate::aov::LayerSums;
     use proptest::prelude::*;
 
     proptest! {
         #[test]
-        fn numbers_come_back(sums in prop::collection::vec(pixel(), 1..30)) {
+        fn numbers_come_back(sums in prop::collection::vec(any_pixel(), 1..30)) {
             let (mut bytes, mut again) = (Vec::new(), Vec::<Pixel>::new());
             pack(&sums, &mut bytes);
             unpack(&bytes, sums.len(), &mut again);

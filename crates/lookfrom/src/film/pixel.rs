@@ -76,3 +76,17 @@ pub(super) fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 
     // For equal samples rounding leaves a small value of either sign.
     (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
 }
+
+/// Any pixel, of numbers of any magnitude and with any number of zeros at their ends.
+#[cfg(test)]
+pub(super) fn any_pixel() -> impl proptest::strategy::Strategy<Value = Pixel> {
+    use proptest::prelude::*;
+    let number = (any::<i128>(), 0_u32..128, 0_u32..128)
+        .prop_map(|(bits, above, below)| bits << above >> above >> below << below);
+    let three = || prop::array::uniform3(number.clone());
+    (three(), three(), any::<u64>(), 0_u32..64).prop_map(|(sums, squares, samples, above)| Pixel {
+        sums,
+        squares: squares.map(i128::cast_unsigned),
+        samples: samples >> above,
+    })
+}

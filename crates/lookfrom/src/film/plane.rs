@@ -165,27 +165,12 @@ fn merge<T: Sums>(mine: &mut Box<[u8]>, theirs: &[u8], count: usize) {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use proptest::prelude::*;
 
     use super::super::Pixel;
+    use super::super::pixel::any_pixel;
     use super::*;
-
-    /// Numbers of any magnitude and number of zeros at their ends.
-    fn number() -> impl Strategy<Value = i128> {
-        (any::<i128>(), 0_u32..128, 0_u32..128)
-            .prop_map(|(bits, above, below)| bits << above >> above >> below << below)
-    }
-
-    pub(in crate::film) fn pixel() -> impl Strategy<Value = Pixel> {
-        (prop::array::uniform3(number()), prop::array::uniform3(number()), any::<u64>(), 0_u32..64).prop_map(
-            |(sums, squares, samples, above)| Pixel {
-                sums,
-                squares: squares.map(i128::cast_unsigned),
-                samples: samples >> above,
-            },
-        )
-    }
 
     fn set(plane: &mut Plane<Pixel>, area: PixelBounds, sums_of: impl Fn(u32, u32) -> Pixel) {
         let mut blocks: Vec<_> = plane.take(area).collect();
@@ -196,7 +181,7 @@ pub(super) mod tests {
     proptest! {
         #[test]
         fn pixels_stay_where_they_are(
-            pixels in prop::collection::vec((0_u32..70, 0_u32..40, pixel()), 0..40),
+            pixels in prop::collection::vec((0_u32..70, 0_u32..40, any_pixel()), 0..40),
         ) {
             let mut plane = Plane::<Pixel>::new(70, 40).unwrap();
             let mut slow = vec![Pixel::default(); 70 * 40];
