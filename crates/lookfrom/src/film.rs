@@ -4,8 +4,8 @@
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
 //! denoiser, are in [`crate::aov`]; what the sums tell of a pixel, in `means`; noise estimates in `noise`; firefly suppression in
-//! `fireflies`; blocks to which threads add, in `detached`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as channels of a file, in `stored`. Conversion
-//! for display is in [`crate::post::develop`].
+//! `fireflies`; blocks to which threads add, in `detached`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as
+//! channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
 //! In a tile, which a thread fills, a pixel takes 112 bytes, as many for variances in the sensor's channels, and those of AOVs, where they are
 //! enabled. The film keeps them packed, in `plane` and `packed`: in about half of that.

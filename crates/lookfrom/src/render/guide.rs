@@ -48,18 +48,21 @@ impl Renderer {
         let asks = self.asks_for_guide();
         let Some((light, environment)) = self.world.guidable().filter(|_| asks) else { return self };
         let world = &self.world;
-        let learned = |visited: &[Visited], least_gain| {
+        let learned = |visited: &mut [Visited], least_gain| {
+            // Paths that are shaded together are told of in another order than those that are shaded alone; and neighbours must not follow
+            // one another, since the learner takes points in turns.
+            visited.sort_by_cached_key(|visited| visited.point.key());
+            let visited = &*visited;
             let points: Vec<GuidePoint> = visited.iter().map(|visited| visited.point).collect();
             let visibility = |queries: &[Query]| visibility(world, light, visited, queries);
             Guide::learn(environment, &world.textures, &points, &visibility, least_gain)
         };
         let mut visited = self.visited(0..FIRST_SAMPLES);
-        if learned(&visited, LEAST_GAIN_OF_FIRST).is_none() {
+        if learned(&mut visited, LEAST_GAIN_OF_FIRST).is_none() {
             return self;
         }
         visited.extend(self.visited(FIRST_SAMPLES..SAMPLES));
-        mix(&mut visited);
-        if let Some(guide) = learned(&visited, LEAST_GAIN) {
+        if let Some(guide) = learned(&mut visited, LEAST_GAIN) {
             self.world = world.guided(light, &Arc::new(guide)).into();
         }
         self
@@ -93,16 +96,8 @@ impl Renderer {
             renderer.integrator.trace_events(&renderer, chunks[chunk], &mut events, &mut batch);
             events.into_iter().filter_map(Visited::of).collect::<Vec<_>>()
         });
-        let mut visited: Vec<Visited> = visited.into_iter().flatten().collect();
-        mix(&mut visited);
-        visited
+        visited.into_iter().flatten().collect()
     }
-}
-
-/// Orders points as if at random: paths that are shaded together are told of in another order than those that are shaded alone; and
-/// neighbours must not follow one another, since the learner takes points in turns.
-fn mix(visited: &mut [Visited]) {
-    visited.sort_by_cached_key(|visited| visited.point.key());
 }
 
 impl Visited {
