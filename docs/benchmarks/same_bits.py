@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Random files: the same pictures, bit by bit, at all SIMD levels, on one thread and two, and after `lookfrom convert`.
+"""Random files: the same pictures, bit by bit, at all SIMD levels, on one thread and two, from films that are added up or gone
+on with, and after `lookfrom convert`.
 
 Needs: pip package numpy, and mitsuba for its scenes; a release build of lookfrom.
 
@@ -65,12 +66,33 @@ class Lookfrom:
         self.run("render", path, *options, *common, **variables)
         return out.read_bytes()
 
+    def developed(self, film):
+        out = self.folder / "developed.pfm"
+        self.run("develop", film, "--denoise", "off", "-o", out)
+        return out.read_bytes()
+
+    def films(self, path, options):
+        """Names of films, and the pictures that are made of them."""
+        common = ["--seed", 3, "--denoise", "off", "--quiet", "--film"]
+        parts = [self.folder / f"part-{part}.exr" for part in (3, 1, 2)]
+        for part in parts:
+            self.run("render", path, *options, *common, "--samples", 9, "--part", f"{part.stem[-1]}/3", "-o", part)
+        whole, stopped = self.folder / "whole.exr", self.folder / "stopped.exr"
+        self.run("merge", *parts, "--quiet", "-o", whole)
+        yield "merge", self.developed(whole)
+        self.run("render", path, *options, *common, "--samples", 4, "-o", stopped)
+        self.run("resume", stopped, "--samples", 9, "--quiet")
+        yield "resume", self.developed(stopped)
+
     def differences(self, path, of_file, of_picture):
         """The ways in which the file makes another picture."""
         first = self.picture(path, of_file + of_picture)
         for level, threads in VARIANTS:
             if self.picture(path, of_file + of_picture, threads, LOOKFROM_SIMD=level) != first:
                 yield f"{level}, {threads} threads"
+        for name, picture in self.films(path, of_file + of_picture):
+            if picture != first:
+                yield name
         converted = self.folder / f"{path.stem}-converted.toml"
         self.run("convert", path, *of_file, "--force", "--quiet", "-o", converted)
         if self.picture(converted, of_picture) != first:

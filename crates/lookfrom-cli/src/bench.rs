@@ -120,13 +120,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
 
 fn sampled(film: &Film) -> Sampled {
     let picture = film.picture();
-    Sampled {
-        width: picture.width as usize,
-        pixels: picture.pixels,
-        not_finite: 0,
-        variances: None,
-        channels_from_rgb: None,
-    }
+    Sampled::of_colors(picture.width, picture.pixels)
 }
 
 impl Measured {

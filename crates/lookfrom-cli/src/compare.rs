@@ -3,11 +3,15 @@
 use std::path::Path;
 
 use lookfrom::core::color;
+use lookfrom::film::Picture;
+use lookfrom::post::develop::srgb8;
+use lookfrom_scene::image;
 use lookfrom_scene::image::compare::{Comparison, Sampled, channels_of_both, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
-use lookfrom_scene::image::{self, Channels};
+use lookfrom_scene::settings::Tonemap;
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::args::CompareArguments;
@@ -158,8 +162,8 @@ fn compare_pair(
     Ok((verdict, Pictures { picture: a, reference: b, flip: map }))
 }
 
-/// Bytes of a pixel while its colours become those of [`Sampled`].
-const PIXEL: u64 = 24;
+/// Bytes of a pixel of [`Sampled`].
+const PIXEL: u64 = 12;
 
 /// Reads a picture of any format; only an EXR can have variances.
 pub(crate) fn read(
@@ -168,55 +172,41 @@ pub(crate) fn read(
     context: &mut LoadContext<'_>,
 ) -> Result<Sampled, Failure> {
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
-    let file = if is_exr {
-        image::read_exr(path, context)?
+    let sampled = if is_exr {
+        Sampled::new(&image::read_exr(path, context)?, samples)
     } else {
         let picture = image::read(path, context)?;
         context.keep(picture.len() as u64 * PIXEL, "the compared picture", &Location::file(path))?;
-        let channel = |index: usize| picture.texels().map(|texel| texel[index]).collect();
-        let channels = ["R", "G", "B"].map(str::to_owned).into_iter().zip([0, 1, 2].map(channel)).collect();
-        let (width, height) = (picture.width, picture.height);
-        Channels { width, height, channels, attributes: Vec::new() }
+        Ok(Sampled::of_colors(picture.width, picture.texels().collect()))
     };
     exit::say_warnings(&std::mem::take(&mut context.warnings));
-    Sampled::new(&file, samples).map_err(exit::in_scene(path))
-}
-
-fn exposed(of: &Sampled, stops: f32) -> Vec<[f32; 3]> {
-    let scale = 2.0_f32.powf(stops);
-    of.pixels.iter().map(|rgb| rgb.map(|light| light * scale)).collect()
+    sampled.map_err(exit::in_scene(path))
 }
 
 impl Pictures {
     /// The pictures as PNGs, for the report.
     fn shown(self, verdict: Verdict, exposure: f32) -> Result<Shown, Failure> {
-        let (width, height) = (self.picture.width, self.picture.pixels.len() / self.picture.width);
-        let png = |bytes: &[u8]| {
-            image::encode_png(width as u32, height as u32, bytes)
-                .map_err(|error| Failure::Output(error.message))
-        };
+        let Self { picture, reference, flip } = self;
+        let (width, height) = (picture.width as u32, (picture.pixels.len() / picture.width) as u32);
         let developed = |of: &Sampled| {
-            let light = exposed(of, exposure);
-            let byte = |light: &f32| (image::srgb_from_linear(light.clamp(0.0, 1.0)) * 255.0 + 0.5) as u8;
-            light.as_flattened().iter().map(byte).collect::<Vec<u8>>()
+            let picture = Picture { width, height, pixels: of.pixels.clone(), alpha: Vec::new() };
+            srgb8(&picture, exposure, Tonemap::Clamp)
         };
-        let difference: Vec<u8> = self
-            .picture
-            .pixels
-            .iter()
-            .zip(&self.reference.pixels)
-            .flat_map(|(a, b)| html::signed_color(html::signed_difference(*a, *b, mean_light(&verdict))))
-            .collect();
-        let heat: Vec<u8> = self.flip.iter().flat_map(|&error| html::heat_color(error)).collect();
-        Ok(Shown {
-            pictures: [
-                ("picture", png(&developed(&self.picture))?),
-                ("reference", png(&developed(&self.reference))?),
-                ("difference", png(&difference)?),
-                ("FLIP", png(&heat)?),
-            ],
-            verdict,
-        })
+        let mean = mean_light(&verdict);
+        let difference =
+            |(a, b): (&[f32; 3], &[f32; 3])| html::signed_color(html::signed_difference(*a, *b, mean));
+        let png = |name| {
+            let bytes = match name {
+                "picture" => developed(&picture),
+                "reference" => developed(&reference),
+                "difference" => picture.pixels.iter().zip(&reference.pixels).flat_map(difference).collect(),
+                _ => flip.iter().copied().flat_map(html::heat_color).collect(),
+            };
+            image::encode_png(width, height, &bytes)
+        };
+        let pictures: Result<Vec<_>, lookfrom_scene::Error> =
+            html::CAPTIONS.par_iter().map(|&(name, _)| png(name)).collect();
+        Ok(Shown { pictures: pictures.map_err(|error| Failure::Output(error.message))?, verdict })
     }
 }
 

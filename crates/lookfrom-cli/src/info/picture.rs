@@ -6,7 +6,7 @@ use std::path::Path;
 use lookfrom::session::FilmFile;
 use lookfrom_scene::image;
 use lookfrom_scene::settings::PixelBounds;
-use lookfrom_scene::{Budget, Disk, LoadContext};
+use lookfrom_scene::{Budget, Disk, LoadContext, Location};
 use serde::Serialize;
 
 use crate::exit::{Failure, answer};
@@ -57,13 +57,13 @@ pub(super) fn info(path: &Path, is_json: bool, budget: &Budget) -> Result<(), Fa
     let bytes = context.read(path)?;
     let film =
         if FilmFile::is_film(&bytes) { Some(film(&FilmFile::read(&bytes, path, budget)?)) } else { None };
-    let exr = image::read_exr(path, &mut context)?;
+    let exr = image::exr_contents(&bytes, &Location::file(path), &mut context)?;
     let header = exr.attributes.into_iter().filter(|(name, _)| !name.starts_with("film"));
     let picture = Picture {
         picture: path.display().to_string(),
         width: exr.width,
         height: exr.height,
-        channels: exr.channels.into_iter().map(|(name, _)| name).collect(),
+        channels: exr.channels,
         header: header.collect(),
         film,
     };

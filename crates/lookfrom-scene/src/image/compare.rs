@@ -8,8 +8,11 @@
 //! converted without their covariances, so the colours are converted instead. Our files name the channels
 //! (`variance.from_rgb`), pbrt's do not: they are assumed to be those of the other image.
 
+use std::ops::Range;
+
 use super::openexr::Channels;
 use crate::error::{Error, Location, Result};
+use crate::parallel;
 use crate::spectrum::space::{Matrix, XYZ_FROM_RGB, apply};
 
 /// Maximum difference of a pixel in standard errors; larger ones are not explained by noise.
@@ -104,11 +107,7 @@ impl Sampled {
                 format!("has the channels {}; expected R, G and B, or Y", names.join(", ")),
             ));
         };
-        let mut not_finite = 0;
-        for value in pixels.iter_mut().flatten().filter(|value| !value.is_finite()) {
-            *value = 0.0;
-            not_finite += 1;
-        }
+        let not_finite = make_finite(&mut pixels);
         let attribute =
             |name: &str| Some(file.attributes.iter().find(|(found, _)| found == name)?.1.as_str());
         let number = |name: &str| attribute(name)?.parse().ok();
@@ -121,6 +120,22 @@ impl Sampled {
         let channels_from_rgb = attribute(CHANNELS_ATTRIBUTE).and_then(matrix);
         Ok(Self { width: file.width as usize, pixels, not_finite, variances, channels_from_rgb })
     }
+
+    /// An image of `width` columns of linear Rec. 709, without variances.
+    pub fn of_colors(width: u32, mut pixels: Vec<[f32; 3]>) -> Self {
+        let not_finite = make_finite(&mut pixels);
+        Self { width: width as usize, pixels, not_finite, variances: None, channels_from_rgb: None }
+    }
+}
+
+/// Makes values 0 that are not finite, and counts them.
+fn make_finite(pixels: &mut [[f32; 3]]) -> usize {
+    let mut count = 0;
+    for value in pixels.as_flattened_mut().iter_mut().filter(|value| !value.is_finite()) {
+        *value = 0.0;
+        count += 1;
+    }
+    count
 }
 
 /// Compares an image with a reference.
@@ -137,36 +152,63 @@ pub fn compare(picture: &Sampled, reference: &Sampled) -> Result<Comparison> {
         )
         .hint("render at the size of the reference, with the same crop"));
     }
+    let sums = parallel::map(bands(picture), |band| {
+        Sums::of(&picture.pixels[band.clone()], &reference.pixels[band])
+    });
+    let Sums { values, squares, relative_squares } = sums.into_iter().fold(Sums::default(), Sums::plus);
     let count = picture.pixels.len() as f64;
-    let mean = |of: &Sampled, channel: usize| {
-        of.pixels.iter().map(|rgb| f64::from(rgb[channel])).sum::<f64>() / count
-    };
-    let means = [picture, reference].map(|of| [0, 1, 2].map(|channel| mean(of, channel)));
-    let pairs = || {
-        let values = picture.pixels.as_flattened().iter().zip(reference.pixels.as_flattened());
-        values.map(|(&a, &b)| (f64::from(a), f64::from(b)))
-    };
-    let squares = pairs().map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
-    let relative_squares = pairs().map(|(a, b)| (a - b) * (a - b) / (b * b + DARK)).sum::<f64>();
+    let means = values.map(|values| values.map(|sum| sum / count));
     Ok(Comparison {
         means,
         relative: [0, 1, 2].map(|c| relative(means[0][c] - means[1][c], means[1][c])),
         rmse: (squares / (3.0 * count)).sqrt(),
         relative_mse: relative_squares / (3.0 * count),
-        noise: channels_of_both(picture, reference).and_then(|channels| {
-            let (a, b) = (picture.variances.as_ref()?, reference.variances.as_ref()?);
-            let cells = cells((picture, a), (reference, b), &channels);
-            Some(NoiseTest {
-                pixels_within: within(&cells),
-                blocks_within: within(&blocks(&cells, picture.width)),
-                mean: whole(&cells).standard_errors(),
-                relative_error_of_mean: {
-                    let whole = whole(&cells);
-                    relative(whole.variance[1].sqrt(), whole.reference[1])
-                },
-            })
-        }),
+        noise: channels_of_both(picture, reference)
+            .and_then(|channels| noise_test(picture, reference, &channels)),
     })
+}
+
+/// The pixels of each row of blocks.
+fn bands(image: &Sampled) -> Vec<Range<usize>> {
+    let (size, all) = (BLOCK * image.width, image.pixels.len());
+    (0..all).step_by(size).map(|first| first..(first + size).min(all)).collect()
+}
+
+/// Sums over the pixels of an image and of its reference.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// Of each channel, of both.
+    values: [[f64; 3]; 2],
+    /// Of the squares of the differences.
+    squares: f64,
+    /// Of those relative to the reference.
+    relative_squares: f64,
+}
+
+impl Sums {
+    fn of(picture: &[[f32; 3]], reference: &[[f32; 3]]) -> Self {
+        let mut sums = Self::default();
+        for (picture, reference) in picture.iter().zip(reference) {
+            for c in 0..3 {
+                let (a, b) = (f64::from(picture[c]), f64::from(reference[c]));
+                let square = (a - b) * (a - b);
+                sums.values[0][c] += a;
+                sums.values[1][c] += b;
+                sums.squares += square;
+                sums.relative_squares += square / (b * b + DARK);
+            }
+        }
+        sums
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let [a, b] = [0, 1].map(|of| [0, 1, 2].map(|c| self.values[of][c] + other.values[of][c]));
+        Self {
+            values: [a, b],
+            squares: self.squares + other.squares,
+            relative_squares: self.relative_squares + other.relative_squares,
+        }
+    }
 }
 
 /// The channels in which the noise of two images can be compared, from linear Rec. 709: those of either image, or X, Y and
@@ -194,6 +236,25 @@ struct Cell {
 }
 
 impl Cell {
+    /// The mean of `count` cells with independent noise, of which this is the sum.
+    fn mean(self, count: usize) -> Self {
+        let count = count.max(1) as f64;
+        Self {
+            difference: self.difference.map(|sum| sum / count),
+            reference: self.reference.map(|sum| sum / count),
+            variance: self.variance.map(|sum| sum / (count * count)),
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        let sum = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
+        Self {
+            difference: sum(self.difference, other.difference),
+            reference: sum(self.reference, other.reference),
+            variance: sum(self.variance, other.variance),
+        }
+    }
+
     fn standard_errors(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| relative(self.difference[i], self.variance[i].sqrt()))
     }
@@ -207,11 +268,45 @@ impl Cell {
     }
 }
 
-fn cells(
-    (picture, a): (&Sampled, &[[f64; 3]]),
-    (reference, b): (&Sampled, &[[f64; 3]]),
-    channels: &Matrix,
-) -> Vec<Cell> {
+/// What a row of blocks adds to a [`NoiseTest`].
+#[derive(Clone, Copy, Default)]
+struct BandOfBlocks {
+    sum: Cell,
+    pixels_within: usize,
+    blocks_within: usize,
+    blocks: usize,
+}
+
+impl BandOfBlocks {
+    fn of(cells: &[Cell], width: usize) -> Self {
+        let block = |x: usize| {
+            let rows = || cells.chunks(width).map(|row| &row[x..(x + BLOCK).min(width)]);
+            let sum = rows().flatten().copied().fold(Cell::default(), Cell::plus);
+            sum.mean(rows().map(<[Cell]>::len).sum())
+        };
+        let blocks: Vec<Cell> = (0..width).step_by(BLOCK).map(block).collect();
+        let within = |cells: &[Cell]| cells.iter().filter(|cell| cell.is_within()).count();
+        Self {
+            sum: cells.iter().copied().fold(Cell::default(), Cell::plus),
+            pixels_within: within(cells),
+            blocks_within: within(&blocks),
+            blocks: blocks.len(),
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            sum: self.sum.plus(other.sum),
+            pixels_within: self.pixels_within + other.pixels_within,
+            blocks_within: self.blocks_within + other.blocks_within,
+            blocks: self.blocks + other.blocks,
+        }
+    }
+}
+
+/// The z-tests in the given channels; `None` unless both images have variances.
+fn noise_test(picture: &Sampled, reference: &Sampled, channels: &Matrix) -> Option<NoiseTest> {
+    let (a, b) = (picture.variances.as_ref()?, reference.variances.as_ref()?);
     // A variance of 0 means that all samples were equal or not counted; then that of the other image is the best estimate.
     let variance = |a: f64, b: f64| match (a > 0.0, b > 0.0) {
         (false, true) => 2.0 * b,
@@ -227,45 +322,17 @@ fn cells(
             variance: [0, 1, 2].map(|i| variance(a[pixel][i], b[pixel][i])),
         }
     };
-    (0..picture.pixels.len()).map(cell).collect()
-}
-
-/// The mean of cells with independent noise.
-fn mean<'a>(cells: impl Iterator<Item = &'a Cell>) -> Cell {
-    let (mut sum, mut count) = (Cell::default(), 0.0_f64);
-    for cell in cells {
-        count += 1.0;
-        for i in 0..3 {
-            sum.difference[i] += cell.difference[i];
-            sum.reference[i] += cell.reference[i];
-            sum.variance[i] += cell.variance[i];
-        }
-    }
-    let count = count.max(1.0);
-    Cell {
-        difference: sum.difference.map(|sum| sum / count),
-        reference: sum.reference.map(|sum| sum / count),
-        variance: sum.variance.map(|sum| sum / (count * count)),
-    }
-}
-
-fn whole(cells: &[Cell]) -> Cell {
-    mean(cells.iter())
-}
-
-fn blocks(cells: &[Cell], width: usize) -> Vec<Cell> {
-    let bands = cells.chunks(BLOCK * width);
-    bands
-        .flat_map(|band| {
-            (0..width)
-                .step_by(BLOCK)
-                .map(move |x| mean(band.chunks(width).flat_map(move |row| &row[x..(x + BLOCK).min(width)])))
-        })
-        .collect()
-}
-
-fn within(cells: &[Cell]) -> f64 {
-    cells.iter().filter(|cell| cell.is_within()).count() as f64 / cells.len().max(1) as f64
+    let of_bands = parallel::map(bands(picture), |band| {
+        BandOfBlocks::of(&band.map(cell).collect::<Vec<_>>(), picture.width)
+    });
+    let all = of_bands.into_iter().fold(BandOfBlocks::default(), BandOfBlocks::plus);
+    let whole = all.sum.mean(picture.pixels.len());
+    Some(NoiseTest {
+        pixels_within: all.pixels_within as f64 / picture.pixels.len() as f64,
+        blocks_within: all.blocks_within as f64 / all.blocks as f64,
+        mean: whole.standard_errors(),
+        relative_error_of_mean: relative(whole.variance[1].sqrt(), whole.reference[1]),
+    })
 }
 
 #[cfg(test)]

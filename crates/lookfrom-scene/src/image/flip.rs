@@ -8,6 +8,10 @@
 //! Images"; the contrast sensitivities are those of Johnson & Fairchild 2003, the distance is HyAB (Abasi et al. 2020),
 //! chroma is reduced in the dark by the Hunt effect.
 
+use std::ops::Range;
+
+use crate::parallel;
+
 /// Pixels per degree of visual angle: a screen of 3840 pixels over 0.7 m, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
@@ -31,38 +35,49 @@ const WIDEST: f64 = 0.04;
 
 type Color = [f64; 3];
 
-/// Rows of a band, at least: the rows around it are computed as well, for neither band alone.
-const BAND: usize = 256;
+/// Columns and rows of a tile, at least: the pixels around it are computed as well, for neither tile alone.
+const TILE: usize = 256;
 
 /// The error of each pixel, in [0, 1], between two images of `width` columns of linear colours, which are multiplied by
-/// `scale` and clamped to [0, 1]. At a border the last pixels are repeated. The images are compared in bands of rows, since
-/// a pixel takes 200 bytes.
+/// `scale` and clamped to [0, 1]. At a border the last pixels are repeated. The images are compared in tiles, in parallel: a
+/// pixel takes 200 bytes.
 ///
 /// # Panics
 /// If the images are not whole rows or differ in size.
-pub fn flip(
-    [picture, reference]: [&[[f32; 3]]; 2],
-    width: usize,
-    scale: f32,
-    pixels_per_degree: f64,
-) -> Vec<f32> {
+pub fn flip(images: [&[[f32; 3]]; 2], width: usize, scale: f32, pixels_per_degree: f64) -> Vec<f32> {
+    let [picture, reference] = images;
     assert!(width > 0 && picture.len() == reference.len() && picture.len().is_multiple_of(width));
-    let (rows, margin) =
-        (picture.len() / width, filter_radius(pixels_per_degree).max(edge_radius(pixels_per_degree)));
-    let margin = usize::try_from(margin).unwrap_or(rows);
-    let mut errors = Vec::with_capacity(picture.len());
-    for start in (0..rows).step_by(BAND.max(2 * margin)) {
-        let end = (start + BAND.max(2 * margin)).min(rows);
-        let (above, below) = (start.saturating_sub(margin), end.saturating_add(margin).min(rows));
-        let band = [picture, reference].map(|image| &image[above * width..below * width]);
-        let of_band = flip_band(band, width, scale, pixels_per_degree);
-        errors.extend_from_slice(&of_band[(start - above) * width..(end - above) * width]);
+    let height = picture.len() / width;
+    let margin = filter_radius(pixels_per_degree).max(edge_radius(pixels_per_degree)).unsigned_abs() as usize;
+    let side = TILE.max(margin.saturating_mul(2));
+    let tile = |from: usize, most: usize| from..from.saturating_add(side).min(most);
+    let around = |tile: &Range<usize>, most: usize| {
+        tile.start.saturating_sub(margin)..tile.end.saturating_add(margin).min(most)
+    };
+    let of_row = |y: usize| (0..width).step_by(side).map(move |x| (tile(x, width), tile(y, height)));
+    let tiles = parallel::map((0..height).step_by(side).flat_map(of_row).collect(), |(columns, rows)| {
+        let (wider, higher) = (around(&columns, width), around(&rows, height));
+        let parts = images.map(|image| {
+            let row = |y: usize| &image[y * width..][wider.clone()];
+            higher.clone().flat_map(row).copied().collect::<Vec<_>>()
+        });
+        let errors = flip_whole([&parts[0], &parts[1]], wider.len(), scale, pixels_per_degree);
+        let first = (rows.start - higher.start) * wider.len() + columns.start - wider.start;
+        let inner = errors[first..].chunks(wider.len()).take(rows.len()).map(|row| &row[..columns.len()]);
+        let inner: Vec<f32> = inner.flatten().copied().collect();
+        (columns, rows, inner)
+    });
+    let mut all = vec![0.0; picture.len()];
+    for (columns, rows, errors) in tiles {
+        for (y, errors) in rows.zip(errors.chunks(columns.len())) {
+            all[y * width..][columns.clone()].copy_from_slice(errors);
+        }
     }
-    errors
+    all
 }
 
 /// The perceived differences of images that are compared as a whole.
-fn flip_band(images: [&[[f32; 3]]; 2], width: usize, scale: f32, pixels_per_degree: f64) -> Vec<f32> {
+fn flip_whole(images: [&[[f32; 3]]; 2], width: usize, scale: f32, pixels_per_degree: f64) -> Vec<f32> {
     let opponents = images.map(|rgb| {
         let color = |rgb: &[f32; 3]| opponent(rgb.map(|c| f64::from(c * scale).clamp(0.0, 1.0)));
         rgb.iter().map(color).collect::<Vec<Color>>()
@@ -228,12 +243,15 @@ fn features(light: &[f64], width: usize, pixels_per_degree: f64) -> Vec<[f64; 2]
 /// Convolution along rows.
 fn along_rows(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
     let radius = line.len() / 2;
-    let mut sums = Vec::with_capacity(values.len());
-    for row in values.chunks_exact(width) {
-        sums.extend((0..width).map(|x| {
-            let at = |k: usize| row[(x + k).saturating_sub(radius).min(width - 1)];
-            line.iter().enumerate().map(|(k, weight)| weight * at(k)).sum::<f64>()
-        }));
+    let mut sums = vec![0.0; values.len()];
+    let mut longer = vec![0.0; width + 2 * radius];
+    for (sums, row) in sums.chunks_exact_mut(width).zip(values.chunks_exact(width)) {
+        longer[..radius].fill(row[0]);
+        longer[radius..radius + width].copy_from_slice(row);
+        longer[radius + width..].fill(row[width - 1]);
+        for (&weight, shifted) in line.iter().zip(longer.windows(width)) {
+            add(sums, weight, shifted);
+        }
     }
     sums
 }
@@ -243,12 +261,17 @@ fn along_columns(values: &[f64], width: usize, line: &[f64]) -> Vec<f64> {
     let (radius, height) = (line.len() / 2, values.len() / width);
     let mut sums = vec![0.0; values.len()];
     for (y, sums) in sums.chunks_exact_mut(width).enumerate() {
-        for (k, weight) in line.iter().enumerate() {
+        for (k, &weight) in line.iter().enumerate() {
             let row = (y + k).saturating_sub(radius).min(height - 1);
-            sums.iter_mut().zip(&values[row * width..]).for_each(|(sum, value)| *sum += weight * value);
+            add(sums, weight, &values[row * width..][..width]);
         }
     }
     sums
+}
+
+/// Adds `weight` times the values.
+fn add(sums: &mut [f64], weight: f64, values: &[f64]) {
+    sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
 }
 
 #[cfg(test)]
@@ -293,19 +316,19 @@ mod tests {
     }
 
     #[test]
-    fn bands_are_those_of_the_whole() {
-        const COLUMNS: usize = 3;
-        let noise = |seed: u32| -> Vec<[f32; 3]> {
-            let value =
-                |i: u32| (i.wrapping_mul(2_654_435_761).wrapping_add(seed) >> 8) as f32 / (1 << 23) as f32;
-            (0..700 * COLUMNS as u32).map(|i| [0, 1, 2].map(|c| value(3 * i + c))).collect()
+    fn tiles_are_those_of_the_whole() {
+        let value = |i: u32, seed: u32| {
+            (i.wrapping_mul(2_654_435_761).wrapping_add(seed) >> 8) as f32 / (1 << 23) as f32
         };
-        let (a, b) = (noise(1), noise(1 << 29));
-        for rows in [1, 255, 256, 257, 512, 700] {
-            let images = [&a[..rows * COLUMNS], &b[..rows * COLUMNS]];
-            let whole = flip_band(images, COLUMNS, 0.5, PIXELS_PER_DEGREE);
+        for [width, height] in [[3, 1], [3, 256], [3, 257], [700, 3], [511, 260], [256, 512]] {
+            let noise = |seed| {
+                let color = |pixel: u32| [0, 1, 2].map(|c| value(3 * pixel + c, seed));
+                (0..width * height).map(color).collect::<Vec<[f32; 3]>>()
+            };
+            let (a, b) = (noise(1), noise(1 << 29));
+            let whole = flip_whole([&a, &b], width as usize, 0.5, PIXELS_PER_DEGREE);
             assert!(whole.iter().any(|&error| error > 0.1));
-            assert_eq!(flip(images, COLUMNS, 0.5, PIXELS_PER_DEGREE), whole, "{rows} rows");
+            assert_eq!(flip([&a, &b], width as usize, 0.5, PIXELS_PER_DEGREE), whole, "{width} × {height}");
         }
     }
 

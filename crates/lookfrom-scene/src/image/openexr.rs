@@ -6,6 +6,7 @@
 mod colors;
 mod rows;
 mod subsampled;
+mod values;
 mod windows;
 mod write;
 
@@ -13,11 +14,15 @@ use std::io::Cursor;
 use std::path::Path;
 
 use ::exr::error::Error as ExrError;
+use ::exr::image::read::any_channels::ReadAnyChannels;
+use ::exr::image::read::layers::ReadChannels;
+use ::exr::image::{AnyChannels, Layer};
 use ::exr::meta::MetaData;
-use ::exr::meta::attribute::{AttributeValue, Chromaticities};
+use ::exr::meta::attribute::{AttributeValue, ChannelDescription, Chromaticities};
 use ::exr::meta::header::Header;
-use ::exr::prelude::{ReadChannels, ReadLayers, read as exr_read};
+use ::exr::prelude::ReadLayers;
 
+use self::values::{ShownValues, is_shown};
 use self::windows::{Window, Windows};
 use super::read::check_size;
 use crate::budget::Reservation;
@@ -54,6 +59,19 @@ impl Channels {
     }
 }
 
+/// What the header of an OpenEXR file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExrContents {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// The names of [`Channels::channels`].
+    pub channels: Vec<String>,
+    /// As [`Channels::attributes`].
+    pub attributes: Vec<(String, String)>,
+}
+
 /// Reads every channel of an OpenEXR file, as far as the display window shows it; channels are prefixed with their part's
 /// name and a point.
 ///
@@ -71,6 +89,26 @@ pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> 
         part.channels.into_iter().map(move |(name, values)| (full_name(prefix.as_deref(), &name), values))
     });
     Ok(Channels { width: size[0], height: size[1], channels: channels.collect(), attributes })
+}
+
+/// What [`read_exr`] would read, but for the values.
+///
+/// # Errors
+/// As [`read_exr`], for a header.
+pub fn exr_contents(bytes: &[u8], at: &Location, context: &mut LoadContext<'_>) -> Result<ExrContents> {
+    let Opened { meta, picture } = open(bytes, Windows::Display, at, context)?;
+    let several = meta.headers.len() > 1;
+    let channels = meta.headers.iter().flat_map(|header| {
+        let part = header.own_attributes.layer_name.as_ref().filter(|_| several).map(ToString::to_string);
+        let shown = header.channels.list.iter().filter(|channel| is_shown(channel));
+        shown.map(move |channel| full_name(part.as_deref(), &channel.name.to_string()))
+    });
+    Ok(ExrContents {
+        width: picture.width as u32,
+        height: picture.height as u32,
+        channels: channels.collect(),
+        attributes: texts(&meta),
+    })
 }
 
 /// The name of a part's channel in the file.
@@ -102,71 +140,106 @@ struct Part {
     channels: Vec<(String, Vec<f32>)>,
 }
 
-/// Decodes all channels, into the picture that `windows` selects.
-fn decode(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadContext<'_>) -> Result<Decoded> {
-    let fault = |error: &ExrError| subsampled::told(bytes, at).unwrap_or_else(|| fault(error, at));
+/// The headers of a file within the limits.
+struct Opened {
+    meta: MetaData,
+    /// The window that is the picture.
+    picture: Window,
+}
 
-    // The headers first: nothing larger than the limits is decoded.
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| fault(&error))?;
+/// Reads the headers: nothing larger than the limits is decoded.
+fn open(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadContext<'_>) -> Result<Opened> {
+    let meta =
+        MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| told(&error, bytes, at))?;
     let (Some(first), data) = (meta.headers.first(), meta.headers.iter().map(data_window)) else {
         return Err(Error::syntax(at, "an OpenEXR file without a picture"));
     };
     let picture = windows.picture(Window::of(first.shared_attributes.display_window), data, at, context);
     check_size(picture.width, picture.height, at, &context.limits)?;
-    let mut total = 0_u64;
     for header in &meta.headers {
         let window = data_window(header);
         check_size(window.width, window.height, at, &context.limits)?;
-        let pixels = (window.width * window.height).max(picture.width * picture.height);
-        total = total.saturating_add(pixels.saturating_mul(header.channels.list.len() as u64));
     }
-    let channels: u64 = meta.headers.iter().map(|header| header.channels.list.len() as u64).sum();
-    if channels > MOST_CHANNELS || total / 16 > context.limits.texels {
+    let opened = Opened { meta, picture };
+    let (channels, values) = opened.size(|_| true);
+    if channels > MOST_CHANNELS || values / 16 > context.limits.texels {
         return Err(Error::new(
             ErrorKind::Limit,
             at,
-            format!("{channels} channels of {total} values in all are too many"),
+            format!("{channels} channels of {values} values in all are too many"),
         )
         .hint("make the picture smaller, or leave channels out"));
     }
+    Ok(opened)
+}
 
-    let memory = total.saturating_mul(2 * size_of::<f32>() as u64);
+impl Opened {
+    /// The number of those channels that `counts` selects, and of their values: of the file or of the picture, whichever has more.
+    fn size(&self, counts: impl Fn(&ChannelDescription) -> bool) -> (u64, u64) {
+        let of_header = |header: &Header| {
+            let window = data_window(header);
+            let pixels = (window.width * window.height).max(self.picture.width * self.picture.height);
+            let channels = header.channels.list.iter().filter(|channel| counts(channel)).count() as u64;
+            (channels, pixels.saturating_mul(channels))
+        };
+        let sizes = self.meta.headers.iter().map(of_header);
+        sizes.fold((0, 0), |(channels, values), (more, of_them)| {
+            (channels + more, values.saturating_add(of_them))
+        })
+    }
+}
+
+/// The headers' attributes with text or integer values, by name.
+fn texts(meta: &MetaData) -> Vec<(String, String)> {
+    let others = meta
+        .headers
+        .iter()
+        .flat_map(|header| header.shared_attributes.other.iter().chain(&header.own_attributes.other));
+    let mut texts: Vec<_> = others
+        .filter_map(|(name, value)| match value {
+            AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+            AttributeValue::I32(number) => Some((name.to_string(), number.to_string())),
+            _ => None,
+        })
+        .collect();
+    texts.sort();
+    texts.dedup();
+    texts
+}
+
+/// Decodes the channels of pictures, into the picture that `windows` selects.
+fn decode(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadContext<'_>) -> Result<Decoded> {
+    let opened = open(bytes, windows, at, context)?;
+    let (channels, values) = opened.size(is_shown);
+    let memory = values.saturating_mul(2 * size_of::<f32>() as u64);
     let memory = context.budget.reserve(memory, &format!("a picture of {channels} channels"), at)?;
-
-    let found = exr_read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
+    let found = ReadAnyChannels { read_samples: ShownValues }
         .all_layers()
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(|error| fault(&error))?;
-    let mut attributes = Vec::new();
-    let mut parts = Vec::new();
-    for layer in found.layer_data {
-        let texts = found.attributes.other.iter().chain(&layer.attributes.other);
-        attributes.extend(texts.filter_map(|(name, value)| match value {
-            AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
-            AttributeValue::I32(number) => Some((name.to_string(), number.to_string())),
-            _ => None,
-        }));
+        .map_err(|error| told(&error, bytes, at))?;
+    let Opened { meta, picture } = opened;
+    let part = |layer: Layer<AnyChannels<Option<Vec<f32>>>>| {
         let window = Window::new(layer.attributes.layer_position, layer.size);
-        // The sums of a film are no picture (lookfrom's film files).
-        let is_shown = |name: &str| !name.starts_with("film.");
-        let mut channels = Vec::new();
-        for channel in layer.channel_data.list {
-            let name = channel.name.to_string();
-            if is_shown(&name) {
-                channels.push((name, window.placed(channel.sample_data.values_as_f32().collect(), picture)));
-            }
-        }
-        parts.push(Part { name: layer.attributes.layer_name.map(|name| name.to_string()), channels });
-    }
-    attributes.sort();
-    attributes.dedup();
-    let size = [picture.width as u32, picture.height as u32];
-    Ok(Decoded { parts, size, attributes, chromaticities: found.attributes.chromaticities, memory })
+        let channels = layer.channel_data.list.into_iter().filter_map(|channel| {
+            Some((channel.name.to_string(), window.placed(channel.sample_data?, picture)))
+        });
+        let name = layer.attributes.layer_name.map(|name| name.to_string());
+        Part { name, channels: channels.collect() }
+    };
+    Ok(Decoded {
+        parts: found.layer_data.into_iter().map(part).collect(),
+        size: [picture.width as u32, picture.height as u32],
+        attributes: texts(&meta),
+        chromaticities: found.attributes.chromaticities,
+        memory,
+    })
+}
+
+/// The error of a file that cannot be read.
+fn told(error: &ExrError, bytes: &[u8], at: &Location) -> Error {
+    subsampled::told(bytes, at).unwrap_or_else(|| fault(error, at))
 }
 
 fn data_window(header: &Header) -> Window {

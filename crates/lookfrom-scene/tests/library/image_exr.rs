@@ -9,7 +9,7 @@ use exr::prelude::{
     LayerAttributes, Layers, Vec2, WritableImage,
 };
 use lookfrom_scene::image::{self, By, Encoding as Curve, Image, Reading};
-use lookfrom_scene::{LoadContext, Memory};
+use lookfrom_scene::{LoadContext, Location, Memory};
 
 type Channel = (&'static str, Vec<f32>);
 
@@ -85,6 +85,31 @@ fn the_picture_is_the_display_window() {
         image::read_exr(Path::new("a.exr"), &mut LoadContext::new(&files)).unwrap()
     };
     assert_eq!((all.width, all.height, all.channels[0].1.len()), (4, 3, 12));
+}
+
+#[test]
+fn the_header_says_what_is_read_and_sums_of_films_are_not() {
+    let mut channels = rgb(&RGB, 1.0, 2);
+    channels.push(("film.sum", vec![7.0; 2]));
+    let film = file([2, 1], None, vec![part(None, [0, 0], [2, 1], &channels)]);
+    let parts = vec![
+        part(Some("beauty"), [0, 0], [2, 1], &rgb(&RGB, 2.0, 2)),
+        part(Some("depth"), [1, 0], [1, 1], &[("Z", vec![9.0])]),
+    ];
+    for (bytes, names) in [(film, "B G R"), (file([2, 1], None, parts), "beauty.B beauty.G beauty.R depth.Z")]
+    {
+        let mut files = Memory::default();
+        files.0.insert("a.exr".into(), bytes.clone());
+        let mut context = LoadContext::new(&files);
+        let all = image::read_exr(Path::new("a.exr"), &mut context).unwrap();
+        let contents = image::exr_contents(&bytes, &Location::default(), &mut context).unwrap();
+        assert_eq!(contents.channels.join(" "), names);
+        assert!(all.channels.iter().map(|(name, _)| name).eq(&contents.channels));
+        assert_eq!(
+            (all.width, all.height, all.attributes),
+            (contents.width, contents.height, contents.attributes)
+        );
+    }
 }
 
 #[test]
