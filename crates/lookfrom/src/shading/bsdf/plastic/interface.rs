@@ -5,12 +5,14 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use lookfrom_simd::Vector;
+use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*, run_at_baseline};
 
-use crate::core::optics;
+use crate::core::lanes::{LANES, by_lane};
+use crate::core::vector::Vector;
+use crate::core::{optics, parallel};
 use crate::shading::bsdf::fresnel;
 use crate::shading::bsdf::layered::{PLANE, lattice};
-use crate::shading::bsdf::microfacet::Microfacets;
+use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 
 /// Number of cosines in the table: 0 … 1 in equal steps.
 pub(crate) const COSINES: usize = 64;
@@ -50,21 +52,23 @@ impl Interface {
             let sum: f32 = parts.iter().zip(&cosines).map(|(part, cos)| part * cos).sum();
             2.0 * sum / COSINES as f32
         };
-        let outside = cosines.map(|cos| {
-            let points = lattice(FACETS[0] as u32, PLANE);
-            reflected_and_refracted(microfacets, eta, cos, points)
+        let all_facets: Vec<[f32; 2]> = lattice(FACETS[0] as u32, PLANE).collect();
+        // Inside, other facets for each cosine.
+        let facets_inside: Vec<[f32; 2]> = lattice((FACETS[1] * COSINES) as u32, PLANE).collect();
+        let both_sides = parallel::collect(COSINES, |k| {
+            let parts = |eta, points| {
+                run_at_baseline(ReflectedAndRefracted { microfacets, eta, cos: cosines[k], points })
+            };
+            [parts(eta, &all_facets), parts(1.0 / eta, &facets_inside[k * FACETS[1]..][..FACETS[1]])]
         });
-        // Other facets for each cosine.
-        let mut points = lattice((FACETS[1] * COSINES) as u32, PLANE);
-        let inside = cosines
-            .map(|cos| reflected_and_refracted(microfacets, 1.0 / eta, cos, points.by_ref().take(FACETS[1])));
-        let sides = [0, 1].map(|side| outside.map(|parts| parts[side]));
+        let table = |side: usize, way: usize| std::array::from_fn(|k| both_sides[k][side][way]);
+        let sides = [table(0, 0), table(0, 1)];
         Self {
             eta,
             microfacets,
             sides,
             mean_transmission: mean(sides[1]),
-            internal_reflectance: mean(inside.map(|[reflected, _]| reflected)),
+            internal_reflectance: mean(table(1, 0)),
         }
     }
 
@@ -79,47 +83,70 @@ impl Interface {
     /// As [`Self::new`], once for each surface, and as long as the process: BSDFs are copied, and refer to it.
     pub fn kept(eta: f32, microfacets: Microfacets) -> &'static Self {
         static KEPT: Mutex<Vec<&'static Interface>> = Mutex::new(Vec::new());
-        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
         let eta = fresnel::valid_eta(eta);
-        match kept.iter().find(|known| known.eta == eta && known.microfacets == microfacets) {
-            Some(known) => known,
-            None => {
-                let made: &'static Self = Box::leak(Box::new(Self::new(eta, microfacets)));
-                kept.push(made);
-                made
-            }
+        let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = |kept: &[&'static Self]| {
+            kept.iter().copied().find(|known| known.eta == eta && known.microfacets == microfacets)
+        };
+        if let Some(known) = known(&kept()) {
+            return known;
         }
+        // Not under the lock: while a thread waits for others it may do other work, which may want an interface, too.
+        let made = Self::new(eta, microfacets);
+        let mut kept = kept();
+        known(&kept).unwrap_or_else(|| {
+            let made: &'static Self = Box::leak(Box::new(made));
+            kept.push(made);
+            made
+        })
     }
 }
 
-/// The fractions of light along a direction of the given cosine that single facets reflect to its side, and refract to the other, by
-/// numbers in [0, 1). `eta` is the index beyond over that on the side of the light.
-fn reflected_and_refracted(
+/// The fractions of light along a direction that single facets reflect to its side, and refract to the other.
+struct ReflectedAndRefracted<'a> {
     microfacets: Microfacets,
+    /// The index beyond over that on the side of the light.
     eta: f32,
+    /// Of the direction.
     cos: f32,
-    points: impl Iterator<Item = [f32; 2]>,
-) -> [f32; 2] {
-    let wo = Vector { x: (1.0 - cos * cos).max(0.0).sqrt(), y: 0.0, z: cos };
-    let seen = |wi| {
-        let [g, g1] = microfacets.g_and_g1(wo, wi);
-        f64::from(g / g1)
-    };
-    let (mut sums, mut count) = ([0.0; 2], 0.0);
-    for u in points {
-        count += 1.0;
-        let wm = microfacets.sample(wo, u);
-        let fresnel = optics::fresnel_dielectric(wo.dot(wm), eta);
-        let reflected = optics::reflect(wo, wm);
-        if reflected.z > 0.0 {
-            sums[0] += f64::from(fresnel) * seen(reflected);
+    /// The facets, by numbers in [0, 1): a multiple of [`LANES`].
+    points: &'a [[f32; 2]],
+}
+
+impl Kernel for ReflectedAndRefracted<'_> {
+    type Output = [f32; 2];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> [f32; 2] {
+        let Self { microfacets: Microfacets { alpha, kind }, eta, cos, points } = self;
+        let [alpha_x, alpha_y, kind, eta] =
+            [alpha.alpha_x, alpha.alpha_y, kind, eta].map(|value| f32x8::splat(simd, value));
+        let microfacets = Microfacets { alpha: TrowbridgeReitz { alpha_x, alpha_y }, kind };
+        let [sin, zero, cos] =
+            [(1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos].map(|value| f32x8::splat(simd, value));
+        let wo = Vector { x: sin, y: zero, z: cos };
+        let mut sums = [0.0_f64; 2];
+        for points in points.chunks_exact(LANES) {
+            let u = [0, 1].map(|axis| f32x8::load_array(simd, by_lane!(lane => points[lane][axis])));
+            let wm = microfacets.sample(wo, u);
+            let fresnel = optics::fresnel_dielectric(wo.dot(wm), eta);
+            let reflected = optics::reflect(wo, wm);
+            let (refracted, is_refracted) = optics::refract(wo, wm, eta);
+            let ways = [
+                (fresnel, reflected, Float::gt(reflected.z, zero)),
+                (1.0 - fresnel, refracted, is_refracted & Float::lt(refracted.z, zero)),
+            ];
+            for (sum, (part, wi, is_there)) in sums.iter_mut().zip(ways) {
+                let [g, g1] = microfacets.g_and_g1(wo, wi);
+                let [parts, seen]: [[f32; LANES]; 2] =
+                    [part, g / g1].map(|values| <f32x8<S> as Float>::select(is_there, values, zero).into());
+                for (part, seen) in parts.into_iter().zip(seen) {
+                    *sum += f64::from(part) * f64::from(seen);
+                }
+            }
         }
-        let (refracted, is_refracted) = optics::refract(wo, wm, eta);
-        if is_refracted && refracted.z < 0.0 {
-            sums[1] += f64::from(1.0 - fresnel) * seen(refracted);
-        }
+        sums.map(|sum| (sum / self.points.len() as f64) as f32)
     }
-    sums.map(|sum| (sum / count) as f32)
 }
 
 /// The fraction of diffuse light that a smooth surface reflects.

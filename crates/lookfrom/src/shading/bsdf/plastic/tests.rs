@@ -3,7 +3,10 @@
 use lookfrom_scene::material::{self as written, Distribution, Masking};
 
 use super::*;
+use crate::core::optics;
+use crate::core::vector::Vector;
 use crate::shading::bsdf::Bsdf;
+use crate::shading::bsdf::layered::{PLANE, lattice};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::tests::{direction, numbers};
 
@@ -110,6 +113,50 @@ fn tables_hold_what_facets_reflect_and_refract() {
                         let found = f64::from(found[entry]);
                         assert!((found - expected).abs() < 4e-3, "{facets:?} {cos}: {found}, {expected}");
                     }
+                }
+            }
+        }
+    }
+}
+
+/// What [`Interface::new`] makes tables of, facet by facet.
+fn reflected_and_refracted(facets: Microfacets, eta: f32, cos: f32, points: &[[f32; 2]]) -> [f32; 2] {
+    let wo = Vector { x: (1.0 - cos * cos).max(0.0).sqrt(), y: 0.0, z: cos };
+    let seen = |wi| {
+        let [g, g1] = facets.g_and_g1(wo, wi);
+        f64::from(g / g1)
+    };
+    let mut sums = [0.0; 2];
+    for &u in points {
+        let wm = facets.sample(wo, u);
+        let fresnel = optics::fresnel_dielectric(wo.dot(wm), eta);
+        let reflected = optics::reflect(wo, wm);
+        if reflected.z > 0.0 {
+            sums[0] += f64::from(fresnel) * seen(reflected);
+        }
+        let (refracted, is_refracted) = optics::refract(wo, wm, eta);
+        if is_refracted && refracted.z < 0.0 {
+            sums[1] += f64::from(1.0 - fresnel) * seen(refracted);
+        }
+    }
+    sums.map(|sum| (sum / points.len() as f64) as f32)
+}
+
+#[test]
+fn tables_have_the_bits_of_facets_one_by_one() {
+    for (distribution, masking) in
+        [(Distribution::Beckmann, Masking::Correlated), (Distribution::TrowbridgeReitz, Masking::Separable)]
+    {
+        for alpha in [0.01, 0.4] {
+            let facets = facets(alpha, distribution, masking);
+            for eta in [1.5, 0.7] {
+                let interface = Interface::new(eta, facets);
+                let points: Vec<[f32; 2]> = lattice(2048, PLANE).collect();
+                for entry in [0, 1, 31, 63] {
+                    let cos = (entry as f32 / (COSINES - 1) as f32).max(1e-6);
+                    let found = [0, 1].map(|side| interface.sides[side][entry].to_bits());
+                    let expected = reflected_and_refracted(facets, eta, cos, &points);
+                    assert_eq!(found, expected.map(f32::to_bits), "{facets:?} {eta} {cos}");
                 }
             }
         }
