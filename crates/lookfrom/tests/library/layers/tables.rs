@@ -33,7 +33,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("color", "math spectrum"),
     ("sampler", "hash lanes"),
     ("bssrdf", "elementary math parallel spectrum"),
-    ("bsdf", "bssrdf color elementary hash lanes math optics sampler spectrum vector warp"),
+    ("bsdf", "bssrdf color elementary hash lanes math optics parallel sampler spectrum vector warp"),
     ("noise", "hash vector"),
     ("filter", "sampler"),
     ("distribution", "sampler lanes"),

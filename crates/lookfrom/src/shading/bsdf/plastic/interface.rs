@@ -8,8 +8,9 @@ use std::sync::{Mutex, PoisonError};
 use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*, run_at_baseline};
 
 use crate::core::lanes::{LANES, by_lane};
+use crate::core::optics;
+use crate::core::parallel;
 use crate::core::vector::Vector;
-use crate::core::{optics, parallel};
 use crate::shading::bsdf::fresnel;
 use crate::shading::bsdf::layered::{PLANE, lattice};
 use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
