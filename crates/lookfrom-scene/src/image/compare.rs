@@ -268,7 +268,7 @@ impl Cell {
     }
 }
 
-/// What a row of blocks adds to a [`NoiseTest`].
+/// The part of a row of blocks in a [`NoiseTest`].
 #[derive(Clone, Copy, Default)]
 struct BandOfBlocks {
     sum: Cell,

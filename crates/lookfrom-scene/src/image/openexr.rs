@@ -59,7 +59,7 @@ impl Channels {
     }
 }
 
-/// What the header of an OpenEXR file says.
+/// The contents of an OpenEXR file by its header.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExrContents {
     /// Width in pixels.
@@ -91,7 +91,7 @@ pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> 
     Ok(Channels { width: size[0], height: size[1], channels: channels.collect(), attributes })
 }
 
-/// What [`read_exr`] would read, but for the values.
+/// The contents that [`read_exr`] would read, without the values.
 ///
 /// # Errors
 /// As [`read_exr`], for a header.
@@ -149,8 +149,8 @@ struct Opened {
 
 /// Reads the headers: nothing larger than the limits is decoded.
 fn open(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadContext<'_>) -> Result<Opened> {
-    let meta =
-        MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| told(&error, bytes, at))?;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false)
+        .map_err(|error| unreadable(&error, bytes, at))?;
     let (Some(first), data) = (meta.headers.first(), meta.headers.iter().map(data_window)) else {
         return Err(Error::syntax(at, "an OpenEXR file without a picture"));
     };
@@ -218,7 +218,7 @@ fn decode(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadConte
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(|error| told(&error, bytes, at))?;
+        .map_err(|error| unreadable(&error, bytes, at))?;
     let Opened { meta, picture } = opened;
     let part = |layer: Layer<AnyChannels<Option<Vec<f32>>>>| {
         let window = Window::new(layer.attributes.layer_position, layer.size);
@@ -237,8 +237,8 @@ fn decode(bytes: &[u8], windows: Windows, at: &Location, context: &mut LoadConte
     })
 }
 
-/// The error of a file that cannot be read.
-fn told(error: &ExrError, bytes: &[u8], at: &Location) -> Error {
+/// The error of a file that the crate does not read: of subsampled channels in our own words.
+fn unreadable(error: &ExrError, bytes: &[u8], at: &Location) -> Error {
     subsampled::told(bytes, at).unwrap_or_else(|| fault(error, at))
 }
 

@@ -119,7 +119,7 @@ fn tables_hold_what_facets_reflect_and_refract() {
     }
 }
 
-/// What [`Interface::new`] makes tables of, facet by facet.
+/// The entries of the tables of [`Interface::new`], facet by facet.
 fn reflected_and_refracted(facets: Microfacets, eta: f32, cos: f32, points: &[[f32; 2]]) -> [f32; 2] {
     let wo = Vector { x: (1.0 - cos * cos).max(0.0).sqrt(), y: 0.0, z: cos };
     let seen = |wi| {
