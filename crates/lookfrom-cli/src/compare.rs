@@ -195,17 +195,15 @@ impl Pictures {
         let mean = mean_light(&verdict);
         let difference =
             |(a, b): (&[f32; 3], &[f32; 3])| html::signed_color(html::signed_difference(*a, *b, mean));
-        let png = |name| {
-            let bytes = match name {
-                "picture" => developed(&picture),
-                "reference" => developed(&reference),
-                "difference" => picture.pixels.iter().zip(&reference.pixels).flat_map(difference).collect(),
-                _ => flip.iter().copied().flat_map(html::heat_color).collect(),
-            };
-            image::encode_png(width, height, &bytes)
-        };
+        // In the order of their captions.
+        let bytes: [&(dyn Fn() -> Vec<u8> + Sync); 4] = [
+            &|| developed(&picture),
+            &|| developed(&reference),
+            &|| picture.pixels.iter().zip(&reference.pixels).flat_map(difference).collect(),
+            &|| flip.iter().copied().flat_map(html::heat_color).collect(),
+        ];
         let pictures: Result<Vec<_>, lookfrom_scene::Error> =
-            html::CAPTIONS.par_iter().map(|&(name, _)| png(name)).collect();
+            bytes.par_iter().map(|bytes| image::encode_png(width, height, &bytes())).collect();
         Ok(Shown { pictures: pictures.map_err(|error| Failure::Output(error.message))?, verdict })
     }
 }

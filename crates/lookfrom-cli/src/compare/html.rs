@@ -9,13 +9,13 @@ use super::Verdict;
 
 /// A compared pair with the pictures to show.
 pub(crate) struct Shown {
-    /// Those of [`CAPTIONS`], as PNGs.
+    /// The pictures of [`CAPTIONS`], as PNGs.
     pub(crate) pictures: Vec<Vec<u8>>,
     pub(crate) verdict: Verdict,
 }
 
 /// The names of the pictures, and their captions.
-pub(crate) const CAPTIONS: [(&str, &str); 4] = [
+const CAPTIONS: [(&str, &str); 4] = [
     ("picture", "the picture"),
     ("reference", "the reference"),
     (
