@@ -202,13 +202,16 @@ impl Sums {
     }
 
     fn plus(self, other: Self) -> Self {
-        let [a, b] = [0, 1].map(|of| [0, 1, 2].map(|c| self.values[of][c] + other.values[of][c]));
         Self {
-            values: [a, b],
+            values: [0, 1].map(|of| plus(self.values[of], other.values[of])),
             squares: self.squares + other.squares,
             relative_squares: self.relative_squares + other.relative_squares,
         }
     }
+}
+
+fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|i| a[i] + b[i])
 }
 
 /// The channels in which the noise of two images can be compared, from linear Rec. 709: those of either image, or X, Y and
@@ -247,11 +250,10 @@ impl Cell {
     }
 
     fn plus(self, other: Self) -> Self {
-        let sum = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
         Self {
-            difference: sum(self.difference, other.difference),
-            reference: sum(self.reference, other.reference),
-            variance: sum(self.variance, other.variance),
+            difference: plus(self.difference, other.difference),
+            reference: plus(self.reference, other.reference),
+            variance: plus(self.variance, other.variance),
         }
     }
 

@@ -17,6 +17,7 @@ mod factors;
 pub mod fresnel;
 pub mod hair;
 pub mod henyey_greenstein;
+mod kept;
 pub mod lanes;
 pub mod layered;
 pub mod lobes;

@@ -1,7 +1,6 @@
 //! Tables of measured materials, compiled: densities that choose normals, and what normals reflect.
 
 use std::fmt;
-use std::sync::{Mutex, PoisonError};
 
 use glam::Vec3;
 use lookfrom_scene::measured as written;
@@ -11,6 +10,7 @@ use super::Measured;
 use super::half_angle::HalfAngleValues;
 use super::interpolant::Interpolant;
 use crate::core::spectrum::Spectrum;
+use crate::shading::bsdf::kept::Kept;
 use crate::shading::bsdf::{Lobes, Mode, ScatteringFunction};
 
 /// The tables of a measured material, compiled.
@@ -76,19 +76,10 @@ impl MeasuredTables {
         }
     }
 
-    /// The compiled tables of a file, which are kept as long as the process, once for each content: BSDFs are copied, and refer to them.
-    /// As [`Self::new`].
+    /// The compiled tables of a file, which are kept as long as the process, once for each content. As [`Self::new`].
     pub fn kept(written: &written::Measured, of_wavelengths: &[[f32; 3]]) -> &'static Self {
-        static KEPT: Mutex<Vec<&'static MeasuredTables>> = Mutex::new(Vec::new());
-        let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-        match kept.iter().find(|tables| tables.digest == written.digest) {
-            Some(tables) => tables,
-            None => {
-                let tables: &'static Self = Box::leak(Box::new(Self::new(written, of_wavelengths)));
-                kept.push(tables);
-                tables
-            }
-        }
+        static TABLES: Kept<MeasuredTables> = Kept::new();
+        TABLES.get(|known| known.digest == written.digest, || Self::new(written, of_wavelengths))
     }
 
     /// The numbers that choose a normal by its place, and the density of their directions but for the [`jacobian`](super::jacobian); φ and θ are those of

@@ -3,8 +3,6 @@
 //! Rough surfaces have tables as in Mitsuba 3: by 64 cosines, both ends included, the light that single facets refract to the other
 //! side, and inside the mean over these cosines of what they reflect, which is less than the integral by 0.009 or so.
 
-use std::sync::{Mutex, PoisonError};
-
 use lookfrom_simd::{Float, Kernel, Simd, f32x8, prelude::*, run_at_baseline};
 
 use crate::core::lanes::{LANES, by_lane};
@@ -12,6 +10,7 @@ use crate::core::optics;
 use crate::core::parallel;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::fresnel;
+use crate::shading::bsdf::kept::Kept;
 use crate::shading::bsdf::layered::{PLANE, lattice};
 use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 
@@ -81,25 +80,12 @@ impl Interface {
         self.microfacets
     }
 
-    /// As [`Self::new`], once for each surface, and as long as the process: BSDFs are copied, and refer to it.
+    /// As [`Self::new`], once for each surface, and as long as the process.
     pub fn kept(eta: f32, microfacets: Microfacets) -> &'static Self {
-        static KEPT: Mutex<Vec<&'static Interface>> = Mutex::new(Vec::new());
+        static INTERFACES: Kept<Interface> = Kept::new();
         let eta = fresnel::valid_eta(eta);
-        let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = |kept: &[&'static Self]| {
-            kept.iter().copied().find(|known| known.eta == eta && known.microfacets == microfacets)
-        };
-        if let Some(known) = known(&kept()) {
-            return known;
-        }
-        // Not under the lock: while a thread waits for others it may do other work, which may want an interface, too.
-        let made = Self::new(eta, microfacets);
-        let mut kept = kept();
-        known(&kept).unwrap_or_else(|| {
-            let made: &'static Self = Box::leak(Box::new(made));
-            kept.push(made);
-            made
-        })
+        INTERFACES
+            .get(|known| known.eta == eta && known.microfacets == microfacets, || Self::new(eta, microfacets))
     }
 }
 
