@@ -4,15 +4,16 @@ on with, and after `lookfrom convert`.
 
 Needs: pip package numpy, and mitsuba for its scenes; a release build of lookfrom.
 
-    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba] [--files FILE …] [--seeds 0 40] [--folder DIR]
+    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba] [--files FILE …] [--seeds 0 40] [--options] [--folder DIR]
 
 Files are those of gltf_random.py (of every second seed the animations are blurred, of every fifth the integrator is Whitted's)
-and of mitsuba_random.py (of every second seed in spectra); --files adds others. A level that the machine does not have is the
-next lower one.
+and of mitsuba_random.py (of every second seed in spectra); --files adds others. With --options each is rendered with random
+options: integrators, layers, samplers, lights, filters. A level that the machine does not have is the next lower one.
 """
 
 import argparse
 import os
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -50,9 +51,38 @@ def mitsuba(folder, seeds):
         yield path, ["-D", "spp=9"], ["--color", ["rgb", "spectral"][seed % 2]]
 
 
+INTEGRATORS = ["path", "path", "path", "whitted", "raycast", "simple_path", "random_walk", "ambient_occlusion", "normals"]
+LIGHT_PATHS = ["C<TD>.*", "C<TG>.*", "C<TS>.*", "C<RD>.*", "C<RG>.*", "C<RS>.*", "C.D.*", "C.G+L", "CV.*", "C.*O", "C.*[LB]"]
+
+
+def options(seed):
+    """Random options of `render`."""
+    rng = random.Random(seed)
+    words = ["--integrator", rng.choice(INTEGRATORS), "--depth", rng.choice([1, 2, 5, 30]), "--samples", rng.choice([1, 5, 16])]
+    for share, choices in [
+        (0.3, [["--color", "spectral"], ["--color", "rgb"]]),
+        (0.3, [["--sampler", "independent"]]),
+        (0.5, [["--light-sampler", name] for name in ("uniform", "power", "bvh")]),
+        (0.2, [["--portals", "auto"]]),
+        (0.3, [["--filter", name] for name in ("box", "gaussian:1.5", "mitchell", "sinc:3", "triangle:2")]),
+        (0.6, [["--layers", "geometry"], ["--layers", "motion"]]),
+        (0.3, [["--denoise", "on"]]),
+        (0.3, [["--allocation", "adaptive"], ["--noise", "0.2"]]),
+        (0.2, [["--fireflies", "median"]]),
+        (0.2, [["--crop", "7,5,40,20"]]),
+        (0.2, [["--instanced-lights"]]),
+    ]:
+        if rng.random() < share:
+            words += rng.choice(choices)
+    for number, way in enumerate(rng.sample(LIGHT_PATHS, rng.choice([0, 0, 2, 4]))):
+        words += ["--light-path", f"layer{number}={way}"]
+    return words
+
+
 class Lookfrom:
-    def __init__(self, binary, folder):
-        self.binary, self.folder = binary, folder
+    def __init__(self, binary, folder, are_random):
+        self.binary, self.folder, self.are_random = binary, folder, are_random
+        self.format = "exr" if are_random else "pfm"
 
     def run(self, *words, **variables):
         words = [str(word) for word in (self.binary, *words)]
@@ -61,8 +91,10 @@ class Lookfrom:
             sys.exit(f"{' '.join(words)}: {ran.stderr}")
 
     def picture(self, path, options, threads=1, **variables):
-        out = self.folder / "picture.pfm"
-        common = ["--samples", 9, "--seed", 3, "--denoise", "off", "--quiet", "--threads", threads, "-o", out]
+        out = self.folder / f"picture.{self.format}"
+        usual = {"--samples": 9, "--denoise": "off"}
+        common = [word for name, value in usual.items() if name not in options for word in (name, value)]
+        common += ["--seed", 3, "--quiet", "--threads", threads, "-o", out]
         self.run("render", path, *options, *common, **variables)
         return out.read_bytes()
 
@@ -90,6 +122,9 @@ class Lookfrom:
         for level, threads in VARIANTS:
             if self.picture(path, of_file + of_picture, threads, LOOKFROM_SIMD=level) != first:
                 yield f"{level}, {threads} threads"
+        # An EXR names its scene, and layers go the same ways through films as the picture does.
+        if self.are_random:
+            return
         for name, picture in self.films(path, of_file + of_picture):
             if picture != first:
                 yield name
@@ -105,19 +140,22 @@ def main():
     parser.add_argument("--kind", nargs="*", choices=["gltf", "mitsuba"], default=["gltf"])
     parser.add_argument("--files", nargs="*", type=Path, default=[], help="other scenes and models, rendered 64 pixels wide")
     parser.add_argument("--seeds", type=int, nargs=2, default=[0, 40], metavar=("FIRST", "END"))
+    parser.add_argument("--options", action="store_true", help="render with random options")
     parser.add_argument("--folder", type=Path, default=Path("/tmp/lookfrom-same-bits"))
     args = parser.parse_args()
     folder = args.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    lookfrom, count, differ = Lookfrom(args.lookfrom.resolve(), folder), 0, 0
+    lookfrom, count, differ = Lookfrom(args.lookfrom.resolve(), folder, args.options), 0, 0
     files = [(path, [], ["--width", 64]) for path in args.files]
     for make in [{"gltf": gltf, "mitsuba": mitsuba}[kind] for kind in args.kind]:
         files += make(folder, range(*args.seeds))
-    for path, of_file, of_picture in files:
+    for number, (path, of_file, of_picture) in enumerate(files):
+        if args.options:
+            of_picture = ["--width", 48, *options(args.seeds[0] + number)]
         found = list(lookfrom.differences(path, of_file, of_picture))
         count, differ = count + 1, differ + bool(found)
         if found:
-            print(f"{path}: {'; '.join(found)}", flush=True)
+            print(f"{path} {' '.join(map(str, of_picture))}: {'; '.join(found)}", flush=True)
     print(f"{differ} of {count} files make different pictures")
 
 
