@@ -135,6 +135,17 @@ impl<'a, R: Real> Exits<'a, R> {
         Self { lift, ..self }
     }
 
+    /// Whether directions lead to the side of the normal, or are above smooth surfaces.
+    #[inline(always)]
+    pub fn are_outside(&self, direction: Vector<R>) -> <R::Double as Float>::Mask {
+        let cos = self.normal.dot(direction.widen());
+        let is_beside = cos.gt(cos.like(0.0));
+        match self.lift {
+            Some(lift) => is_beside | lift.is_above(direction),
+            None => is_beside,
+        }
+    }
+
     /// The origins of rays in some directions.
     #[inline(always)]
     pub fn toward(&self, direction: Vector<R>) -> Vector<R> {

@@ -307,7 +307,7 @@ pub struct StepOutput<'a, P: Probe, S = ()> {
     pub paths: Vec<Path<S>>,
     /// The background that camera rays see where they hit nothing.
     pub background: Background,
-    /// The light-path expressions of layers, if there are any. Then steps are not computed side by side.
+    /// The light-path expressions of layers, if there are any.
     pub light_paths: Option<&'a LightPaths>,
     /// The listener.
     pub probe: &'a mut P,
@@ -361,7 +361,9 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
     /// Sets the layers before the first step: light is none, and media let all pass.
     pub(crate) fn start_layers(&mut self, world: &World, paths: &[Path<S>]) {
         let Some(light_paths) = self.light_paths else { return };
-        self.queues.layers.resize(paths.len() * light_paths.count(), Spectrum::BLACK);
+        // Some lenses let no ray through from the edge of the film: there are fewer paths than samples.
+        let samples = self.queues.radiance.len();
+        self.queues.layers.resize(samples * light_paths.count(), Spectrum::BLACK);
         paths.iter().for_each(|path| self.set_transmittance(world, path, path.beta));
     }
 

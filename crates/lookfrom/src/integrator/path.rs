@@ -165,7 +165,7 @@ impl Integrator for PathTracer {
             let in_vacuum = in_lanes && batch.is_in_vacuum(index);
             if in_vacuum && !hit.is_hit() {
                 waiting.push_escaped(self, &batch, index, output);
-            } else if in_vacuum && let Some(class) = batch.hit_class(self, index) {
+            } else if in_vacuum && let Some(class) = self.hit_class(world, path, hit) {
                 waiting.push_hit(self, &batch, (class, index), output);
             } else if !in_vacuum && let Some((medium, _)) = medium_on_way(world, path, hit) {
                 waiting.push_in_flight(medium, index);
@@ -277,7 +277,7 @@ impl PathTracer {
         if !hit.is_hit() {
             return self.escape(world, (&[&path; LANES], 1), output);
         }
-        if waiting.takes_at_interface(world, &path, hit) {
+        if waiting.takes_at_interface(world, &path, hit) || waiting.takes_arrived(self, world, &path, hit) {
             return;
         }
         let surface = world.surface_at(&path.ray, hit, output.time(&path));

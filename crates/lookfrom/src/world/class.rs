@@ -74,8 +74,7 @@ impl World {
         let bsdf = |binding: &MaterialBinding| {
             let is_whole = binding.is_only_material() && !(self.has_open_fronts && binding.single_sided);
             let material = &self.materials[binding.material as usize];
-            // Paths into what fills a body leave its surface one by one.
-            material.class().filter(|_| is_whole && material.medium.is_none())
+            material.class().filter(|_| is_whole)
         };
         match primitives {
             Primitives::Mesh(mesh) => Class::Mesh {

@@ -9,7 +9,7 @@ use lookfrom_scene::{Location, Scene};
 const ALL: [(&str, &str); 4] =
     [("seen", "C[LBOA]"), ("diffuse", "CD.*"), ("glossy", "CG.*"), ("specular", "CS.*")];
 
-fn layer((name, expression): (&str, &str)) -> LightPathLayer {
+pub(crate) fn layer((name, expression): (&str, &str)) -> LightPathLayer {
     LightPathLayer { name: name.into(), expression: expression.into(), at: Location::default() }
 }
 
@@ -48,6 +48,8 @@ fn layers_add_up_to_a_picture_whose_bits_they_do_not_change() {
         ("whitted", own_scene("whitted1980.toml")),
         ("raycast", own_scene("soft-shadows.toml")),
         ("cutouts", own_scene("cutouts.toml")),
+        ("fisheye", own_scene("../docs/guide/scenes/camera-fisheye.toml")),
+        ("lens system", own_scene("../docs/guide/scenes/camera-lens-system.toml")),
     ] {
         (scene.image.width, scene.image.height, scene.image.crop) = (40, 30, None);
         scene.render.samples = 4;
@@ -215,4 +217,48 @@ fn media_have_a_letter() {
     let mut clear = fog();
     clear.camera.as_mut().expect("a camera").medium = None;
     assert_eq!(total(&film_of(clear, &[("fog", "C.*V.*")]), 0), 0.0);
+}
+
+/// Light from a lamp before or behind a sheet that lets light through, at a hit that is shaded with others.
+#[test]
+fn lamps_behind_a_surface_are_seen_by_transmission() {
+    const LEAF: &str = "type = \"diffuse_transmission\"\nreflectance = 0.3\ntransmittance = 0.4";
+    for (material, lobe) in [
+        (LEAF, 'D'),
+        ("type = \"dielectric\"\nroughness = 0.5", 'G'),
+        ("type = \"dielectric\"\nroughness = 0.3", 'G'),
+    ] {
+        for (z, transmitted) in [(-2.0, true), (2.0, false)] {
+            let scene = scene(&format!(
+                r#"
+                [camera]
+                lookfrom = [0, 0, 4]
+                lookat = [0, 0, 0]
+                [image]
+                width = 16
+                height = 12
+                [render]
+                integrator = "path"
+                samples = 8
+                depth = 1
+                [materials.sheet]
+                {material}
+                [[quad]]
+                corner = [-2, -2, 0]
+                edge_u = [4, 0, 0]
+                edge_v = [0, 4, 0]
+                material = "sheet"
+                [[light]]
+                type = "point"
+                position = [0.5, 0.5, {z}]
+                intensity = 9
+                "#
+            ));
+            let ways = [format!("C<T{lobe}>L"), format!("C<R{lobe}>L")];
+            let film = film_of(scene, &[("behind", &ways[0]), ("before", &ways[1])]);
+            let [behind, before] = [0, 1].map(|layer| total(&film, layer));
+            let (there, not_there) = if transmitted { (behind, before) } else { (before, behind) };
+            assert!(there > 1.0 && not_there == 0.0, "{material}, {z}: {behind} {before}");
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! One and the same picture, bit for bit, however the work is divided – and the inspector tells the truth about it.
 
+use crate::light_paths::layer;
 use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::FilmTile;
 use lookfrom::inspect::{SvgView, inspect, svg};
@@ -268,11 +269,13 @@ fn steps_eight_at_once_are_steps_one_by_one() {
 }
 
 #[test]
-fn aovs_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
+fn layers_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
     for name in ["materials.toml", "textures.toml", "instances.toml", "still-life.toml", "cutouts.toml"] {
         let mut scene = small(name);
         scene.render.integrator = Integrator::Path;
         (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);
+        let ways = [("td", "C<TD>.*"), ("tg", "C<TG>.*"), ("ts", "C<TS>.*"), ("r", "C<R.>.*")];
+        scene.image.light_paths = ways.map(layer).to_vec();
         let tracer = PathTracer {
             depth: scene.render.depth,
             regularize: scene.render.regularize,

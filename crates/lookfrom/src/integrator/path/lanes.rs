@@ -205,7 +205,7 @@ impl PathTracer {
         let (connections, lights) = (&scattered.connections, &scattered.lights);
         // Through the surface of a body it travels in what is behind.
         let wi = Vec3::from_array(row(&lights.wi, lane));
-        let crosses = departure.crosses(wi);
+        let crosses = departure.crosses(connections.is_outside & 1 << lane != 0);
         let share = || Spectrum(row(&connections.diffuse, lane));
         let last_scattering = output.last_scattering(departure.path, crosses, share);
         let interior = departure.interior(world, wi, crosses);

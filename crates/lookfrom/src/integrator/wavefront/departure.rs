@@ -35,15 +35,25 @@ pub(in crate::integrator) enum Boundary<'a> {
 }
 
 impl<S> Departure<'_, S> {
-    /// Whether a ray in a direction leaves through the surface of a body.
+    /// Whether a ray that leaves to the outside of the surface, or not, passes through it.
     #[inline]
-    pub(in crate::integrator) fn crosses(&self, wi: Vec3) -> bool {
-        matches!(self.boundary, Boundary::Surface(surface) if surface.crosses(wi))
+    pub(in crate::integrator) fn crosses(&self, is_outside: bool) -> bool {
+        match self.boundary {
+            Boundary::Surface(&SurfaceInteraction { front, .. }) | Boundary::Bare { front, .. } => {
+                is_outside != front
+            }
+            Boundary::None => false,
+        }
     }
 
     /// Whether the vertex is on a pane.
     pub(in crate::integrator) fn is_at_pane(&self, world: &World) -> bool {
-        matches!(self.boundary, Boundary::Surface(surface) if world.materials[surface.material as usize].is_pane())
+        match self.boundary {
+            Boundary::Surface(&SurfaceInteraction { material, .. }) | Boundary::Bare { material, .. } => {
+                world.materials[material as usize].is_pane()
+            }
+            Boundary::None => false,
+        }
     }
 
     /// The media around a ray that leaves to the side from which the path has come.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::conductor::Conductor;
-use super::dielectric::{Dielectric, ThinDielectric};
+use super::dielectric::Dielectric;
 use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::disney::Disney;
 use super::hair::Hair;
@@ -15,6 +15,7 @@ use super::open_pbr::OpenPbrSurface;
 use super::plastic::Plastic;
 use super::principled::Principled;
 use super::subsurface::Subsurface;
+use super::thin_dielectric::ThinDielectric;
 use super::tinted::TintedDielectric;
 use super::whitted::WhittedCoefficients;
 use super::{BsdfSample, MicrofacetFactors, Mode};
@@ -132,10 +133,10 @@ macro_rules! bsdf_classes {
                 Disney(Disney),
                 /// The boundary of a dielectric with colours of its own.
                 TintedDielectric(TintedDielectric),
-            }
-            one_by_one {
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
+            }
+            one_by_one {
                 /// The boundary of a medium in which light diffuses.
                 Subsurface(Subsurface),
                 /// Light that leaves such a medium.
@@ -210,13 +211,6 @@ macro_rules! lane_classes {
 
             /// Number of classes.
             pub(crate) const COUNT: usize = Self::ALL.len();
-
-            /// Whether the bodies around a surface have an effect on it: on glTF's materials and OpenPBR's, whose index of
-            /// refraction is relative to theirs.
-            #[inline]
-            pub(crate) fn depends_on_surroundings(self) -> bool {
-                matches!(self, Self::Principled | Self::OpenPbr)
-            }
 
             /// The class of a BSDF, if it is computed in lanes.
             #[inline]

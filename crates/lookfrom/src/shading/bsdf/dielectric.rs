@@ -1,4 +1,4 @@
-//! Dielectrics, smooth or rough, and thin dielectrics.
+//! Boundaries of dielectrics, smooth or rough.
 //!
 //! Light that one facet sends to another is lost, as in pbrt; or facets do not shadow what leaves them, and light that would
 //! leave to the wrong side leaves mirrored at the surface, so that all of it leaves (`docs/decisions/0017`; then `f` is not
@@ -12,7 +12,6 @@ use lookfrom_simd::{Float, Mask, Real};
 
 use super::lanes::LaneBsdf;
 use super::microfacet::Microfacets;
-use super::tinted::Tint;
 use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
     fresnel, is_grazing,
@@ -357,89 +356,5 @@ pub(super) fn radiance_scale<R: Real>(f: R, eta: R, mode: Mode) -> R {
     match mode {
         Mode::Radiance => f / (eta * eta),
         Mode::Importance => f,
-    }
-}
-
-/// A dielectric sheet so thin that light leaves at the point where it entered: all internal reflections
-/// are summed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ThinDielectric {
-    /// Index of the sheet over the surrounding one.
-    pub(crate) eta: f32,
-    /// Its colours.
-    pub(crate) tint: Tint,
-}
-
-impl ThinDielectric {
-    /// By the index of refraction of the sheet over the surrounding one (0 counts as 1).
-    pub fn new(eta: f32) -> Self {
-        Self { eta: fresnel::valid_eta(eta), tint: Tint::NONE }
-    }
-
-    /// This sheet with colours.
-    #[must_use]
-    pub fn with_tint(self, tint: Tint) -> Self {
-        Self { tint, ..self }
-    }
-
-    /// The light that passes it, by the cosine to the normal.
-    #[inline]
-    pub(crate) fn transmittance(&self, cos: f32) -> Spectrum {
-        self.tint.transmittance * (1.0 - self.reflectance(cos))
-    }
-
-    /// Reflectance of both interfaces with all reflections between them: R + T R T + T R³ T + … = R + T² R / (1 − R²), as in
-    /// pbrt-v4. By the cosine to the normal.
-    #[inline]
-    pub(crate) fn reflectance(&self, cos: f32) -> f32 {
-        let once = optics::fresnel_dielectric(cos.abs(), self.eta);
-        if once < 1.0 { once + (1.0 - once) * (1.0 - once) * once / (1.0 - once * once) } else { once }
-    }
-}
-
-impl ScatteringFunction for ThinDielectric {
-    fn f(&self, _: Vec3, _: Vec3, _: Mode) -> Spectrum {
-        Spectrum::BLACK
-    }
-
-    fn pdf(&self, _: Vec3, _: Vec3, _: Mode, _: Lobes) -> f32 {
-        0.0
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, _: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let fresnel = self.reflectance(wo.z);
-        let [r, t] = lobes.allowed([fresnel, 1.0 - fresnel]);
-        if r + t == 0.0 {
-            return None;
-        }
-        let reflection = r / (r + t);
-        let (wi, part, probability, side) = if uc < reflection {
-            let part = self.tint.reflectance * fresnel;
-            (Vec3::new(-wo.x, -wo.y, wo.z), part, reflection, Lobes::REFLECTION)
-        } else {
-            (-wo, self.tint.transmittance * (1.0 - fresnel), 1.0 - reflection, Lobes::TRANSMISSION)
-        };
-        let f = part / wi.z.abs();
-        Some(BsdfSample::new(wi, f, probability, side | Lobes::SPECULAR))
-    }
-
-    fn lobes(&self) -> Lobes {
-        Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR
-    }
-
-    fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
-        self.factors(wo, wi, is_specular).into_iter().collect()
-    }
-
-    fn description(&self) -> Description {
-        Description {
-            kind: "thin dielectric",
-            does: "a thin pane: reflects light, or transmits it straight on",
-            numbers: vec![
-                ("eta", self.eta.into()),
-                ("specular reflectance", self.tint.reflectance.into()),
-                ("specular transmittance", self.tint.transmittance.into()),
-            ],
-        }
     }
 }

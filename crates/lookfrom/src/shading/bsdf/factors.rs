@@ -8,9 +8,10 @@
 use glam::Vec3;
 
 use super::conductor::{Conductor, MultipleScattering, try_half_vector};
-use super::dielectric::{Dielectric, ThinDielectric};
+use super::dielectric::Dielectric;
 use super::microfacet::{Microfacets, TrowbridgeReitz};
 use super::plastic::Plastic;
+use super::thin_dielectric::ThinDielectric;
 use super::{fresnel, is_grazing, same_side};
 use crate::core::spectrum::Spectrum;
 

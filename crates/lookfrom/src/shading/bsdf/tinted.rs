@@ -33,6 +33,17 @@ impl<R: Real> Tint<R> {
     }
 }
 
+impl<S: Simd> Tint<f32x8<S>> {
+    /// One in each lane.
+    #[inline(always)]
+    pub(super) fn gather(simd: S, rows: &[Tint; LANES]) -> Self {
+        Self {
+            reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].reflectance)),
+            transmittance: gather_spectrum(simd, &by_lane!(lane => rows[lane].transmittance)),
+        }
+    }
+}
+
 /// A dielectric boundary with a tint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TintedDielectric<R = f32> {
@@ -122,10 +133,7 @@ impl RowBsdf for TintedDielectric {
     fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
         TintedDielectric {
             boundary: Dielectric::gather(simd, &by_lane!(lane => &rows[lane].boundary)),
-            tint: Tint {
-                reflectance: gather_spectrum(simd, &by_lane!(lane => rows[lane].tint.reflectance)),
-                transmittance: gather_spectrum(simd, &by_lane!(lane => rows[lane].tint.transmittance)),
-            },
+            tint: Tint::gather(simd, &by_lane!(lane => rows[lane].tint)),
         }
     }
 }

@@ -214,6 +214,6 @@ fn shininess(roughness: &Roughness) -> f32 {
 fn ior(ior: &Ior, textures: &Textures) -> f32 {
     match ior {
         Ior::Value(eta) => *eta,
-        Ior::Curve(curve) => super::ior_at(*curve, textures, &mut SpectralMode::Rgb),
+        Ior::Curve(curve) => super::evaluator::ior_at(*curve, textures, &mut SpectralMode::Rgb),
     }
 }

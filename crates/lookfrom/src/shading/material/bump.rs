@@ -49,76 +49,94 @@ pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
     around(surface.ns, surface.dpdu)
 }
 
-/// The shading frame at a surface as in pbrt-v4, where the smoothed ∂p/∂v of meshes is as long as ∂p/∂u: its normal on the side of
-/// the geometric one, its first axis along ∂p/∂u.
+/// What normals that a map has bent too far become.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum NormalLimit {
+    /// Those on the side of the geometric normal, as in pbrt-v4.
+    #[default]
+    Outward,
+    /// The same, perhaps [turned](Bending::limited), with a [guard](Guard), as in Mitsuba.
+    Guarded(BumpGuard),
+    /// [Valid](Bending::valid) ones.
+    Valid,
+}
+
+impl NormalLimit {
+    /// Whether it is [`Self::Valid`].
+    #[inline]
+    pub(crate) fn keeps_valid(self) -> bool {
+        matches!(self, Self::Valid)
+    }
+
+    /// Whether normals are [turned](Bending::limited).
+    #[inline]
+    pub(crate) fn turns(self) -> bool {
+        matches!(self, Self::Guarded(BumpGuard { turns: true, .. }))
+    }
+}
+
+/// The shading frame at a surface: its first axis along ∂p/∂u.
 pub(super) fn frame(
-    bump_mapping: &BumpMapping,
+    (bump_mapping, limit): (&BumpMapping, NormalLimit),
     relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    let bent = bent(bump_mapping, relief, surface, [surface.dpdu, surface.dpdv], at);
-    around(outward(bent, surface), surface.dpdu)
-}
-
-/// The shading frame with a normal that is [`valid`](Bending::valid).
-pub(super) fn valid_frame(
-    bump_mapping: &BumpMapping,
-    relief: Relief<'_>,
-    surface: &ShadingGeometry,
-    at: &TexturePoint,
-) -> Frame {
-    let bent = bent(bump_mapping, relief, surface, surface.derivatives, at);
-    around(valid(bent, surface), surface.dpdu)
-}
-
-/// The shading frame with a normal that is guarded as Mitsuba's.
-pub(super) fn guarded_frame(
-    guard: BumpGuard,
-    bump_mapping: &BumpMapping,
-    relief: Relief<'_>,
-    surface: &ShadingGeometry,
-    at: &TexturePoint,
-) -> Frame {
-    // Mitsuba differentiates pictures between their texels, whatever is seen of them.
-    let fine = Relief { step: FINE_STEP, footprint: None, ..relief };
-    let n = outward(bent(bump_mapping, fine, surface, surface.derivatives, at), surface);
-    around(if guard.turns { guard::turned(n, surface.ns, surface.wo) } else { n }, surface.dpdu)
-}
-
-/// A normal on the side of the geometric one.
-fn outward(n: Vec3, surface: &ShadingGeometry) -> Vec3 {
-    if n.dot(surface.ng) < 0.0 { -n } else { n }
-}
-
-/// The perturbed normal, of unit length, by the derivatives that heights have their slopes along.
-fn bent(
-    bump_mapping: &BumpMapping,
-    relief: Relief<'_>,
-    surface: &ShadingGeometry,
-    derivatives: [Vec3; 2],
-    at: &TexturePoint,
-) -> Vec3 {
-    let plain = || plain(surface);
-    let bent = match bump_mapping {
-        BumpMapping::None => return surface.ns,
-        BumpMapping::NormalMap(image) => {
-            let st = [at.uv.x, 1.0 - at.uv.y];
-            let texel =
-                texture::look_up(relief.textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
-            let local = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
-            plain().render(local)
+    let (relief, derivatives) = match limit {
+        // The smoothed ∂p/∂v of pbrt's meshes is as long as ∂p/∂u.
+        NormalLimit::Outward => (relief, [surface.dpdu, surface.dpdv]),
+        // Mitsuba differentiates pictures between their texels, whatever is seen of them.
+        NormalLimit::Guarded(_) => {
+            (Relief { step: FINE_STEP, footprint: None, ..relief }, surface.derivatives)
         }
-        BumpMapping::NormalTexture(map) => return mapped(map, relief.textures, surface, at),
-        BumpMapping::Bump(height) => bumped(*height, relief, surface, derivatives, at),
+        NormalLimit::Valid => (relief, surface.derivatives),
     };
-    bent.normalize_or(surface.ns)
+    let bending = Bending::from(surface);
+    let bent = match bump_mapping {
+        BumpMapping::Bump(height) => {
+            bumped(*height, relief, surface, derivatives, at).normalize_or(surface.ns).into()
+        }
+        map => LocalNormal::at(map, relief.textures, at)
+            .map_or(bending.ns, |local| bending.mapped(local.n.into(), local.follows_dpdv)),
+    };
+    let n = bending.limited(bent, limit.keeps_valid(), limit.turns());
+    around(n.into(), surface.dpdu)
+}
+
+/// The normal of a normal map along the tangents and the shading normal of a surface; not of unit length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LocalNormal {
+    pub(crate) n: [f32; 3],
+    /// Whether the second tangent is on the side of ∂p/∂v; else the tangents and the normal are right-handed.
+    pub(crate) follows_dpdv: bool,
+}
+
+impl LocalNormal {
+    /// At a point, of bump mapping that is a normal map.
+    pub(super) fn at(bump_mapping: &BumpMapping, textures: &Textures, at: &TexturePoint) -> Option<Self> {
+        match bump_mapping {
+            BumpMapping::NormalMap(image) => {
+                let st = [at.uv.x, 1.0 - at.uv.y];
+                let texel =
+                    texture::look_up(textures.image(*image), st, [Wrap::Repeat; 2], TexelFilter::Bilinear);
+                let n = Vec3::from_array(texel.map(|c| 2.0 * c - 1.0)).normalize_or(Vec3::Z);
+                Some(Self { n: n.into(), follows_dpdv: false })
+            }
+            BumpMapping::NormalTexture(map) => Some(Self::of_texture(map, textures, at)),
+            BumpMapping::Bump(_) | BumpMapping::None => None,
+        }
+    }
+
+    fn of_texture(map: &NormalTexture, textures: &Textures, at: &TexturePoint) -> Self {
+        let [x, y, z] = textures.rgb(&map.texture, at).map(|c| 2.0 * c - 1.0);
+        Self { n: [map.scale * x, map.scale * y, z], follows_dpdv: true }
+    }
 }
 
 /// The directions of u and v at a surface, perpendicular to its shading normal and to each other, of
 /// unit length.
 pub(super) fn tangents(surface: &ShadingGeometry) -> [Vec3; 2] {
-    Bending::from(surface).tangents().map(Vec3::from)
+    Bending::from(surface).tangents(true).map(Vec3::from)
 }
 
 /// The normal of a normal map, of unit length.
@@ -128,13 +146,8 @@ pub(super) fn mapped(
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Vec3 {
-    Bending::from(surface).mapped(local_normal(map, textures, at).into()).into()
-}
-
-/// The normal of a normal map along the tangents and the shading normal; not of unit length.
-pub(super) fn local_normal(map: &NormalTexture, textures: &Textures, at: &TexturePoint) -> [f32; 3] {
-    let [x, y, z] = textures.rgb(&map.texture, at).map(|c| 2.0 * c - 1.0);
-    [map.scale * x, map.scale * y, z]
+    let local = LocalNormal::of_texture(map, textures, at);
+    Bending::from(surface).mapped(local.n.into(), local.follows_dpdv).into()
 }
 
 /// [`Bending::valid`].
@@ -173,16 +186,34 @@ impl From<&ShadingGeometry> for Bending<f32> {
 impl<R: Real> Bending<R> {
     /// The directions of u and v, perpendicular to the shading normal and to each other, of unit length.
     #[inline(always)]
-    fn tangents(&self) -> [Vector<R>; 2] {
+    fn tangents(&self, follows_dpdv: R::Mask) -> [Vector<R>; 2] {
         let (s, t) = frame_about(self.ns, self.dpdu);
-        [s, t.negate_where(t.dot(self.dpdv).lt(self.facing.like(0.0)))]
+        [s, t.negate_where(follows_dpdv & t.dot(self.dpdv).lt(self.facing.like(0.0)))]
     }
 
-    /// The normal of a normal map, of unit length, by its [`local_normal`].
+    /// The normal of a normal map, of unit length, by its [`LocalNormal`].
     #[inline(always)]
-    pub(crate) fn mapped(&self, local: Vector<R>) -> Vector<R> {
-        let [s, t] = self.tangents();
+    pub(crate) fn mapped(&self, local: Vector<R>, follows_dpdv: R::Mask) -> Vector<R> {
+        let [s, t] = self.tangents(follows_dpdv);
         normalized_or(s * local.x + t * local.y + self.ns * local.z, self.ns)
+    }
+
+    /// The normal `n`, by its [`NormalLimit`]: [valid](Self::valid), or on the side of the geometric normal, and, where it `turns` and is
+    /// seen from another side than the normal without the map, turned by half a turn about that (Schüßler et al. 2017).
+    #[inline(always)]
+    pub(crate) fn limited(&self, n: Vector<R>, is_valid: R::Mask, turns: R::Mask) -> Vector<R> {
+        if is_valid.all() {
+            return self.valid(n);
+        }
+        let zero = self.facing.like(0.0);
+        let outward = n.negate_where((n.dot(self.ng_facing) * self.facing).lt(zero));
+        let is_beside = (self.wo.dot(self.ns) * self.wo.dot(outward)).gt(zero);
+        let turned = self.ns * (outward.dot(self.ns) * 2.0) - outward;
+        let limited = Vector::select(turns & !is_beside, turned, outward);
+        match (!is_valid).all() {
+            true => limited,
+            false => Vector::select(is_valid, self.valid(n), limited),
+        }
     }
 
     /// The nearest normal to `n`, turned toward the geometric one, that reflects `wo` to the outside of the surface.

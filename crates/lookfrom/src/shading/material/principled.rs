@@ -10,7 +10,7 @@
 use glam::Vec3;
 
 use super::kind::PrincipledMaterial;
-use super::{Evaluator, Frame, MaterialKind, ShadingContext, bump};
+use super::{Evaluator, Frame, MaterialKind, ShadingContext, Side, bump};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 use crate::shading::bsdf::principled::film::ThinFilm;
@@ -62,6 +62,12 @@ impl PrincipledMaterial {
     pub(super) fn refraction(&self) -> Refraction {
         Refraction { ior: self.ior, dispersion: self.dispersion, is_solid: self.is_solid }
     }
+
+    /// Whether its BSDF depends on the shading frame: by a lobe that is stretched along the surface, or a coat's normal.
+    #[inline]
+    pub(super) fn depends_on_frame(&self) -> bool {
+        self.anisotropy.is_some() || !self.clearcoat.is(0.0)
+    }
 }
 
 /// The index of refraction for the one wavelength or colour that is kept; the nominal one where there are more.
@@ -93,21 +99,12 @@ pub(super) fn template(look: &PrincipledMaterial, textures: &Textures) -> Option
     if look.is_solid || look.anisotropy.is_some() || !is_even || !is_plain {
         return None;
     }
-    let surface = ShadingGeometry {
-        ng: Vec3::Z,
-        ns: Vec3::Z,
-        dpdu: Vec3::X,
-        dpdv: Vec3::Y,
-        derivatives: [Vec3::X, Vec3::Y],
-        wo: Vec3::Z,
-        front: true,
-    };
     let (mut mode, mut throughput) = (SpectralMode::Rgb, Spectrum::ONE);
     let interior = InteriorStack::default();
     let context =
         ShadingContext { mode: &mut mode, throughput: &mut throughput, interior, u: 0.0, seed: 0.0 };
     let mut evaluator = Evaluator::new(&[], textures, &TexturePoint::NOWHERE, context);
-    Some(evaluator.principled(look, 0, &surface, bump::plain(&surface)).0)
+    evaluator.principled_in_any_frame(look, Side { material: 0, front: true })
 }
 
 /// The microfacet distribution's α of a roughness.
@@ -124,10 +121,8 @@ impl Evaluator<'_> {
         surface: &ShadingGeometry,
         mut frame: Frame,
     ) -> (Principled, Frame) {
-        if let Some(template) = &look.template
-            && self.interior.material().is_none()
-        {
-            return (self.of_template(look, template), frame);
+        if let Some(bsdf) = self.template_of(look) {
+            return (bsdf, frame);
         }
         let transmission = self.share(look.transmission);
         let metallic = self.share(look.metallic);
@@ -211,17 +206,38 @@ impl Evaluator<'_> {
         (bsdf.clamped(), frame)
     }
 
-    /// The BSDF by that of a [`template`].
-    pub(super) fn of_template(&self, look: &PrincipledMaterial, template: &Principled) -> Principled {
+    /// The BSDF by that of its [`template`], where it has one and is in no body.
+    #[inline]
+    pub(super) fn template_of(&self, look: &PrincipledMaterial) -> Option<Principled> {
+        let template = look.template.as_ref().filter(|_| self.interior.material().is_none())?;
         let alpha = alpha(self.share(look.roughness));
-        Principled {
+        Some(Principled {
             base_color: self.albedo(&look.base_color),
             metallic: self.share(look.metallic),
             roughness: TrowbridgeReitz::new(alpha, alpha),
             film: ThinFilm { wavelengths: self.wavelengths(), ..template.film },
             lane_weights: self.lane_weights(),
             ..*template
-        }
+        })
+    }
+
+    /// The BSDF of a material that does not [depend on the frame](PrincipledMaterial::depends_on_frame).
+    pub(super) fn principled_in_any_frame(
+        &mut self,
+        look: &PrincipledMaterial,
+        side: Side,
+    ) -> Option<Principled> {
+        let surface = ShadingGeometry {
+            ng: Vec3::Z,
+            ns: Vec3::Z,
+            dpdu: Vec3::X,
+            dpdv: Vec3::Y,
+            derivatives: [Vec3::X, Vec3::Y],
+            wo: Vec3::Z,
+            front: side.front,
+        };
+        let frame = bump::plain(&surface);
+        (!look.depends_on_frame()).then(|| self.principled(look, side.material, &surface, frame).0)
     }
 
     /// A number of 0 … 1.

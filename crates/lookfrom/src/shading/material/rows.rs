@@ -1,6 +1,8 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
-use super::{BumpMapping, Evaluator, Frame, Material, MaterialKind, Relief, ShadingContext, bump};
+use super::{
+    BumpMapping, Evaluator, Frame, Guard, LocalNormal, Material, MaterialKind, Relief, ShadingContext,
+};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
 use crate::shading::bsdf::dielectric::Dielectric;
@@ -13,6 +15,7 @@ use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::thin_dielectric::ThinDielectric;
 use crate::shading::bsdf::tinted::TintedDielectric;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::ShadingGeometry;
@@ -21,22 +24,19 @@ use crate::shading::texture::{TexturePoint, Textures};
 impl Material {
     /// The class of its BSDFs, if they are computed in lanes: not chosen at random, and the same in all media.
     pub(crate) fn class(&self) -> Option<BsdfClass> {
-        // Guards of bent normals are found one by one.
-        if self.bump_guard.is_some() {
-            return None;
-        }
         match &self.kind {
             MaterialKind::Diffuse { .. } => Some(BsdfClass::Diffuse),
             MaterialKind::DiffuseTransmission { .. } => Some(BsdfClass::DiffuseTransmission),
             MaterialKind::Conductor { .. } => Some(BsdfClass::Conductor),
             MaterialKind::Dielectric { .. } => Some(BsdfClass::Dielectric),
             MaterialKind::TintedDielectric { .. } => Some(BsdfClass::TintedDielectric),
+            MaterialKind::ThinDielectric { .. } => Some(BsdfClass::ThinDielectric),
             MaterialKind::CoatedDiffuse { .. } => Some(BsdfClass::CoatedDiffuse),
             MaterialKind::CoatedConductor { .. } => Some(BsdfClass::CoatedConductor),
             MaterialKind::Principled(look) => {
-                (!look.is_solid && !look.refraction().disperses()).then_some(BsdfClass::Principled)
+                (!look.refraction().disperses()).then_some(BsdfClass::Principled)
             }
-            MaterialKind::OpenPbr(look) => (!look.is_solid).then_some(BsdfClass::OpenPbr),
+            MaterialKind::OpenPbr(look) => (!look.refraction().disperses()).then_some(BsdfClass::OpenPbr),
             MaterialKind::Plastic(_) => Some(BsdfClass::Plastic),
             MaterialKind::Hair(_) => Some(BsdfClass::Hair),
             MaterialKind::Measured(_) => Some(BsdfClass::Measured),
@@ -63,56 +63,62 @@ impl Material {
         self.has_bumps() || self.reflects_outside
     }
 
-    /// Whether its frames are bent in lanes: with a normal map or none, and a BSDF that does not depend on the frame.
+    /// Whether its frames are bent in lanes: without a bump map, and with a BSDF that does not depend on the frame.
     #[inline]
     pub(crate) fn bends_in_lanes(&self) -> bool {
         let depends_on_frame = match &self.kind {
-            MaterialKind::Principled(look) => look.template.is_none(),
+            MaterialKind::Principled(look) => look.depends_on_frame(),
             MaterialKind::OpenPbr(_) => true,
             _ => false,
         };
-        self.reflects_outside
-            && !depends_on_frame
-            && matches!(self.bump_mapping, BumpMapping::None | BumpMapping::NormalTexture(_))
+        self.bends_frames() && !depends_on_frame && !self.has_bump_map()
     }
 
-    /// The normal of its normal map at a point, along the tangents and the shading normal of the surface; not of unit
-    /// length.
+    /// The normal of its normal map at a point, if it has one.
     #[inline]
-    pub(crate) fn local_normal(&self, textures: &Textures, point: &TexturePoint) -> Option<[f32; 3]> {
-        match &self.bump_mapping {
-            BumpMapping::NormalTexture(map) => Some(bump::local_normal(map, textures, point)),
-            _ => None,
-        }
+    pub(crate) fn local_normal(&self, textures: &Textures, point: &TexturePoint) -> Option<LocalNormal> {
+        LocalNormal::at(&self.bump_mapping, textures, point)
     }
 
-    /// The BSDF at a point, as [`super::shading`] has it; `None` where the material is of another class, or
+    /// The BSDF at a point, as [`super::shading()`] has it; `None` where the material is of another class, or
     /// [bends frames](Material::bends_frames) and has a BSDF that depends on them. Where wavelengths are dispersed, only the
     /// first is kept.
     #[inline]
     pub(crate) fn row<B: MaterialRow>(
         &self,
+        materials: &[Material],
         textures: &Textures,
-        point: &TexturePoint,
+        (side, point): (Side, &TexturePoint),
         context: ShadingContext<'_>,
     ) -> Option<B> {
-        B::at(&mut Evaluator::new(&[], textures, point, context), &self.kind)
+        B::at(&mut Evaluator::new(materials, textures, point, context), &self.kind, side)
     }
 
-    /// The BSDF at a point where frames are bent, and the axes of the frame; the third is the shading normal.
+    /// The BSDF at a point where frames are bent, the axes of the frame, the third of which is the shading normal, and the guard of
+    /// that.
     #[inline(never)]
     pub(crate) fn bent_row<B: MaterialRow>(
         &self,
+        materials: &[Material],
         relief: Relief<'_>,
         geometry: &ShadingGeometry,
-        point: &TexturePoint,
+        (side, point): (Side, &TexturePoint),
         context: ShadingContext<'_>,
-    ) -> Option<(B, [[f32; 3]; 3])> {
+    ) -> Option<(B, [[f32; 3]; 3], Option<Guard>)> {
         let mut frame = self.frame(relief, geometry, point);
-        let mut evaluator = Evaluator::new(&[], relief.textures, point, context);
-        let row = B::in_frame(&mut evaluator, &self.kind, geometry, &mut frame)?;
-        Some((row, frame.axes()))
+        let mut evaluator = Evaluator::new(materials, relief.textures, point, context);
+        let row = B::in_frame(&mut evaluator, &self.kind, side, geometry, &mut frame)?;
+        Some((row, frame.axes(), self.guard(geometry.ns, frame.n)))
     }
+}
+
+/// The side of a surface that a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side {
+    /// Index of its material.
+    pub(crate) material: u32,
+    /// Whether it is the outside.
+    pub(crate) front: bool,
 }
 
 /// A class of BSDFs that materials have.
@@ -120,37 +126,38 @@ pub(crate) trait MaterialRow: RowBsdf {
     /// Whether it depends on [`ShadingContext::seed`].
     const TAKES_SEED: bool = false;
 
-    /// The BSDF of a material of this class.
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self>;
+    /// The BSDF of a material of this class, whatever its frame.
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind, side: Side) -> Option<Self>;
 
     /// The BSDF in a frame, which it may turn.
     #[inline]
     fn in_frame(
         evaluator: &mut Evaluator<'_>,
         kind: &MaterialKind,
+        side: Side,
         _geometry: &ShadingGeometry,
         _frame: &mut Frame,
     ) -> Option<Self> {
-        Self::at(evaluator, kind)
+        Self::at(evaluator, kind, side)
     }
 }
 
 impl MaterialRow for Principled {
     #[inline]
-    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+    fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind, side: Side) -> Option<Self> {
         let MaterialKind::Principled(look) = kind else { return None };
-        look.template.as_ref().map(|template| evaluator.of_template(look, template))
+        evaluator.template_of(look).or_else(|| evaluator.principled_in_any_frame(look, side))
     }
 
     fn in_frame(
         evaluator: &mut Evaluator<'_>,
         kind: &MaterialKind,
+        side: Side,
         geometry: &ShadingGeometry,
         frame: &mut Frame,
     ) -> Option<Self> {
         let MaterialKind::Principled(look) = kind else { return None };
-        // Which material it is matters only where light enters its body.
-        let (bsdf, turned) = evaluator.principled(look, 0, geometry, *frame);
+        let (bsdf, turned) = evaluator.principled(look, side.material, geometry, *frame);
         *frame = turned;
         Some(bsdf)
     }
@@ -158,19 +165,19 @@ impl MaterialRow for Principled {
 
 impl MaterialRow for OpenPbrSurface {
     #[inline]
-    fn at(_: &mut Evaluator<'_>, _: &MaterialKind) -> Option<Self> {
+    fn at(_: &mut Evaluator<'_>, _: &MaterialKind, _: Side) -> Option<Self> {
         None
     }
 
     fn in_frame(
         evaluator: &mut Evaluator<'_>,
         kind: &MaterialKind,
+        side: Side,
         geometry: &ShadingGeometry,
         frame: &mut Frame,
     ) -> Option<Self> {
         let MaterialKind::OpenPbr(look) = kind else { return None };
-        // As above.
-        let (bsdf, turned) = evaluator.open_pbr(look, 0, geometry, *frame);
+        let (bsdf, turned) = evaluator.open_pbr(look, side.material, geometry, *frame);
         *frame = turned;
         Some(bsdf)
     }
@@ -182,7 +189,7 @@ macro_rules! material_row {
             $(const TAKES_SEED: bool = $takes_seed;)?
 
             #[inline]
-            fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+            fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind, _: Side) -> Option<Self> {
                 match kind {
                     MaterialKind::$kind { $($field),+ } => Some(evaluator.$method($($field),+)),
                     _ => None,
@@ -193,7 +200,7 @@ macro_rules! material_row {
     ($row:ty, $kind:ident => $method:ident) => {
         impl MaterialRow for $row {
             #[inline]
-            fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind) -> Option<Self> {
+            fn at(evaluator: &mut Evaluator<'_>, kind: &MaterialKind, _: Side) -> Option<Self> {
                 match kind {
                     MaterialKind::$kind(look) => Some(evaluator.$method(look)),
                     _ => None,
@@ -211,6 +218,7 @@ material_row!(
 material_row!(Conductor, Conductor { metal, roughness, energy, specular_reflectance } => conductor);
 material_row!(Dielectric, Dielectric { eta, roughness, energy } => dielectric);
 material_row!(TintedDielectric, TintedDielectric { eta, roughness, energy, tint } => tinted_dielectric);
+material_row!(ThinDielectric, ThinDielectric { eta, tint } => thin_dielectric);
 material_row!(Layered<Diffuse>, CoatedDiffuse { reflectance, coat } => coated_diffuse, true);
 material_row!(Layered<Conductor>, CoatedConductor { metal, roughness, coat } => coated_conductor, true);
 material_row!(Plastic, Plastic => plastic);

@@ -1,13 +1,13 @@
-//! The shading frames of eight hits on glTF's material: bent by normal maps, and such that reflections stay outside.
+//! The shading frames of eight hits, bent by normal maps, and such that reflections stay outside.
 
 use glam::DVec3;
-use lookfrom_simd::{Kernel, Simd, f32x8, mask32x8, prelude::*};
+use lookfrom_simd::{Kernel, LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, load, row, set_row, shade_together};
+use crate::core::lanes::{Columns, LANES, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::material::{Bending, frame_about};
+use crate::shading::material::{Bending, Guard, LocalNormal, NormalLimit, frame_about};
 
 /// The directions from which bent frames are made, and the normals of normal maps. Masks have bit i for lane i.
 #[derive(Default)]
@@ -17,11 +17,25 @@ pub(super) struct BentFrames {
     pub(super) dpdv: Columns<3>,
     /// The derivatives of the surface without smoothing, where a material has a bump map.
     pub(super) derivatives: [Columns<3>; 2],
-    /// The normals of normal maps along the tangents and the shading normals, and the lanes that have one.
+    /// The normals of normal maps along the tangents and the shading normals.
     local: Columns<3>,
+    /// The lanes whose frames are bent together.
+    bent: BentLanes,
+    limits: [NormalLimit; LANES],
+}
+
+/// Lanes whose frames are bent together, as masks.
+#[derive(Clone, Copy, Default)]
+struct BentLanes {
+    all: u32,
+    /// Those with a normal map.
     mapped: u32,
-    /// Lanes whose frames are bent together.
-    bent: u32,
+    /// Those whose second tangent is on the side of ∂p/∂v.
+    following_dpdv: u32,
+    /// Those of [`NormalLimit::Valid`].
+    valid: u32,
+    /// Those of [`NormalLimit::turns`].
+    turning: u32,
 }
 
 impl BentFrames {
@@ -41,21 +55,33 @@ impl BentFrames {
 
     /// Notes a lane to be bent with others, by the normal of a normal map if there is one.
     #[inline]
-    pub(super) fn note(&mut self, lane: usize, local: Option<[f32; 3]>) {
-        self.bent |= 1 << lane;
-        if let Some(local) = local {
-            self.mapped |= 1 << lane;
-            set_row(&mut self.local, lane, local);
+    pub(super) fn note(&mut self, lane: usize, local: Option<LocalNormal>, limit: NormalLimit) {
+        let (bent, bit) = (&mut self.bent, 1 << lane);
+        bent.all |= bit;
+        if let Some(LocalNormal { n, follows_dpdv }) = local {
+            bent.mapped |= bit;
+            bent.following_dpdv |= u32::from(follows_dpdv) << lane;
+            set_row(&mut self.local, lane, n);
         }
+        bent.valid |= u32::from(limit.keeps_valid()) << lane;
+        bent.turning |= u32::from(limit.turns()) << lane;
+        self.limits[lane] = limit;
     }
 
     /// Bends the frames of the lanes that were noted. `front` are the lanes whose ray hit the outside.
     #[inline]
     pub(super) fn bend(&mut self, surfaces: &mut VertexColumns, front: u32) {
-        if self.bent != 0 {
-            bend(BendKernel { frames: self, surfaces, front });
+        if self.bent.all == 0 {
+            return;
         }
-        (self.bent, self.mapped) = (0, 0);
+        bend(BendKernel { frames: self, surfaces, front });
+        for lane in LaneMask(self.bent.all & !self.bent.valid) {
+            if let NormalLimit::Guarded(guard) = self.limits[lane] {
+                let guard = Guard::of(guard, row(&self.ns, lane).into(), surfaces.ns(lane).into());
+                surfaces.set_guard(lane, Some(&guard));
+            }
+        }
+        self.bent = BentLanes::default();
     }
 }
 
@@ -92,15 +118,17 @@ impl Kernel for BendKernel<'_> {
             dpdv: load(simd, &frames.dpdv),
             wo,
         };
-        let n = match frames.mapped {
+        let is_in = |lanes: u32| mask32x8::from_bitmask(simd, lanes.into());
+        let BentLanes { all, mapped, following_dpdv, valid, turning } = frames.bent;
+        let bent = match mapped {
             0 => ns,
             mapped => {
-                let is_mapped = mask32x8::from_bitmask(simd, mapped.into());
-                Vector::select(is_mapped, bending.mapped(load(simd, &frames.local)), ns)
+                let mapped_n = bending.mapped(load(simd, &frames.local), is_in(following_dpdv));
+                Vector::select(is_in(mapped), mapped_n, ns)
             }
         };
-        let n = bending.valid(n);
+        let n = bending.limited(bent, is_in(valid), is_in(turning));
         let (s, t) = frame_about(n, dpdu);
-        surfaces.set_frames(simd, frames.bent, [s, t, n]);
+        surfaces.set_frames(simd, all, [s, t, n]);
     }
 }

@@ -19,10 +19,11 @@ use crate::shading::bsdf::measured::Measured;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
+use crate::shading::bsdf::thin_dielectric::ThinDielectric;
 use crate::shading::bsdf::tinted::TintedDielectric;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::bsdf::{Bsdf, BsdfClass, bsdf_classes};
-use crate::shading::material::{MaterialRow, ShadingContext};
+use crate::shading::material::{MaterialRow, ShadingContext, Side};
 use crate::shading::texture::TexturePoint;
 use crate::world::World;
 
@@ -117,19 +118,24 @@ impl MaterialHits<'_> {
                 u: 0.0,
                 seed: seed_of_walks::<B>(&batch.streams.of(path)),
             };
+            let side = Side { material: hit.binding.material, front: front & 1 << lane != 0 };
+            let at = (side, point);
             let mut row: Option<B> = if material.bends_in_lanes() {
                 if smooth & 1 << lane != 0 || material.has_bumps() {
-                    bent.note(lane, material.local_normal(&world.textures, point));
+                    bent.note(lane, material.local_normal(&world.textures, point), material.normal_limit());
                 }
-                material.row(&world.textures, point, context)
+                material.row(&world.materials, &world.textures, at, context)
             } else if material.bends_frames() {
-                let geometry = bent.geometry(surfaces, lane, front & 1 << lane != 0);
-                material.bent_row(world.relief(), &geometry, point, context).map(|(row, axes)| {
-                    surfaces.set_frame(lane, axes);
-                    row
-                })
+                let geometry = bent.geometry(surfaces, lane, side.front);
+                material.bent_row(&world.materials, world.relief(), &geometry, at, context).map(
+                    |(row, axes, guard)| {
+                        surfaces.set_frame(lane, axes);
+                        surfaces.set_guard(lane, guard.as_ref());
+                        row
+                    },
+                )
             } else {
-                material.row(&world.textures, point, context)
+                material.row(&world.materials, &world.textures, at, context)
             };
             if tracer.regularize && path.blurred {
                 row.iter_mut().for_each(B::regularize);

@@ -29,18 +29,6 @@ impl<'a> HitBatch<'a> {
         let path = &self.paths[index];
         self.world.medium(path.interior).is_none() && !path.state.is_catcher
     }
-
-    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, the same in all bodies or met in none, and is
-    /// to go on from there.
-    #[inline]
-    pub(in crate::integrator) fn hit_class(&self, tracer: &PathTracer, index: usize) -> Option<HitClass> {
-        let path = &self.paths[index];
-        if path.depth >= tracer.depth {
-            return None;
-        }
-        let class = self.world.hit_class(&self.hits[index])?;
-        (path.interior.is_empty() || !class.bsdf.depends_on_surroundings()).then_some(class)
-    }
 }
 
 /// A path that met a mesh or a sphere.
@@ -80,6 +68,17 @@ pub(super) struct ClassHits<'a> {
 }
 
 impl PathTracer {
+    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, and is to go on from there.
+    #[inline]
+    pub(in crate::integrator::path) fn hit_class(
+        &self,
+        world: &World,
+        path: &Path,
+        hit: &Hit,
+    ) -> Option<HitClass> {
+        if path.depth < self.depth { world.hit_class(hit) } else { None }
+    }
+
     /// Scatters up to eight paths of a batch that met meshes, or spheres, of one class.
     pub(super) fn scatter_hits<P: Probe>(
         &self,
@@ -91,8 +90,9 @@ impl PathTracer {
     ) {
         let world = batch.world;
         let Memory { points, scattered } = memory;
-        let wants_first = output.queues.first_surfaces.are_wanted();
-        let Some(class_hits) = ClassHits::of(batch, eight.paths, wants_first) else { return };
+        let first_surfaces = &output.queues.first_surfaces;
+        let is_first = |path: &Path| path.is_root() && first_surfaces.are_left_in(path.interior);
+        let Some(class_hits) = ClassHits::of(batch, eight.paths, is_first) else { return };
         let hits = &class_hits.hits;
 
         // Find the points; paths from the camera pass the back faces of single-sided shapes.
@@ -157,7 +157,7 @@ impl PathTracer {
 
 impl<'a> ClassHits<'a> {
     #[inline(always)]
-    fn of(batch: &HitBatch<'a>, indices: &[u32], wants_first: bool) -> Option<Self> {
+    fn of(batch: &HitBatch<'a>, indices: &[u32], is_first: impl Fn(&Path) -> bool) -> Option<Self> {
         let index = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
         let (world, all) = (batch.world, batch.hits);
         let (shapes, bindings) = match world.sphere(&all[index(0)]) {
@@ -177,7 +177,7 @@ impl<'a> ClassHits<'a> {
             material: &world.materials[bindings[lane].material as usize],
         });
         let vary = hits.iter().any(|hit| hit.material.varies);
-        let are_first = if wants_first { bitmask(&by_lane!(lane => hits[lane].path.is_root())) } else { 0 };
+        let are_first = bitmask(&by_lane!(lane => is_first(hits[lane].path)));
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
         let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
         Some(Self { hits, shapes, vary, are_first, pixels })
@@ -269,9 +269,10 @@ fn tell_of_shading<P: Probe>(
     for lane in LaneMask(active) {
         let (ClassHit { path, hit, .. }, Some(bsdf)) = (&hits[lane], bsdfs[lane]) else { continue };
         let surface = world.surface_at(&path.ray, hit, output.time(path));
+        let (axes, guard) = (points.surfaces.axes(lane), points.surfaces.guard(lane));
         output.probe.notice(|| Event::Shaded {
             address: path.address,
-            shading: Box::new(Shading::in_frame(&surface, points.surfaces.axes(lane), bsdf)),
+            shading: Box::new(Shading::in_frame(&surface, axes, guard, bsdf)),
             surface: Box::new(surface),
             beta: path.beta,
         });

@@ -76,6 +76,8 @@ pub(super) struct Connections {
     pub(super) is_sampled: u32,
     /// Lanes whose contribution is not black.
     pub(super) is_lit: u32,
+    /// Lanes whose light comes from the outside of the surface.
+    pub(super) is_outside: u32,
     /// The origins of the shadow rays, and their directions and ends.
     pub(super) origin: Columns<3>,
     pub(super) way: Columns<3>,
@@ -192,6 +194,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
             f = Spectrum::select(surfaces.agrees(wi), f, Spectrum::splat(zero));
         }
         let f = surfaces.guarded(f, wi) * Float::abs(local.z);
+        connections.is_outside = width.bits(zero.narrow_mask(exits.are_outside(wi)));
         connections.weigh(width, task.light_sampling, lights, beta, (f, bsdf_pdf), exits.toward(wi));
     }
 }

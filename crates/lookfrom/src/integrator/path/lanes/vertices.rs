@@ -28,11 +28,12 @@ pub(super) struct VertexColumns {
     guards: Option<GuardColumns>,
 }
 
-/// Guards of bent normals, by component; of lanes that need none such that they let everything through.
-#[derive(Clone, Copy)]
+/// Guards of bent normals, by component, in the lanes of a mask.
+#[derive(Clone, Copy, Default)]
 struct GuardColumns {
     ns: Columns<3>,
     alpha_squared: [f32; LANES],
+    lanes: u32,
 }
 
 impl VertexColumns {
@@ -50,6 +51,7 @@ impl VertexColumns {
         self.ng = store_f64(ng);
         self.frame = [store(s), store(t), store(n)];
         self.wo = store(wo);
+        self.guards = None;
     }
 
     /// Replaces the smooth surfaces that meshes stand for, which are there in the lanes of a mask.
@@ -72,14 +74,31 @@ impl VertexColumns {
             set_row(&mut columns.ng, lane, surface.ng.to_array());
             set_row(&mut columns.wo, lane, surface.wo.to_array());
             columns.set_frame(lane, vertex.shading.axes());
+            columns.set_guard(lane, vertex.shading.guard());
             if let Some(lift) = surface.lift() {
                 columns.lifted |= 1 << lane;
                 set_row(&mut columns.lift[0], lane, lift.way.into());
                 set_row(&mut columns.lift[1], lane, lift.ns.into());
             }
         }
-        columns.guards = GuardColumns::of_vertices(vertices);
         columns
+    }
+
+    /// Gives a lane a guard, if there is one.
+    #[inline]
+    pub(super) fn set_guard(&mut self, lane: usize, guard: Option<&Guard>) {
+        if let Some(guard) = guard {
+            let guards = self.guards.get_or_insert_default();
+            guards.lanes |= 1 << lane;
+            set_row(&mut guards.ns, lane, guard.ns.into());
+            guards.alpha_squared[lane] = guard.alpha_squared;
+        }
+    }
+
+    /// The guard of a lane.
+    pub(super) fn guard(&self, lane: usize) -> Option<Guard> {
+        let guards = self.guards.as_ref().filter(|guards| guards.lanes & 1 << lane != 0)?;
+        Some(Guard { ns: row(&guards.ns, lane).into(), alpha_squared: guards.alpha_squared[lane] })
     }
 
     /// Replaces the axes of a lane's frame.
@@ -175,27 +194,12 @@ impl VertexColumns {
             guard: self.guards.as_ref().map(
                 #[inline(always)]
                 |guards| Guard {
-                    ns: load(width, &guards.ns),
+                    // By the shading normal itself, a guard without shadows lets everything through.
+                    ns: Vector::select(width.mask(guards.lanes), load(width, &guards.ns), n),
                     alpha_squared: width.load_f32(&guards.alpha_squared),
                 },
             ),
         }
-    }
-}
-
-impl GuardColumns {
-    /// The guards of vertices, if any of them has one.
-    fn of_vertices(vertices: &[&Vertex]) -> Option<Self> {
-        if vertices.iter().all(|vertex| vertex.shading.guard().is_none()) {
-            return None;
-        }
-        let mut columns = Self { ns: Default::default(), alpha_squared: [0.0; LANES] };
-        for (lane, Vertex { shading, .. }) in vertices.iter().enumerate().take(LANES) {
-            let guard = shading.guard();
-            set_row(&mut columns.ns, lane, guard.map_or(shading.n().into(), |guard| guard.ns.into()));
-            columns.alpha_squared[lane] = guard.map_or(0.0, |guard| guard.alpha_squared);
-        }
-        Some(columns)
     }
 }
 

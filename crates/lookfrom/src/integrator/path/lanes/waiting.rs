@@ -22,6 +22,8 @@ pub(in crate::integrator::path) struct Waiting {
     interfaces: Interfaces,
     /// Paths at interfaces of media.
     at_interfaces: Vec<(Path, Hit)>,
+    /// Paths that have come through a medium to shapes whose BSDFs have a class, and what they have hit.
+    arrived: (Vec<Path>, Vec<Hit>),
     /// Media by their numbers, and the paths on their ways in them.
     in_flight: Vec<(u32, Vec<u32>)>,
     memory: Memory,
@@ -116,6 +118,57 @@ impl Waiting {
         true
     }
 
+    /// Takes a path that has come through a medium to a shape whose BSDFs have a class.
+    #[inline]
+    pub(in crate::integrator::path) fn takes_arrived(
+        &mut self,
+        tracer: &PathTracer,
+        world: &World,
+        path: &Path,
+        hit: &Hit,
+    ) -> bool {
+        let takes = self.in_lanes && tracer.hit_class(world, path, hit).is_some();
+        if takes {
+            self.arrived.0.push(*path);
+            self.arrived.1.push(*hit);
+        }
+        takes
+    }
+
+    /// Scatters the paths that have come through media.
+    fn scatter_arrived<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let (paths, hits) = &std::mem::take(&mut self.arrived);
+        let batch = HitBatch { paths, hits, ..*batch };
+        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
+            if let Some(class) = tracer.hit_class(batch.world, path, hit) {
+                self.push_hit(tracer, &batch, (class, index), output);
+            }
+        }
+        self.flush_hits(tracer, &batch, output);
+    }
+
+    /// Scatters the hits that are left.
+    fn flush_hits<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let Self { bins, memory, .. } = self;
+        for &class in BsdfClass::ALL {
+            for first in [0, ON_SPHERES] {
+                bins.flush(1 << (first + class as usize), |eight| {
+                    tracer.scatter_hits(class, batch, eight, memory, output);
+                });
+            }
+        }
+    }
+
     /// Lets paths go on behind interfaces.
     fn cross_interfaces<P: Probe>(&mut self, world: &World, output: &mut StepOutput<'_, P>) {
         let at = std::mem::take(&mut self.at_interfaces);
@@ -164,14 +217,12 @@ impl Waiting {
         self.cross_interfaces(batch.world, output);
         self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
         tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
+        self.flush_hits(tracer, batch, output);
+        if !self.arrived.0.is_empty() {
+            self.scatter_arrived(tracer, batch, output);
+        }
+        let (world, scattered) = (batch.world, &mut self.memory.scattered);
         for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
-            let memory = &mut self.memory;
-            for first in [0, ON_SPHERES] {
-                self.bins.flush(1 << (first + class as usize), |eight| {
-                    tracer.scatter_hits(class, batch, eight, memory, output);
-                });
-            }
-            let (world, scattered) = (batch.world, &mut memory.scattered);
             tracer.scatter_vertices(class, world, vertices, scattered, output);
         }
     }

@@ -1,6 +1,5 @@
 //! The guard of bent normals: light from directions on which the two normals disagree, and shadows of bumps on one another.
 
-use glam::Vec3;
 use lookfrom_scene::material::BumpGuard;
 use lookfrom_simd::{Float, Real};
 
@@ -13,11 +12,6 @@ pub(crate) struct Guard<R = f32> {
     pub(crate) ns: Vector<R>,
     /// The square of the roughness α of the bumps that the bent normal stands for; 0 where they cast no shadows.
     pub(crate) alpha_squared: R,
-}
-
-/// The bent normal `n`, or, where it is seen from another side than the normal `ns` without the map, `n` turned by half a turn about that.
-pub(super) fn turned(n: Vec3, ns: Vec3, wo: Vec3) -> Vec3 {
-    if wo.dot(ns) * wo.dot(n) <= 0.0 { ns * (2.0 * n.dot(ns)) - n } else { n }
 }
 
 impl Guard<f32> {
@@ -47,7 +41,10 @@ impl<R: Real> Guard<R> {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+    use crate::shading::material::Bending;
 
     /// Values of Mitsuba 3.9's `normalmap` over a white diffuse BSDF, times the cosine: `flip_invalid_normals` and
     /// `use_shadowing_function`, the first alone, the second alone.
@@ -65,7 +62,9 @@ mod tests {
             for ((turns, shadows), expected) in
                 [(true, true), (true, false), (false, true)].into_iter().zip(expected)
             {
-                let n = if turns { turned(n, Vec3::Z, wo) } else { n };
+                let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z].map(Vector::from);
+                let bending = Bending { ng_facing: z, facing: 1.0, ns: z, dpdu: x, dpdv: y, wo: wo.into() };
+                let n: Vec3 = bending.limited(n.into(), false, turns).into();
                 let guard = Guard::of(BumpGuard { turns, shadows }, Vec3::Z.into(), n.into());
                 // Diffuse surfaces are black from behind there.
                 let f = if wo.dot(n) > 0.0 { wi.dot(n).max(0.0) / std::f32::consts::PI } else { 0.0 };

@@ -1,10 +1,10 @@
 //! Tests of shading normals: reflections stay outside, valid normals stay as they are.
 
-use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, prelude::*};
+use lookfrom_simd::{Kernel, Level, Simd, dispatch, f32x8, mask32x8, prelude::*};
 
 use super::*;
 use crate::core::hash;
-use crate::core::lanes::{LANES, by_lane, gather, scatter};
+use crate::core::lanes::{LANES, bitmask, by_lane, gather, scatter};
 use crate::core::math;
 
 fn surface(wo: Vec3, ng: Vec3, ns: Vec3) -> ShadingGeometry {
@@ -49,10 +49,11 @@ fn mirrored_directions_stay_outside() {
     assert!(kept > 2000, "{kept}");
 }
 
-/// Bends eight frames, by the normals of normal maps.
+/// Bends eight frames, by the normals of normal maps and by limits.
 struct Eight<'a> {
     surfaces: &'a [ShadingGeometry; LANES],
-    locals: &'a [[f32; 3]; LANES],
+    locals: &'a [LocalNormal; LANES],
+    limits: &'a [NormalLimit; LANES],
 }
 
 impl Kernel for Eight<'_> {
@@ -69,7 +70,14 @@ impl Kernel for Eight<'_> {
             dpdv: gather(simd, &by_lane!(lane => alone[lane].dpdv.into())),
             wo: gather(simd, &by_lane!(lane => alone[lane].wo.into())),
         };
-        let n = bending.valid(bending.mapped(gather(simd, self.locals)));
+        let mask = |of: fn(&Self, usize) -> bool| {
+            mask32x8::from_bitmask(simd, bitmask(&by_lane!(lane => of(&self, lane))).into())
+        };
+        let follow_dpdv = mask(|eight, lane| eight.locals[lane].follows_dpdv);
+        let are_valid = mask(|eight, lane| eight.limits[lane].keeps_valid());
+        let turn = mask(|eight, lane| eight.limits[lane].turns());
+        let n = bending.mapped(gather(simd, &by_lane!(lane => self.locals[lane].n)), follow_dpdv);
+        let n = bending.limited(n, are_valid, turn);
         let (s, t) = frame_about(n, bending.dpdu);
         [scatter(s), scatter(t), scatter(n)]
     }
@@ -101,18 +109,34 @@ fn eight_frames_at_once_are_eight_one_by_one() {
             let dpdv = size(lane, 11) * direction(lane, 12);
             ShadingGeometry { ng, ns, dpdu, dpdv, derivatives: [dpdu, dpdv], wo, front: ng.dot(wo) > 0.0 }
         });
-        let locals: [[f32; 3]; LANES] = std::array::from_fn(|lane| match number(lane, 14) {
-            u if u < 0.1 => [0.0; 3],
-            u if u < 0.3 => [0.0, 0.0, 1.0],
-            _ => [15, 16, 17].map(|k| 2.0 * number(lane, k) - 1.0),
+        let locals: [LocalNormal; LANES] = std::array::from_fn(|lane| {
+            let n = match number(lane, 14) {
+                u if u < 0.1 => [0.0; 3],
+                u if u < 0.3 => [0.0, 0.0, 1.0],
+                _ => [15, 16, 17].map(|k| 2.0 * number(lane, k) - 1.0),
+            };
+            LocalNormal { n, follows_dpdv: number(lane, 18) < 0.5 }
+        });
+        // Eight of one kind, and of several.
+        let limits: [NormalLimit; LANES] = std::array::from_fn(|lane| {
+            let lane = if round % 2 == 0 { 0 } else { lane };
+            match number(lane, 19) {
+                u if u < 0.25 => NormalLimit::Outward,
+                u if u < 0.75 => NormalLimit::Guarded(BumpGuard { turns: u < 0.5, shadows: true }),
+                _ => NormalLimit::Valid,
+            }
         });
         for &level in &levels {
-            let [s, t, n] = dispatch(level, Eight { surfaces: &surfaces, locals: &locals });
+            let [s, t, n] = dispatch(level, Eight { surfaces: &surfaces, locals: &locals, limits: &limits });
             for lane in 0..LANES {
                 let surface = &surfaces[lane];
-                let mapped = Bending::from(surface).mapped(locals[lane].into());
-                let alone = around(valid(mapped.into(), surface), surface.dpdu);
-                assert_eq!([s[lane], t[lane], n[lane]], alone.axes(), "{surface:?} {:?}", locals[lane]);
+                let (local, limit) = (locals[lane], limits[lane]);
+                let bending = Bending::from(surface);
+                let mapped = bending.mapped(local.n.into(), local.follows_dpdv);
+                let limited = bending.limited(mapped, limit.keeps_valid(), limit.turns());
+                let alone = around(limited.into(), surface.dpdu);
+                let together = [s[lane], t[lane], n[lane]];
+                assert_eq!(together, alone.axes(), "{surface:?} {local:?} {limit:?}");
             }
         }
     }
