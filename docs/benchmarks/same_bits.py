@@ -4,11 +4,12 @@ on with, and after `lookfrom convert`.
 
 Needs: pip package numpy, and mitsuba for its scenes; a release build of lookfrom.
 
-    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba] [--files FILE …] [--seeds 0 40] [--options] [--folder DIR]
+    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba pbrt] [--files FILE …] [--seeds 0 40] [--options]
+                 [--folder DIR]
 
-Files are those of gltf_random.py (of every second seed the animations are blurred, of every fifth the integrator is Whitted's)
-and of mitsuba_random.py (of every second seed in spectra); --files adds others. With --options each is rendered with random
-options: integrators, layers, samplers, lights, filters. A level that the machine does not have is the next lower one.
+Files are those of gltf_random.py (of every second seed the animations are blurred, of every fifth the integrator is Whitted's),
+of mitsuba_random.py and of pbrt_random.py (of every second seed in spectra); --files adds others. With --options each is rendered
+with random options: integrators, layers, samplers, lights, filters. A level that the machine does not have is the next lower one.
 """
 
 import argparse
@@ -79,6 +80,20 @@ def options(seed):
     return words
 
 
+def pbrt(folder, seeds):
+    """Scenes, and options of `convert` and `render` for them."""
+    from pbrt_random import Grammar, write_inputs
+
+    write_inputs(folder)
+    for seed in seeds:
+        path = folder / f"{seed}.pbrt"
+        path.write_text(Grammar(seed).scene())
+        yield path, [], ["--color", ["spectral", "rgb"][seed % 2]]
+
+
+KINDS = {"gltf": gltf, "mitsuba": mitsuba, "pbrt": pbrt}
+
+
 class Lookfrom:
     def __init__(self, binary, folder, are_random):
         self.binary, self.folder, self.are_random = binary, folder, are_random
@@ -137,7 +152,7 @@ class Lookfrom:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--lookfrom", required=True, type=Path, help="the binary")
-    parser.add_argument("--kind", nargs="*", choices=["gltf", "mitsuba"], default=["gltf"])
+    parser.add_argument("--kind", nargs="*", choices=list(KINDS), default=["gltf"])
     parser.add_argument("--files", nargs="*", type=Path, default=[], help="other scenes and models, rendered 64 pixels wide")
     parser.add_argument("--seeds", type=int, nargs=2, default=[0, 40], metavar=("FIRST", "END"))
     parser.add_argument("--options", action="store_true", help="render with random options")
@@ -147,7 +162,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     lookfrom, count, differ = Lookfrom(args.lookfrom.resolve(), folder, args.options), 0, 0
     files = [(path, [], ["--width", 64]) for path in args.files]
-    for make in [{"gltf": gltf, "mitsuba": mitsuba}[kind] for kind in args.kind]:
+    for make in [KINDS[kind] for kind in args.kind]:
         files += make(folder, range(*args.seeds))
     for number, (path, of_file, of_picture) in enumerate(files):
         if args.options:
