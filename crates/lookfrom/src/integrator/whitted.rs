@@ -162,7 +162,7 @@ fn shade_bare_hits<P: Probe>(
     }
     let departure = |lane: usize| {
         let front = shaded.front & 1 << lane != 0;
-        let boundary = Boundary::Bare { material: eight.materials[lane], front };
+        let boundary = Boundary::Bare { material: eight.materials[lane], interface: None, front };
         let origin_primitive = OriginPrimitive::of(eight.bare.hits[lane]);
         Departure { path: eight.paths[lane], origin_primitive, boundary }
     };

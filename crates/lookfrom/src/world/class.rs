@@ -13,7 +13,7 @@ use crate::shading::material::MaterialKind;
 pub(crate) enum Class {
     /// A mesh.
     Mesh {
-        /// The class of its material's BSDFs, where it has no emission, alpha or media of its own.
+        /// The class of its material's BSDFs, where it has no emission or alpha.
         bsdf: Option<BsdfClass>,
         /// Its material, where it is bare.
         bare: Option<u32>,
@@ -72,7 +72,8 @@ impl World {
             is_alone && matches!(self.materials[binding.material as usize].kind, MaterialKind::Interface)
         };
         let bsdf = |binding: &MaterialBinding| {
-            let is_whole = binding.is_only_material() && !(self.has_open_fronts && binding.single_sided);
+            let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_only_material();
+            let is_whole = is_alone && !(self.has_open_fronts && binding.single_sided);
             let material = &self.materials[binding.material as usize];
             material.class().filter(|_| is_whole)
         };

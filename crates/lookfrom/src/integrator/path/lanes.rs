@@ -204,11 +204,11 @@ impl PathTracer {
         let Some((light, ray, contribution)) = connection else { return };
         let (connections, lights) = (&scattered.connections, &scattered.lights);
         // Through the surface of a body it travels in what is behind.
-        let wi = Vec3::from_array(row(&lights.wi, lane));
-        let crosses = departure.crosses(connections.is_outside & 1 << lane != 0);
+        let is_outside = connections.is_outside & 1 << lane != 0;
+        let crosses = departure.crosses(is_outside);
         let share = || Spectrum(row(&connections.diffuse, lane));
         let last_scattering = output.last_scattering(departure.path, crosses, share);
-        let interior = departure.interior(world, wi, crosses);
+        let interior = departure.interior(world, is_outside, crosses);
         let shadow = departure.shadow(ray, (light, contribution), interior, last_scattering);
         let panes = self.panes_before_light(departure.path, lights, lane);
         output.queues.shadows.push(Shadow { panes, ..shadow });
@@ -296,7 +296,7 @@ impl PathTracer {
             slot: path.slot,
             depth,
             address: path.address + 1,
-            interior: departure.interior(world, wi, is_transmission),
+            interior: departure.interior(world, is(scattered.is_outside), is_transmission),
             origin_primitive,
             blurred: path.blurred || !is_specular,
             state: match is_straight && departure.is_at_pane(world) {

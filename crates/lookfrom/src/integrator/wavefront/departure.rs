@@ -18,15 +18,17 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
     pub(in crate::integrator) boundary: Boundary<'a>,
 }
 
-/// The media on the other side of a surface.
+/// The media on the two sides of a surface.
 #[derive(Clone, Copy)]
 pub(in crate::integrator) enum Boundary<'a> {
-    /// The media that the surface separates.
+    /// Those of a surface.
     Surface(&'a SurfaceInteraction),
-    /// A surface that declares no media: the body of its material, if it is one, or out of it where the path has met it from inside.
+    /// Those of a surface that is known by its material alone.
     Bare {
         /// Index into the world's materials.
         material: u32,
+        /// Index of the media that it declares, if it does.
+        interface: Option<u32>,
         /// Whether the path has met the outside.
         front: bool,
     },
@@ -59,27 +61,47 @@ impl<S> Departure<'_, S> {
     /// The media around a ray that leaves to the side from which the path has come.
     #[inline(always)]
     pub(in crate::integrator) fn interior_beside(&self, world: &World) -> InteriorStack {
-        match self.boundary {
-            Boundary::Surface(surface) => self.interior(world, surface.wo, false),
-            Boundary::Bare { .. } | Boundary::None => self.path.interior,
-        }
+        self.interior_on(world, |front| front, false)
     }
 
-    /// The media around a ray that leaves in a direction, through the surface or not.
+    /// The media around a ray that passes through the surface in a direction.
     #[inline(always)]
-    pub(in crate::integrator) fn interior(&self, world: &World, wi: Vec3, passes: bool) -> InteriorStack {
-        let interior = self.path.interior;
-        match self.boundary {
-            Boundary::Surface(surface) => interior.leaving(&world.materials, surface, wi, passes),
-            Boundary::Bare { material, front } if passes && world.materials[material as usize].is_body() => {
-                if front {
-                    interior.entered(material)
-                } else {
-                    interior.left(material)
-                }
+    pub(in crate::integrator) fn interior_behind(&self, world: &World, wi: Vec3) -> InteriorStack {
+        let is_outside = |front: bool| match self.boundary {
+            Boundary::Surface(surface) => surface.is_outside(wi),
+            Boundary::Bare { .. } | Boundary::None => !front,
+        };
+        self.interior_on(world, is_outside, true)
+    }
+
+    /// The media around a ray that leaves to the outside of the surface, or not, and has passed through it, or not.
+    #[inline(always)]
+    pub(in crate::integrator) fn interior(
+        &self,
+        world: &World,
+        is_outside: bool,
+        passes: bool,
+    ) -> InteriorStack {
+        self.interior_on(world, |_| is_outside, passes)
+    }
+
+    /// As [`Self::interior`]; `is_outside` is told whether the path has met the outside.
+    #[inline(always)]
+    fn interior_on(
+        &self,
+        world: &World,
+        is_outside: impl FnOnce(bool) -> bool,
+        passes: bool,
+    ) -> InteriorStack {
+        let (material, interface, front) = match self.boundary {
+            Boundary::Surface(surface) => (surface.material, surface.medium_interface, surface.front),
+            Boundary::Bare { material, interface, front } => {
+                (material, interface.map(|index| world.medium_interfaces[index as usize]), front)
             }
-            Boundary::Bare { .. } | Boundary::None => interior,
-        }
+            Boundary::None => return self.path.interior,
+        };
+        let sides = (material, interface);
+        self.path.interior.beside(&world.materials, sides, || is_outside(front), (passes, front))
     }
 
     /// The shadow ray to a light, in the media around it, which passes no panes.

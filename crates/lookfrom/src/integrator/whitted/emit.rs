@@ -109,7 +109,7 @@ fn grow<P: Probe>(
     }
     let crosses = branch == Branch::Refracted;
     let interior = match branch {
-        Branch::Refracted => departure.interior(world, ray.direction.into(), true),
+        Branch::Refracted => departure.interior_behind(world, ray.direction.into()),
         Branch::Mirrored => departure.interior_beside(world),
     };
     let light_path = output.scattered(path, [true, false, crosses]);

@@ -128,7 +128,8 @@ impl PathTracer {
         let departure = |lane: usize| {
             let ClassHit { path, hit, binding, .. } = hits[lane];
             let origin_primitive = OriginPrimitive::of(hit);
-            let boundary = Boundary::Bare { material: binding.material, front: front & 1 << lane != 0 };
+            let MaterialBinding { material, medium_interface: interface, .. } = *binding;
+            let boundary = Boundary::Bare { material, interface, front: front & 1 << lane != 0 };
             (Departure { path, origin_primitive, boundary }, false)
         };
         self.go_on(world, departure, active, scattered, output);

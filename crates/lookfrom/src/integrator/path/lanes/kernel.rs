@@ -31,6 +31,8 @@ pub(super) struct Scattered {
     pub(super) is_specular: u32,
     pub(super) is_diffuse: u32,
     pub(super) is_transmission: u32,
+    /// Lanes whose direction is to the outside of the surface.
+    pub(super) is_outside: u32,
     /// That direction, in render space, of unit length.
     pub(super) wi: Columns<3>,
     pub(super) f: Columns<4>,
@@ -155,6 +157,7 @@ impl<W: Width, B: LaneBsdf<W::Real>> Step<'_, W, B> {
         scattered.is_specular = width.bits(sample.is_specular);
         scattered.is_diffuse = width.bits(sample.is_diffuse);
         scattered.is_transmission = width.bits(sample.is_transmission);
+        scattered.is_outside = width.bits(zero.narrow_mask(exits.are_outside(wi)));
         scattered.wi = store(wi);
         scattered.f = store_spectrum(sample.f);
         scattered.pdf = sample.pdf.column();
