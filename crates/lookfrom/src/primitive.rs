@@ -6,6 +6,7 @@
 //! transform, flipped by `reverse_orientation` and again by a transform that reflects, so that a reflection keeps the
 //! outside outside.
 
+mod capsule;
 mod curve;
 mod disk;
 mod mesh;

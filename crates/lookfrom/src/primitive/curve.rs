@@ -7,11 +7,11 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray};
 use lookfrom_scene::shape::{Profile, Strand};
 
-use super::{MaterialBinding, SurfacePoint};
+use super::{MaterialBinding, SurfacePoint, capsule};
 
 /// Number of pieces into which each strand is split for the BVH, for tighter boxes.
 pub const SEGMENTS: u32 = 8;
@@ -50,7 +50,7 @@ impl Curves {
     ) -> Option<Self> {
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
-        let stretch = stretch(&render_from_object);
+        let stretch = capsule::stretch(&render_from_object);
         Some(Self { strands, render_from_object, object_from_render, stretch, reverse, binding })
     }
 
@@ -168,11 +168,7 @@ impl Procedural for Curves {
     fn capsule(&self, primitive: u32) -> Option<Capsule> {
         let (strand, range) = self.segment(primitive);
         let ends = self.ends(primitive as usize);
-        let radius = self.stretch * distance_from_chord(strand, range);
-        // More than the rounding of the ends and of the ray's way to object space.
-        let greatest = ends[0].abs().max(ends[1].abs()).max_element();
-        let radius = (radius + greatest * f64::from(f32::EPSILON)) as f32;
-        Some(Capsule { ends: ends.map(|end| end.as_vec3().to_array()), radius: radius.next_up() })
+        Some(capsule::around(ends, self.stretch * distance_from_chord(strand, range)))
     }
 
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
@@ -314,21 +310,6 @@ fn distance_from_chord(strand: &Strand, [from, to]: [f64; 2]) -> f64 {
     0.5 * width_at(strand, from).max(width_at(strand, to)) + off
 }
 
-/// An upper bound of the factor by which a map lengthens vectors, at most a hundredth too large: the largest eigenvalue λ of A = MᵀM is at
-/// most the trace of A, and λⁿ is that of Aⁿ.
-fn stretch(map: &Affine) -> f64 {
-    let matrix = DMat3::from_cols_array_2d(&map.matrix);
-    let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
-    let (mut power, mut bound, mut exponent) = (matrix * matrix.transpose(), 1.0, 0.5);
-    for _ in 0..7 {
-        let sum = trace(&power);
-        bound *= libm::pow(sum, exponent);
-        let scaled = power * (1.0 / sum);
-        (power, exponent) = (scaled * scaled, 0.5 * exponent);
-    }
-    bound
-}
-
 /// The number of halvings after which a piece is nearly straight.
 fn splits(piece: &Controls, width: f64) -> u32 {
     let bend = |k: usize| (piece[k] - 2.0 * piece[k + 1] + piece[k + 2]).abs().max_element();
@@ -428,23 +409,5 @@ mod tests {
             );
         }
         assert!(hits > 8_000, "{hits} hits");
-    }
-
-    #[test]
-    fn the_stretch_of_a_map_is_at_most_a_hundredth_too_large() {
-        for seed in 0..2000 {
-            let scale = f64::powi(2.0, (hash::mix(seed) % 41) as i32 - 20);
-            let matrix = [1, 2, 3].map(|row| (scale * vector(seed * 4 + row).as_dvec3()).to_array());
-            let map = Affine { matrix, ..Affine::IDENTITY };
-            let lengthened = |v: DVec3| DVec3::from_array(map.vector(v.to_array())).length() / v.length();
-            // Some steps of the power iteration, for the true one.
-            let transposed = DMat3::from_cols_array_2d(&matrix);
-            let mut v = DVec3::new(0.6, 0.5, 0.4);
-            for _ in 0..2000 {
-                v = (transposed * DVec3::from_array(map.vector(v.to_array()))).normalize();
-            }
-            let (most, bound) = (lengthened(v), stretch(&map));
-            assert!((1.0 + 1e-12) * bound >= most && bound <= 1.01 * most, "{map:?}: {most} {bound}");
-        }
     }
 }

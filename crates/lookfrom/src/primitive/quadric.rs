@@ -13,12 +13,12 @@ mod frame;
 use std::f64::consts::PI;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Aabb, Affine, Point, Procedural, ProceduralHit, Ray};
+use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray};
 use lookfrom_simd::Float;
 
 pub(crate) use frame::{QuadricFrames, gather_frames};
 
-use super::{MaterialBinding, SurfacePoint};
+use super::{MaterialBinding, SurfacePoint, capsule};
 use crate::core::math;
 use crate::core::points::Points;
 use crate::core::vector::Vector;
@@ -26,6 +26,9 @@ use crate::core::warp;
 
 /// Unit of rounding of f64, 2⁻⁵³.
 const UNIT: f64 = 0.5 * f64::EPSILON;
+
+/// A cylinder is thin where the area of its box is more than this many times that of the capsule around it.
+const THIN: f64 = 2.0;
 
 /// Number of cells along u and v in the numerical integration of the area of a non-uniformly scaled quadric.
 const CELLS: u32 = 64;
@@ -75,7 +78,7 @@ pub struct Quadric {
     frame: QuadricFrames<f32>,
 }
 
-/// Quadrics of many shapes.
+/// Quadrics of many shapes: [thin](Quadric::capsule), or others.
 #[derive(Clone, Debug, Default)]
 pub struct Quadrics {
     /// The quadrics.
@@ -239,6 +242,22 @@ impl Quadric {
         [min - error, max + error]
     }
 
+    /// The capsule around a long and thin cylinder that leaves most of its box empty, in render space.
+    pub(crate) fn capsule(&self) -> Option<Capsule> {
+        let QuadricKind::Cylinder { radius, z } = self.kind else { return None };
+        let mut across = self.render_from_object;
+        across.matrix.iter_mut().for_each(|row| row[2] = 0.0);
+        let radius = radius * capsule::stretch(&across);
+        let ends = z.map(|z| self.point_in_render(DVec3::new(0.0, 0.0, z)));
+
+        // Rays meet convex bodies as often as these have area.
+        let [min, max] = self.bounds();
+        let size = max - min;
+        let area_of_box = 2.0 * size.dot(DVec3::new(size.y, size.z, size.x));
+        let area = 2.0 * PI * radius * (ends[0].distance(ends[1]) + 2.0 * radius);
+        (area_of_box > THIN * area).then(|| capsule::around(ends, radius))
+    }
+
     /// The point of the surface nearest to one that is on it up to errors, in object space.
     fn refined(&self, p: DVec3) -> DVec3 {
         match self.kind {
@@ -362,6 +381,10 @@ impl Procedural for Quadrics {
         }
     }
 
+    fn capsule(&self, primitive: u32) -> Option<Capsule> {
+        self.quadrics[primitive as usize].capsule()
+    }
+
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
         let quadric = &self.quadrics[primitive as usize];
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
@@ -429,3 +452,6 @@ fn roots(f: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     let [t1, t2] = if q == 0.0 { [0.0; 2] } else { [q / a, c / q] };
     Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
+
+#[cfg(test)]
+mod tests;

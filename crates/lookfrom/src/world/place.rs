@@ -35,6 +35,8 @@ pub(super) struct Group {
     own: Vec<Primitives>,
     spheres: Spheres,
     disks: Disks,
+    /// Those with capsules.
+    thin_quadrics: Quadrics,
     quadrics: Quadrics,
 }
 
@@ -48,8 +50,10 @@ impl Group {
         if !self.disks.disks.is_empty() {
             primitives.push(Primitives::Disks(self.disks));
         }
-        if !self.quadrics.quadrics.is_empty() {
-            primitives.push(Primitives::Quadrics(Arc::new(self.quadrics)));
+        for quadrics in [self.thin_quadrics, self.quadrics] {
+            if !quadrics.quadrics.is_empty() {
+                primitives.push(Primitives::Quadrics(Arc::new(quadrics)));
+            }
         }
         primitives
     }
@@ -297,8 +301,12 @@ impl Compiler<'_> {
         let light = self.area_light(placing, |two_sided| {
             QuadricLight::new(quadric, two_sided).map(|light| LightShape::Quadric(Box::new(light)))
         });
-        group.quadrics.quadrics.push(quadric);
-        group.quadrics.bindings.push(MaterialBinding { light, ..binding });
+        let quadrics = match quadric.capsule() {
+            Some(_) => &mut group.thin_quadrics,
+            None => &mut group.quadrics,
+        };
+        quadrics.quadrics.push(quadric);
+        quadrics.bindings.push(MaterialBinding { light, ..binding });
         Ok(())
     }
 

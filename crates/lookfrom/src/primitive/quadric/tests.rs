@@ -1,0 +1,59 @@
+//! Tests of the capsules around quadrics.
+
+use super::*;
+use crate::core::hash;
+
+/// A number in −1 … 1.
+fn number(seed: u64) -> f64 {
+    (hash::mix(seed) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+fn vector(seed: u64) -> DVec3 {
+    [0, 1, 2].map(|k| number(3 * seed + k)).into()
+}
+
+/// 2 to a random power of at most ± `most`.
+fn power(seed: u64, most: f64) -> f64 {
+    libm::exp2(most * number(seed))
+}
+
+/// Hits are in the capsules: cylinders and rays of random sizes, rays aimed at them, maps that turn, shear and mirror.
+#[test]
+fn hits_are_in_capsules() {
+    let (mut hits, mut thin) = (0, 0);
+    for index in 0..60_000_u64 {
+        let seed = index * 40;
+        let size = power(seed + 1, 20.0);
+        let kind = QuadricKind::Cylinder {
+            radius: size * power(seed + 2, 6.0),
+            z: [size * number(seed + 3), size * number(seed + 4)],
+        };
+        let [x, y, z] = [5, 6, 7].map(|axis| vector(seed + axis));
+        let place = size * power(seed + 8, 10.0) * vector(seed + 9);
+        let matrix = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), place.extend(1.0));
+        let Some(quadric) = Quadric::new(kind, 360.0, &matrix, false) else { continue };
+        let Some(Capsule { ends, radius }) = quadric.capsule() else { continue };
+        thin += 1;
+
+        let target =
+            quadric.point_in_render(quadric.sample_in_object([0.5, 0.5 * number(seed + 10) as f32 + 0.5]));
+        let direction = power(seed + 11, 10.0) * vector(seed + 12);
+        let [origin, direction] = [target - direction, direction].map(|v| v.as_vec3().to_array());
+        let ray = Ray::new(origin, direction);
+        let quadrics = Quadrics { quadrics: vec![quadric], bindings: vec![MaterialBinding::NONE] };
+        let Some(hit) = quadrics.intersect(0, &ray) else { continue };
+        hits += 1;
+
+        // The hit's distance from the segment, but for the rounding of t.
+        let [a, b, o, d] =
+            [ends[0], ends[1], ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let point = o + f64::from(hit.t) * d;
+        let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+        let distance = point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * hit.t) * d.length();
+        assert!(
+            distance <= f64::from(radius),
+            "{index}: {quadric:?} {ray:?} {hit:?}: {distance} of {radius}"
+        );
+    }
+    assert!(thin > 10_000 && hits > 5_000, "{thin} thin, {hits} hits");
+}
