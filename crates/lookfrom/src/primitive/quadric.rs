@@ -78,7 +78,7 @@ pub struct Quadric {
     frame: QuadricFrames<f32>,
 }
 
-/// Quadrics of many shapes: [thin](Quadric::capsule), or others.
+/// Quadrics of many shapes: long and thin ones, or others.
 #[derive(Clone, Debug, Default)]
 pub struct Quadrics {
     /// The quadrics.

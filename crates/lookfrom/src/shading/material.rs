@@ -97,7 +97,7 @@ impl Material {
         bump::frame((&self.bump_mapping, self.normal_limit()), relief, surface, point)
     }
 
-    /// What normals that its map bends too far become.
+    /// The limit of the normals that its map bends.
     #[inline]
     pub(crate) fn normal_limit(&self) -> NormalLimit {
         match (self.bump_guard, self.reflects_outside) {

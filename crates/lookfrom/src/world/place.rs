@@ -35,7 +35,7 @@ pub(super) struct Group {
     own: Vec<Primitives>,
     spheres: Spheres,
     disks: Disks,
-    /// Those with capsules.
+    /// Quadrics with capsules.
     thin_quadrics: Quadrics,
     quadrics: Quadrics,
 }

@@ -21,9 +21,9 @@ pub(in crate::integrator) struct Departure<'a, S = ()> {
 /// The media on the two sides of a surface.
 #[derive(Clone, Copy)]
 pub(in crate::integrator) enum Boundary<'a> {
-    /// Those of a surface.
+    /// The media of a surface.
     Surface(&'a SurfaceInteraction),
-    /// Those of a surface that is known by its material alone.
+    /// The media of a surface that is known by its material alone.
     Bare {
         /// Index into the world's materials.
         material: u32,
@@ -37,15 +37,19 @@ pub(in crate::integrator) enum Boundary<'a> {
 }
 
 impl<S> Departure<'_, S> {
+    /// Whether the path has met the outside of the surface.
+    #[inline(always)]
+    fn front(&self) -> bool {
+        match self.boundary {
+            Boundary::Surface(&SurfaceInteraction { front, .. }) | Boundary::Bare { front, .. } => front,
+            Boundary::None => true,
+        }
+    }
+
     /// Whether a ray that leaves to the outside of the surface, or not, passes through it.
     #[inline]
     pub(in crate::integrator) fn crosses(&self, is_outside: bool) -> bool {
-        match self.boundary {
-            Boundary::Surface(&SurfaceInteraction { front, .. }) | Boundary::Bare { front, .. } => {
-                is_outside != front
-            }
-            Boundary::None => false,
-        }
+        !matches!(self.boundary, Boundary::None) && is_outside != self.front()
     }
 
     /// Whether the vertex is on a pane.
@@ -61,20 +65,20 @@ impl<S> Departure<'_, S> {
     /// The media around a ray that leaves to the side from which the path has come.
     #[inline(always)]
     pub(in crate::integrator) fn interior_beside(&self, world: &World) -> InteriorStack {
-        self.interior_on(world, |front| front, false)
+        self.interior(world, self.front(), false)
     }
 
     /// The media around a ray that passes through the surface in a direction.
     #[inline(always)]
     pub(in crate::integrator) fn interior_behind(&self, world: &World, wi: Vec3) -> InteriorStack {
-        let is_outside = |front: bool| match self.boundary {
+        let is_outside = match self.boundary {
             Boundary::Surface(surface) => surface.is_outside(wi),
-            Boundary::Bare { .. } | Boundary::None => !front,
+            Boundary::Bare { .. } | Boundary::None => !self.front(),
         };
-        self.interior_on(world, is_outside, true)
+        self.interior(world, is_outside, true)
     }
 
-    /// The media around a ray that leaves to the outside of the surface, or not, and has passed through it, or not.
+    /// The media around a ray that leaves to the outside of the surface, or not, and passes through it, or not.
     #[inline(always)]
     pub(in crate::integrator) fn interior(
         &self,
@@ -82,26 +86,15 @@ impl<S> Departure<'_, S> {
         is_outside: bool,
         passes: bool,
     ) -> InteriorStack {
-        self.interior_on(world, |_| is_outside, passes)
-    }
-
-    /// As [`Self::interior`]; `is_outside` is told whether the path has met the outside.
-    #[inline(always)]
-    fn interior_on(
-        &self,
-        world: &World,
-        is_outside: impl FnOnce(bool) -> bool,
-        passes: bool,
-    ) -> InteriorStack {
-        let (material, interface, front) = match self.boundary {
-            Boundary::Surface(surface) => (surface.material, surface.medium_interface, surface.front),
-            Boundary::Bare { material, interface, front } => {
-                (material, interface.map(|index| world.medium_interfaces[index as usize]), front)
+        let (material, interface) = match self.boundary {
+            Boundary::Surface(surface) => (surface.material, surface.medium_interface),
+            Boundary::Bare { material, interface, .. } => {
+                (material, interface.map(|index| world.medium_interfaces[index as usize]))
             }
             Boundary::None => return self.path.interior,
         };
         let sides = (material, interface);
-        self.path.interior.beside(&world.materials, sides, || is_outside(front), (passes, front))
+        self.path.interior.beside(&world.materials, sides, || is_outside, (passes, self.front()))
     }
 
     /// The shadow ray to a light, in the media around it, which passes no panes.

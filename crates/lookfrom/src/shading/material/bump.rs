@@ -49,15 +49,15 @@ pub(super) fn plain(surface: &ShadingGeometry) -> Frame {
     around(surface.ns, surface.dpdu)
 }
 
-/// What normals that a map has bent too far become.
+/// The limit of the normals that a map bends.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum NormalLimit {
-    /// Those on the side of the geometric normal, as in pbrt-v4.
+    /// The side of the geometric normal, as in pbrt-v4.
     #[default]
     Outward,
-    /// The same, perhaps [turned](Bending::limited), with a [guard](Guard), as in Mitsuba.
+    /// The same, where normals may be [turned](Bending::limited), with a [guard](Guard), as in Mitsuba.
     Guarded(BumpGuard),
-    /// [Valid](Bending::valid) ones.
+    /// [Valid](Bending::valid) normals.
     Valid,
 }
 

@@ -28,13 +28,13 @@ pub(super) struct BentFrames {
 #[derive(Clone, Copy, Default)]
 struct BentLanes {
     all: u32,
-    /// Those with a normal map.
+    /// Lanes with a normal map.
     mapped: u32,
-    /// Those whose second tangent is on the side of ∂p/∂v.
+    /// Lanes whose second tangent is on the side of ∂p/∂v.
     following_dpdv: u32,
-    /// Those of [`NormalLimit::Valid`].
+    /// Lanes with [`NormalLimit::Valid`].
     valid: u32,
-    /// Those of [`NormalLimit::turns`].
+    /// Lanes with [`NormalLimit::turns`].
     turning: u32,
 }
 
