@@ -356,6 +356,7 @@ fn part(c: &Controls, [from, to]: [f64; 2]) -> Controls {
 mod tests {
     use super::*;
     use crate::core::hash;
+    use crate::primitive::capsule::tests::distance_to_hit;
 
     /// A number in −1 … 1.
     fn number(seed: u64) -> f32 {
@@ -396,16 +397,11 @@ mod tests {
             let Some(hit) = curves.intersect(primitive, &ray) else { continue };
             hits += 1;
 
-            // The hit's distance from the segment, but for the rounding of t.
-            let Capsule { ends, radius } = curves.capsule(primitive).unwrap();
-            let [a, b, o, d] =
-                [ends[0], ends[1], ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-            let point = o + f64::from(hit.t) * d;
-            let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-            let distance = point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * hit.t) * d.length();
+            let capsule = curves.capsule(primitive).unwrap();
+            let distance = distance_to_hit(&capsule, &ray, hit.t);
             assert!(
-                distance <= f64::from(radius),
-                "{index}: {curves:?} {ray:?} {hit:?}: {distance} of {radius}"
+                distance <= f64::from(capsule.radius),
+                "{index}: {curves:?} {ray:?} {hit:?}: {distance} of {capsule:?}"
             );
         }
         assert!(hits > 8_000, "{hits} hits");

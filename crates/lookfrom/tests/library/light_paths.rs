@@ -79,6 +79,11 @@ fn layers_add_up_to_a_picture_whose_bits_they_do_not_change() {
 
 /// A plate under a lamp.
 fn plate(integrator: &str, material: &str) -> Scene {
+    plate_and_lamp(integrator, material, 3.0)
+}
+
+/// A plate, and a lamp at a height over it.
+fn plate_and_lamp(integrator: &str, material: &str, height: f64) -> Scene {
     scene(&format!(
         r#"
         [camera]
@@ -100,7 +105,7 @@ fn plate(integrator: &str, material: &str) -> Scene {
         material = "plate"
         [[light]]
         type = "point"
-        position = [0.5, 3, -2]
+        position = [0.5, {height}, -2]
         intensity = 9
         "#
     ))
@@ -228,37 +233,13 @@ fn lamps_behind_a_surface_are_seen_by_transmission() {
         ("type = \"dielectric\"\nroughness = 0.5", 'G'),
         ("type = \"dielectric\"\nroughness = 0.3", 'G'),
     ] {
-        for (z, transmitted) in [(-2.0, true), (2.0, false)] {
-            let scene = scene(&format!(
-                r#"
-                [camera]
-                lookfrom = [0, 0, 4]
-                lookat = [0, 0, 0]
-                [image]
-                width = 16
-                height = 12
-                [render]
-                integrator = "path"
-                samples = 8
-                depth = 1
-                [materials.sheet]
-                {material}
-                [[quad]]
-                corner = [-2, -2, 0]
-                edge_u = [4, 0, 0]
-                edge_v = [0, 4, 0]
-                material = "sheet"
-                [[light]]
-                type = "point"
-                position = [0.5, 0.5, {z}]
-                intensity = 9
-                "#
-            ));
+        for (height, transmitted) in [(-3.0, true), (3.0, false)] {
+            let scene = plate_and_lamp("path", material, height);
             let ways = [format!("C<T{lobe}>L"), format!("C<R{lobe}>L")];
             let film = film_of(scene, &[("behind", &ways[0]), ("before", &ways[1])]);
             let [behind, before] = [0, 1].map(|layer| total(&film, layer));
             let (there, not_there) = if transmitted { (behind, before) } else { (before, behind) };
-            assert!(there > 1.0 && not_there == 0.0, "{material}, {z}: {behind} {before}");
+            assert!(there > 1.0 && not_there == 0.0, "{material}, {height}: {behind} {before}");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::core::hash;
+use crate::primitive::capsule::tests::distance_to_hit;
 
 /// A number in −1 … 1.
 fn number(seed: u64) -> f64 {
@@ -32,7 +33,7 @@ fn hits_are_in_capsules() {
         let place = size * power(seed + 8, 10.0) * vector(seed + 9);
         let matrix = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), place.extend(1.0));
         let Some(quadric) = Quadric::new(kind, 360.0, &matrix, false) else { continue };
-        let Some(Capsule { ends, radius }) = quadric.capsule() else { continue };
+        let Some(capsule) = quadric.capsule() else { continue };
         thin += 1;
 
         let target =
@@ -44,15 +45,10 @@ fn hits_are_in_capsules() {
         let Some(hit) = quadrics.intersect(0, &ray) else { continue };
         hits += 1;
 
-        // The hit's distance from the segment, but for the rounding of t.
-        let [a, b, o, d] =
-            [ends[0], ends[1], ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let point = o + f64::from(hit.t) * d;
-        let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        let distance = point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * hit.t) * d.length();
+        let distance = distance_to_hit(&capsule, &ray, hit.t);
         assert!(
-            distance <= f64::from(radius),
-            "{index}: {quadric:?} {ray:?} {hit:?}: {distance} of {radius}"
+            distance <= f64::from(capsule.radius),
+            "{index}: {quadric:?} {ray:?} {hit:?}: {distance} of {capsule:?}"
         );
     }
     assert!(thin > 10_000 && hits > 5_000, "{thin} thin, {hits} hits");

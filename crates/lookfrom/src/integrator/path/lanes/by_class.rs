@@ -120,12 +120,11 @@ impl MaterialHits<'_> {
             };
             let side = Side { material: hit.binding.material, front: front & 1 << lane != 0 };
             let at = (side, point);
-            let mut row: Option<B> = if material.bends_in_lanes() {
-                if smooth & 1 << lane != 0 || material.has_bumps() {
-                    bent.note(lane, material.local_normal(&world.textures, point), material.normal_limit());
-                }
-                material.row(&world.materials, &world.textures, at, context)
-            } else if material.bends_frames() {
+            let bends_in_lanes = material.bends_in_lanes();
+            if bends_in_lanes && (smooth & 1 << lane != 0 || material.has_bumps()) {
+                bent.note(lane, material.local_normal(&world.textures, point), material.normal_limit());
+            }
+            let mut row: Option<B> = if material.bends_frames() && !bends_in_lanes {
                 let geometry = bent.geometry(surfaces, lane, side.front);
                 material.bent_row(&world.materials, world.relief(), &geometry, at, context).map(
                     |(row, axes, guard)| {

@@ -23,10 +23,18 @@ pub(in crate::integrator::path) struct Waiting {
     /// Paths at interfaces of media.
     at_interfaces: Vec<(Path, Hit)>,
     /// Paths that have come through a medium to shapes whose BSDFs have a class, and what they have hit.
-    arrived: (Vec<Path>, Vec<Hit>),
+    arrived: Arrived,
     /// Media by their numbers, and the paths on their ways in them.
     in_flight: Vec<(u32, Vec<u32>)>,
     memory: Memory,
+}
+
+/// Paths, what they have hit, and the classes of that.
+#[derive(Default)]
+struct Arrived {
+    paths: Vec<Path>,
+    hits: Vec<Hit>,
+    classes: Vec<HitClass>,
 }
 
 /// The bin of paths that hit nothing, after those of the classes.
@@ -127,12 +135,15 @@ impl Waiting {
         path: &Path,
         hit: &Hit,
     ) -> bool {
-        let takes = self.in_lanes && tracer.hit_class(world, path, hit).is_some();
-        if takes {
-            self.arrived.0.push(*path);
-            self.arrived.1.push(*hit);
+        // Without media those that have a class have not come here.
+        if !self.in_lanes || world.media.is_empty() {
+            return false;
         }
-        takes
+        let Some(class) = tracer.hit_class(world, path, hit) else { return false };
+        self.arrived.paths.push(*path);
+        self.arrived.hits.push(*hit);
+        self.arrived.classes.push(class);
+        true
     }
 
     /// Scatters the paths that have come through media.
@@ -142,12 +153,10 @@ impl Waiting {
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        let (paths, hits) = &std::mem::take(&mut self.arrived);
+        let Arrived { paths, hits, classes } = &std::mem::take(&mut self.arrived);
         let batch = HitBatch { paths, hits, ..*batch };
-        for (index, (path, hit)) in paths.iter().zip(hits).enumerate() {
-            if let Some(class) = tracer.hit_class(batch.world, path, hit) {
-                self.push_hit(tracer, &batch, (class, index), output);
-            }
+        for (index, &class) in classes.iter().enumerate() {
+            self.push_hit(tracer, &batch, (class, index), output);
         }
         self.flush_hits(tracer, &batch, output);
     }
@@ -218,7 +227,7 @@ impl Waiting {
         self.bins.flush(1 << ESCAPED, |eight| tracer.escape_together(batch, eight, output));
         tracer.scatter_in_media(batch.world, &self.in_media, &mut self.memory.scattered, output);
         self.flush_hits(tracer, batch, output);
-        if !self.arrived.0.is_empty() {
+        if !self.arrived.paths.is_empty() {
             self.scatter_arrived(tracer, batch, output);
         }
         let (world, scattered) = (batch.world, &mut self.memory.scattered);
