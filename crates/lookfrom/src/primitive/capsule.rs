@@ -25,22 +25,22 @@ pub(super) fn stretch(map: &Affine) -> f64 {
     bound
 }
 
+/// The distance of a hit from a capsule's segment, but for the rounding of t.
 #[cfg(test)]
-pub(super) mod tests {
+pub(super) fn distance_to_hit(capsule: &Capsule, ray: &lookfrom_bvh::Ray, t: f32) -> f64 {
+    let [from, to] = capsule.ends;
+    let [a, b, o, d] = [from, to, ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
+    let point = o + f64::from(t) * d;
+    let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+    point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * t) * d.length()
+}
+
+#[cfg(test)]
+mod tests {
     use glam::Vec3;
-    use lookfrom_bvh::Ray;
 
     use super::*;
     use crate::core::hash;
-
-    /// The distance of a hit from a capsule's segment, but for the rounding of t.
-    pub(in super::super) fn distance_to_hit(capsule: &Capsule, ray: &Ray, t: f32) -> f64 {
-        let [from, to] = capsule.ends;
-        let [a, b, o, d] = [from, to, ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let point = o + f64::from(t) * d;
-        let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        point.distance(a.lerp(b, share)) - f64::from(f32::EPSILON * t) * d.length()
-    }
 
     fn vector(seed: u64) -> Vec3 {
         [0, 1, 2].map(|k| (hash::mix(3 * seed + k) >> 40) as f32 / 8_388_608.0 - 1.0).into()

@@ -356,7 +356,6 @@ fn part(c: &Controls, [from, to]: [f64; 2]) -> Controls {
 mod tests {
     use super::*;
     use crate::core::hash;
-    use crate::primitive::capsule::tests::distance_to_hit;
 
     /// A number in −1 … 1.
     fn number(seed: u64) -> f32 {
@@ -397,11 +396,11 @@ mod tests {
             let Some(hit) = curves.intersect(primitive, &ray) else { continue };
             hits += 1;
 
-            let capsule = curves.capsule(primitive).unwrap();
-            let distance = distance_to_hit(&capsule, &ray, hit.t);
+            let around = curves.capsule(primitive).unwrap();
+            let distance = capsule::distance_to_hit(&around, &ray, hit.t);
             assert!(
-                distance <= f64::from(capsule.radius),
-                "{index}: {curves:?} {ray:?} {hit:?}: {distance} of {capsule:?}"
+                distance <= f64::from(around.radius),
+                "{index}: {curves:?} {ray:?} {hit:?}: {distance} of {around:?}"
             );
         }
         assert!(hits > 8_000, "{hits} hits");

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::core::hash;
-use crate::primitive::capsule::tests::distance_to_hit;
 
 /// A number in −1 … 1.
 fn number(seed: u64) -> f64 {
@@ -33,7 +32,7 @@ fn hits_are_in_capsules() {
         let place = size * power(seed + 8, 10.0) * vector(seed + 9);
         let matrix = DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), place.extend(1.0));
         let Some(quadric) = Quadric::new(kind, 360.0, &matrix, false) else { continue };
-        let Some(capsule) = quadric.capsule() else { continue };
+        let Some(around) = quadric.capsule() else { continue };
         thin += 1;
 
         let target =
@@ -45,10 +44,10 @@ fn hits_are_in_capsules() {
         let Some(hit) = quadrics.intersect(0, &ray) else { continue };
         hits += 1;
 
-        let distance = distance_to_hit(&capsule, &ray, hit.t);
+        let distance = capsule::distance_to_hit(&around, &ray, hit.t);
         assert!(
-            distance <= f64::from(capsule.radius),
-            "{index}: {quadric:?} {ray:?} {hit:?}: {distance} of {capsule:?}"
+            distance <= f64::from(around.radius),
+            "{index}: {quadric:?} {ray:?} {hit:?}: {distance} of {around:?}"
         );
     }
     assert!(thin > 10_000 && hits > 5_000, "{thin} thin, {hits} hits");
