@@ -1,147 +1,146 @@
 //! Catmull–Rom splines through values at uneven nodes (Catmull & Rom 1974): evaluated, integrated and inverted.
 //!
-//! The derivative at a node is that of the chord between its neighbours; at the ends, that of the interval.
+//! The derivative at a node is that of the chord between its neighbours; at the ends, that of the interval. Between two nodes a spline is
+//! a cubic of the part t of the interval, from 0 to 1.
 
-/// The weights of the values at a point of a spline.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Weights {
-    /// The interval that contains the point: between the nodes of this index and the next.
-    interval: usize,
-    /// The weights of the nodes `interval` − 1 … `interval` + 2; 0 for those that do not exist.
-    weights: [f64; 4],
+/// Bits of a number that are not in its key: a key is an exponent with two bits of the mantissa, a quarter of an octave.
+const BELOW_KEY: u32 = 50;
+
+/// Nodes of splines: at least two, that increase from 0.
+#[derive(Debug)]
+pub(super) struct Nodes {
+    x: Vec<f64>,
+    /// 1 / widths of the intervals.
+    inverse_widths: Vec<f64>,
+    /// The interval that contains the least number of each key, from that of the second node to the one after the last node's.
+    first_intervals: Vec<usize>,
 }
 
-impl Weights {
-    /// At `x`; `None` outside of the nodes, which increase.
-    pub(super) fn at(nodes: &[f64], x: f64) -> Option<Self> {
-        let (first, last) = (*nodes.first()?, *nodes.last()?);
-        if !(x >= first && x <= last) {
+impl Nodes {
+    pub(super) fn new(x: Vec<f64>) -> Self {
+        let last_interval = x.len() - 2;
+        let interval_at = |x0: f64| x.partition_point(|node| *node <= x0).clamp(1, last_interval + 1) - 1;
+        let keys = key(x[1])..=key(x[last_interval + 1]) + 1;
+        let first_intervals = keys.map(|key| interval_at(f64::from_bits(key << BELOW_KEY))).collect();
+        let inverse_widths = x.windows(2).map(|pair| 1.0 / (pair[1] - pair[0])).collect();
+        Self { x, inverse_widths, first_intervals }
+    }
+
+    /// The interval that contains `x`, by the index of the node before it, and the part t of it; `None` outside of the nodes.
+    pub(super) fn place(&self, x: f64) -> Option<(usize, f64)> {
+        if !(x >= 0.0 && x <= self.x[self.x.len() - 1]) {
             return None;
         }
-        let interval = nodes.partition_point(|node| *node <= x).clamp(1, nodes.len() - 1) - 1;
-        let width = nodes[interval + 1] - nodes[interval];
-        let t = (x - nodes[interval]) / width;
+        let interval = if x < self.x[1] {
+            0
+        } else {
+            let above = (key(x) - key(self.x[1])) as usize;
+            let (low, high) = (self.first_intervals[above], self.first_intervals[above + 1]);
+            low + self.x[low + 1..=high].partition_point(|node| *node <= x)
+        };
+        Some((interval, (x - self.x[interval]) * self.inverse_widths[interval]))
+    }
+
+    /// The weights of the values at the nodes `interval` − 1 … `interval` + 2 in that of a spline, with their indices; those that do not
+    /// exist have no weight and the index of another.
+    pub(super) fn weights(&self, (interval, t): (usize, f64)) -> [(usize, f64); 4] {
+        let last = self.x.len() - 1;
+        let nodes = [interval.saturating_sub(1), interval, interval + 1, (interval + 2).min(last)];
+        let x = nodes.map(|node| self.x[node]);
         let (t2, t3) = (t * t, t * t * t);
-        let (of_start, of_end) = (t3 - 2.0 * t2 + t, t3 - t2);
-        let mut weights = [0.0, 2.0 * t3 - 3.0 * t2 + 1.0, 3.0 * t2 - 2.0 * t3, 0.0];
-        let before = if interval > 0 { interval - 1 } else { interval };
-        let after = if interval + 2 < nodes.len() { interval + 2 } else { interval + 1 };
-        let start = of_start * width / (nodes[interval + 1] - nodes[before]);
-        let end = of_end * width / (nodes[after] - nodes[interval]);
-        weights[2] += start;
-        weights[before + 1 - interval] -= start;
-        weights[after + 1 - interval] += end;
-        weights[1] -= end;
-        Some(Self { interval, weights })
+        let width = x[2] - x[1];
+        let start = (t3 - 2.0 * t2 + t) * width / (x[2] - x[0]);
+        let end = (t3 - t2) * width / (x[3] - x[1]);
+        let weights = [-start, 2.0 * t3 - 3.0 * t2 + 1.0 - end, 3.0 * t2 - 2.0 * t3 + start, end];
+        [0, 1, 2, 3].map(|k| (nodes[k], weights[k]))
     }
 
-    /// The weighted sum of values at nodes.
-    pub(super) fn sum(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let used = self.weights.iter().enumerate().filter(|(_, weight)| **weight != 0.0);
-        used.map(|(k, weight)| weight * value(self.interval + k - 1)).sum()
+    /// The cubics of the spline through values at the nodes, by interval.
+    pub(super) fn cubics(&self, values: &[f64]) -> Vec<Cubic> {
+        let last = self.x.len() - 1;
+        let chord = |from: usize, to: usize| (values[to] - values[from]) / (self.x[to] - self.x[from]);
+        let cubic = |interval: usize| {
+            let (i, j) = (interval, interval + 1);
+            let width = self.x[j] - self.x[i];
+            let (f0, f1) = (values[i], values[j]);
+            let (d0, d1) = (width * chord(i.saturating_sub(1), j), width * chord(i, (j + 1).min(last)));
+            Cubic([f0, d0, 3.0 * (f1 - f0) - 2.0 * d0 - d1, d0 + d1 + 2.0 * (f0 - f1)])
+        };
+        (0..last).map(cubic).collect()
     }
-}
 
-/// An interval of a spline, as a cubic of t from 0 to 1.
-#[derive(Clone, Copy, Debug)]
-struct Segment {
-    start: f64,
-    width: f64,
-    /// Values at both ends …
-    f: [f64; 2],
-    /// … and derivatives by t.
-    d: [f64; 2],
-}
-
-impl Segment {
-    fn new(nodes: &[f64], value: &impl Fn(usize) -> f64, interval: usize) -> Self {
-        let (i, j) = (interval, interval + 1);
-        let width = nodes[j] - nodes[i];
-        let slope = |from: usize, to: usize| width * (value(to) - value(from)) / (nodes[to] - nodes[from]);
-        let after = if j + 1 < nodes.len() { j + 1 } else { j };
-        Self {
-            start: nodes[i],
-            width,
-            f: [value(i), value(j)],
-            d: [slope(i.saturating_sub(1), j), slope(i, after)],
+    /// The integrals of a spline from the first node to each.
+    pub(super) fn integrals(&self, cubics: &[Cubic]) -> Vec<f64> {
+        let mut integrals = vec![0.0];
+        for (interval, cubic) in cubics.iter().enumerate() {
+            integrals.push(integrals[interval] + self.width(interval) * cubic.integral(1.0));
         }
+        integrals
     }
 
-    /// The coefficients of 1, t, t², t³.
-    fn cubic(&self) -> [f64; 4] {
-        let ([f0, f1], [d0, d1]) = (self.f, self.d);
-        [f0, d0, 3.0 * (f1 - f0) - 2.0 * d0 - d1, d0 + d1 + 2.0 * (f0 - f1)]
+    /// The point where a spline that increases has the value `y`, or the end that is next to it.
+    pub(super) fn inverse(&self, cubics: &[Cubic], y: f64) -> f64 {
+        let Some(interval) = cubics.partition_point(|cubic| cubic.value(0.0) <= y).checked_sub(1) else {
+            return self.x[0];
+        };
+        let cubic = &cubics[interval];
+        if y >= cubic.value(1.0) {
+            return self.x[interval + 1];
+        }
+        self.x(interval, root(|t| (cubic.value(t) - y, cubic.derivative(t)), y))
     }
 
-    fn value(&self, t: f64) -> f64 {
-        let [a, b, c, d] = self.cubic();
+    /// The point before which a part of a spline's integral lies, of values that are not negative: `wanted` of `integral` at the last node.
+    pub(super) fn sample(
+        &self,
+        cubic: impl Fn(usize) -> Cubic,
+        integral: impl Fn(usize) -> f64,
+        wanted: f64,
+    ) -> f64 {
+        let (mut interval, mut end) = (0, self.inverse_widths.len());
+        while interval + 1 < end {
+            let middle = interval.midpoint(end);
+            *(if integral(middle) <= wanted { &mut interval } else { &mut end }) = middle;
+        }
+        let cubic = cubic(interval);
+        let rest = (wanted - integral(interval)) * self.inverse_widths[interval];
+        self.x(interval, root(|t| (cubic.integral(t) - rest, cubic.value(t)), cubic.integral(1.0)))
+    }
+
+    fn width(&self, interval: usize) -> f64 {
+        self.x[interval + 1] - self.x[interval]
+    }
+
+    fn x(&self, interval: usize, t: f64) -> f64 {
+        self.x[interval] + t * self.width(interval)
+    }
+}
+
+/// The exponent of a number that is not negative, with the first bits of its mantissa.
+fn key(x: f64) -> u64 {
+    x.to_bits() >> BELOW_KEY
+}
+
+/// The coefficients of 1, t, t², t³.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cubic(pub(super) [f64; 4]);
+
+impl Cubic {
+    pub(super) fn value(&self, t: f64) -> f64 {
+        let [a, b, c, d] = self.0;
         a + t * (b + t * (c + t * d))
     }
 
     fn derivative(&self, t: f64) -> f64 {
-        let [_, b, c, d] = self.cubic();
+        let [_, b, c, d] = self.0;
         b + t * (2.0 * c + t * 3.0 * d)
     }
 
     /// The integral from 0 to t, by t.
     fn integral(&self, t: f64) -> f64 {
-        let [a, b, c, d] = self.cubic();
-        t * (a + t * (b / 2.0 + t * (c / 3.0 + t * d / 4.0)))
+        let [a, b, c, d] = self.0;
+        t * (a + t * (0.5 * b + t * ((1.0 / 3.0) * c + t * (0.25 * d))))
     }
-
-    fn x(&self, t: f64) -> f64 {
-        self.start + t * self.width
-    }
-}
-
-/// The integrals of a spline from the first node to each.
-pub(super) fn integrals(nodes: &[f64], value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let mut sum = 0.0;
-    let mut integrals = vec![0.0];
-    for interval in 0..nodes.len() - 1 {
-        let segment = Segment::new(nodes, &value, interval);
-        sum += segment.width * segment.integral(1.0);
-        integrals.push(sum);
-    }
-    integrals
-}
-
-/// The point where a spline of values that increase has the value `y`, or the end that is next to it.
-pub(super) fn inverse(nodes: &[f64], value: impl Fn(usize) -> f64, y: f64) -> f64 {
-    let Some(interval) = interval_of(nodes.len(), &value, y) else { return nodes[0] };
-    if interval + 1 == nodes.len() {
-        return nodes[interval];
-    }
-    let segment = Segment::new(nodes, &value, interval);
-    segment.x(root(|t| (segment.value(t) - y, segment.derivative(t)), y))
-}
-
-/// The point before which the part `u` of a spline's integral lies, of values that are not negative.
-pub(super) fn sample(
-    nodes: &[f64],
-    value: impl Fn(usize) -> f64,
-    integral: impl Fn(usize) -> f64,
-    u: f64,
-) -> f64 {
-    let wanted = u * integral(nodes.len() - 1);
-    let interval = interval_of(nodes.len(), &integral, wanted).unwrap_or_default().min(nodes.len() - 2);
-    let segment = Segment::new(nodes, &value, interval);
-    let rest = (wanted - integral(interval)) / segment.width;
-    segment.x(root(|t| (segment.integral(t) - rest, segment.value(t)), segment.integral(1.0)))
-}
-
-/// The last of `count` nodes whose value is at most `y`, where values increase.
-fn interval_of(count: usize, value: &impl Fn(usize) -> f64, y: f64) -> Option<usize> {
-    let (mut low, mut high) = (0, count);
-    while low < high {
-        let middle = low.midpoint(high);
-        if value(middle) <= y {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    low.checked_sub(1)
 }
 
 /// The t in 0 … 1 where a function, given with its derivative, passes from below 0 to above, to a part of `size`: Newton's
