@@ -36,8 +36,7 @@ use crate::core::spectrum::Spectrum;
 use crate::integrator::wavefront::{Boundary, LightSamples, Modes};
 use crate::integrator::{Bounce, Event, Probe, Queues, SampleStream, Shadow};
 use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::subsurface::Subsurface;
-use crate::shading::bsdf::{BsdfClass, BsdfSample, Uniform};
+use crate::shading::bsdf::{Bsdf, BsdfClass, BsdfSample, Uniform};
 use crate::world::World;
 
 /// The numbers of the eight paths that are scattered, in memory that the next eight reuse.
@@ -56,7 +55,7 @@ impl Vertex {
 }
 
 impl PathTracer {
-    /// Scatters up to eight paths by BSDFs of one class.
+    /// Scatters up to eight paths by BSDFs of one class. Returns the vertices of [`exits_below`].
     fn scatter_vertices<P: Probe>(
         &self,
         class: BsdfClass,
@@ -64,8 +63,8 @@ impl PathTracer {
         vertices: &[Vertex],
         scattered: &mut Scattered,
         output: &mut StepOutput<'_, P>,
-    ) {
-        let Some(last) = vertices.last() else { return };
+    ) -> Vec<Vertex> {
+        let Some(last) = vertices.last() else { return Vec::new() };
         let active = (1 << vertices.len()) - 1;
         // Unused lanes repeat the last vertex.
         let vertices: [&Vertex; LANES] = by_lane!(lane => vertices.get(lane).unwrap_or(last));
@@ -77,25 +76,9 @@ impl PathTracer {
         );
         by_class::scatter_vertices(class, world, &vertices, task, scattered);
         let departure = |lane: usize| (vertices[lane].departure(), vertices[lane].is_catcher);
+        let before = output.paths.len();
         self.go_on(world, departure, active, scattered, output);
-    }
-
-    /// Where one path has just been scattered at the boundary of a medium in which light diffuses, and has entered it: that is not
-    /// traced, but scattered again where it leaves.
-    #[inline(never)]
-    fn leave_below<P: Probe>(
-        &self,
-        world: &World,
-        (vertex, boundary): (&Vertex, &Subsurface),
-        scattered: &mut Scattered,
-        output: &mut StepOutput<'_, P>,
-    ) {
-        if scattered.is_transmission & scattered.goes_on & 1 != 0
-            && let Some(entered) = output.paths.pop()
-            && let Some(exit) = exit_below(world, (vertex, boundary), &entered, output)
-        {
-            self.scatter_vertex(world, &exit, scattered, output);
-        }
+        exits_below(world, (&vertices, scattered), before, output)
     }
 
     /// Scatters up to eight paths in media.
@@ -126,14 +109,14 @@ impl PathTracer {
         }
     }
 
-    /// Scatters one path by any BSDF.
+    /// Scatters one path by any BSDF. Returns the vertices of [`exits_below`]: at most one.
     fn scatter_vertex<P: Probe>(
         &self,
         world: &World,
         vertex: &Vertex,
         scattered: &mut Scattered,
         output: &mut StepOutput<'_, P>,
-    ) {
+    ) -> Vec<Vertex> {
         let surfaces = VertexColumns::of_vertices(&[vertex]);
         let wants_shares = output.light_paths.is_some();
         let task = self.task([&vertex.path; LANES], [&vertex.stream; LANES], &output.queues, wants_shares);
@@ -146,7 +129,9 @@ impl PathTracer {
             _ => task.scatter_one(world, &surfaces, bsdf, scattered),
         }
         let departure = |_| (vertex.departure(), vertex.is_catcher);
+        let before = output.paths.len();
         self.go_on(world, departure, 1, scattered, output);
+        exits_below(world, (&[vertex], scattered), before, output)
     }
 
     #[inline(always)]
@@ -312,4 +297,31 @@ impl PathTracer {
             light_path,
         });
     }
+}
+
+/// The vertices where paths leave media in which light diffuses: of the paths that have just been scattered, all but the first `before`, those
+/// that have entered such a medium are not traced, but scattered again there.
+fn exits_below<P: Probe>(
+    world: &World,
+    (vertices, scattered): (&[&Vertex], &Scattered),
+    before: usize,
+    output: &mut StepOutput<'_, P>,
+) -> Vec<Vertex> {
+    let mut exits = Vec::new();
+    if !vertices.iter().any(|vertex| matches!(vertex.shading.bsdf, Bsdf::Subsurface(_))) {
+        return exits;
+    }
+    for path in output.paths.split_off(before) {
+        let lane = vertices.iter().position(|vertex| vertex.path.slot == path.slot);
+        let vertex =
+            lane.filter(|lane| scattered.is_transmission & 1 << lane != 0).map(|lane| vertices[lane]);
+        if let Some(vertex) = vertex
+            && let Bsdf::Subsurface(boundary) = &vertex.shading.bsdf
+        {
+            exits.extend(exit_below(world, (vertex, boundary), &path, output));
+        } else {
+            output.paths.push(path);
+        }
+    }
+    exits
 }

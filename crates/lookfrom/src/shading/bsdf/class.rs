@@ -99,7 +99,8 @@ impl From<super::microfacet::Microfacets> for Parameter {
     }
 }
 
-/// Calls a macro with the table: first the classes that are computed in lanes, by the names of their variants and types.
+/// Calls a macro with the table: first the classes that are computed in lanes, by the names of their variants and types; after a bar those
+/// variants that are computed as one of their fields.
 macro_rules! bsdf_classes {
     ($callback:ident $($context:tt)*) => {
         $callback! {
@@ -110,7 +111,7 @@ macro_rules! bsdf_classes {
                 /// Metal.
                 Conductor(Conductor),
                 /// The boundary of a dielectric.
-                Dielectric(Dielectric),
+                Dielectric(Dielectric | Subsurface.boundary),
                 /// Lambertian reflection under a dielectric coat.
                 CoatedDiffuse(Layered<Diffuse>),
                 /// A metal under a dielectric coat.
@@ -135,13 +136,14 @@ macro_rules! bsdf_classes {
                 TintedDielectric(TintedDielectric),
                 /// A thin dielectric sheet.
                 ThinDielectric(ThinDielectric),
-            }
-            one_by_one {
-                /// The boundary of a medium in which light diffuses.
-                Subsurface(Subsurface),
-                /// Light that leaves such a medium.
+                /// Light that leaves a medium in which it has diffused.
                 NormalizedFresnel(NormalizedFresnel),
             }
+            wholes {
+                /// The boundary of a medium in which light diffuses.
+                Subsurface(Subsurface),
+            }
+            one_by_one {}
         }
     };
 }
@@ -152,7 +154,8 @@ pub(crate) use bsdf_classes;
 macro_rules! scattering_functions {
     (
         $(#[$meta:meta])* $name:ident
-        lanes { $($(#[$lane_doc:meta])* $lane:ident($lane_type:ty),)* }
+        lanes { $($(#[$lane_doc:meta])* $lane:ident($lane_type:ty $(| $_whole:ident.$_part:ident)?),)* }
+        wholes { $($(#[$whole_doc:meta])* $whole:ident($whole_type:ty),)* }
         one_by_one { $($(#[$doc:meta])* $one:ident($type:ty),)* }
     ) => {
         $(#[$meta])*
@@ -160,6 +163,7 @@ macro_rules! scattering_functions {
         #[non_exhaustive]
         pub enum $name {
             $($(#[$lane_doc])* $lane($lane_type),)*
+            $($(#[$whole_doc])* $whole($whole_type),)*
             $($(#[$doc])* $one($type),)*
         }
 
@@ -169,6 +173,7 @@ macro_rules! scattering_functions {
             pub(crate) fn class(&self) -> &dyn ScatteringFunction {
                 match self {
                     $(Self::$lane(bsdf) => bsdf,)*
+                    $(Self::$whole(bsdf) => bsdf,)*
                     $(Self::$one(bsdf) => bsdf,)*
                 }
             }
@@ -177,6 +182,7 @@ macro_rules! scattering_functions {
             pub(crate) fn class_mut(&mut self) -> &mut dyn ScatteringFunction {
                 match self {
                     $(Self::$lane(bsdf) => bsdf,)*
+                    $(Self::$whole(bsdf) => bsdf,)*
                     $(Self::$one(bsdf) => bsdf,)*
                 }
             }
@@ -196,8 +202,9 @@ bsdf_classes! {
 /// The classes that are computed in lanes.
 macro_rules! lane_classes {
     (
-        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
-        one_by_one { $($rest:tt)* }
+        lanes { $($(#[$doc:meta])* $lane:ident($type:ty $(| $whole:ident.$part:ident)?),)* }
+        wholes { $($_wholes:tt)* }
+        one_by_one { $($_rest:tt)* }
     ) => {
         /// The classes of BSDFs that are computed in lanes.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,7 +223,8 @@ macro_rules! lane_classes {
             #[inline]
             pub(crate) fn of(bsdf: &Bsdf) -> Option<Self> {
                 match bsdf {
-                    $(Bsdf::$lane(_) => Some(Self::$lane),)*
+                    $(Bsdf::$lane(_) $(| Bsdf::$whole(_))? => Some(Self::$lane),)*
+                    #[allow(unreachable_patterns, reason = "the table may have classes that are computed one by one")]
                     _ => None,
                 }
             }
@@ -226,7 +234,11 @@ macro_rules! lane_classes {
             impl Variant for $type {
                 #[inline]
                 fn of(bsdf: &Bsdf) -> Option<&Self> {
-                    if let Bsdf::$lane(bsdf) = bsdf { Some(bsdf) } else { None }
+                    match bsdf {
+                        Bsdf::$lane(bsdf) => Some(bsdf),
+                        $(Bsdf::$whole(bsdf) => Some(&bsdf.$part),)?
+                        _ => None,
+                    }
                 }
 
                 fn bsdf(self) -> Bsdf {
@@ -241,7 +253,7 @@ bsdf_classes!(lane_classes);
 
 /// The type of a variant of [`Bsdf`].
 pub(crate) trait Variant: Copy {
-    /// The BSDF, if it is of this class.
+    /// The BSDF, or the part of it by which it is computed, if it is of this class.
     fn of(bsdf: &Bsdf) -> Option<&Self>;
 
     /// The variant.

@@ -7,21 +7,27 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::diffuse::cosine_direction;
+use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
 use super::lobes::Lobes;
-use super::{BsdfSample, Description, Mode, ScatteringFunction, fresnel, same_side};
+use super::{
+    BsdfSample, Description, DirectionSample, Mode, ScatteringFunction, fresnel, is_grazing, same_side,
+};
+use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::bssrdf::fresnel_moment;
 
 /// Light that leaves a medium in which it has diffused.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NormalizedFresnel {
+pub struct NormalizedFresnel<R = f32> {
     /// Index of refraction, inside over outside.
-    pub(crate) eta: f32,
+    pub(crate) eta: R,
     /// The integral of Fresnel's transmission and the cosine over the hemisphere: 0 … π.
-    pub(crate) norm: f32,
+    pub(crate) norm: R,
 }
 
 impl NormalizedFresnel {
@@ -33,24 +39,46 @@ impl NormalizedFresnel {
     }
 }
 
+impl<R: Real> NormalizedFresnel<R> {
+    #[inline(always)]
+    fn value(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+        let one = wi.z.like(1.0);
+        let transmitted = one - fresnel::dielectric(Float::abs(wi.z), self.eta);
+        let factor = if mode == Mode::Radiance { self.eta * self.eta } else { one };
+        let value = factor * transmitted / self.norm;
+        Spectrum::splat(R::select(same_side(wo, wi), value, wi.z.like(0.0)))
+    }
+
+    /// As [`super::Bsdf::sample`].
+    #[inline(always)]
+    fn sampled(&self, wo: Vector<R>, u: [R; 2], mode: Mode) -> DirectionSample<R> {
+        let wi = cosine_direction(u, wo.z);
+        let is_valid = !is_grazing(wo);
+        let no = is_valid.like(false);
+        DirectionSample {
+            wi,
+            f: self.value(wo, wi, mode),
+            pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
+            eta: wo.z.like(1.0),
+            is_specular: no,
+            is_diffuse: !no,
+            is_transmission: no,
+            is_valid,
+        }
+    }
+}
+
 impl ScatteringFunction for NormalizedFresnel {
     fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        if !same_side(wo, wi) {
-            return Spectrum::BLACK;
-        }
-        let transmitted = 1.0 - fresnel::dielectric(wi.z.abs(), self.eta);
-        let factor = if mode == Mode::Radiance { self.eta * self.eta } else { 1.0 };
-        Spectrum([factor * transmitted / self.norm; 4])
+        self.value(wo.into(), wi.into(), mode)
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        if same_side(wo, wi) { warp::cosine_hemisphere_pdf(wi.z.abs()) } else { 0.0 }
+        LaneBsdf::pdf(self, &wo.into(), wi.into())
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
-        let wi = Vec3::from(cosine_direction(u, wo.z));
-        let (f, pdf) = (self.f(wo, wi, mode), self.pdf(wo, wi, mode, Lobes::ALL));
-        Some(BsdfSample::new(wi, f, pdf, self.lobes()))
+        self.sampled(wo.into(), u, mode).scalar(self.traits())
     }
 
     fn lobes(&self) -> Lobes {
@@ -66,6 +94,58 @@ impl ScatteringFunction for NormalizedFresnel {
             kind: "normalized Fresnel",
             does: "light that has diffused below the surface leaves: f = η² (1 − F) / norm",
             numbers: vec![("eta", self.eta.into()), ("norm", self.norm.into())],
+        }
+    }
+}
+
+impl<R: Real> LaneBsdf<R> for NormalizedFresnel<R> {
+    type Prepared = Vector<R>;
+
+    #[inline(always)]
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_lobe: false, ..ClassTraits::PLAIN }
+    }
+
+    #[inline(always)]
+    fn prepare(&self, wo: Vector<R>) -> Vector<R> {
+        wo
+    }
+
+    #[inline(always)]
+    fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
+        self.value(wo, wi, Mode::Radiance)
+    }
+
+    #[inline(always)]
+    fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
+        let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
+        R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
+    }
+
+    #[inline(always)]
+    fn sample(&self, &wo: &Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
+        self.sampled(wo, u, Mode::Radiance)
+    }
+
+    #[inline(always)]
+    fn has_density(&self) -> R::Mask {
+        self.eta.gt(self.eta.like(0.0))
+    }
+
+    #[inline(always)]
+    fn diffuse_share(&self, wo: &Vector<R>, _: Vector<R>, _: Spectrum<R>) -> Spectrum<R> {
+        Spectrum::splat(wo.z.like(1.0))
+    }
+}
+
+impl RowBsdf for NormalizedFresnel {
+    type Lanes<S: Simd> = NormalizedFresnel<f32x8<S>>;
+
+    #[inline(always)]
+    fn gather<S: Simd>(simd: S, rows: &[&Self; LANES]) -> Self::Lanes<S> {
+        NormalizedFresnel {
+            eta: f32x8::load_array(simd, by_lane!(lane => rows[lane].eta)),
+            norm: f32x8::load_array(simd, by_lane!(lane => rows[lane].norm)),
         }
     }
 }

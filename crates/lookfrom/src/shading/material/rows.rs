@@ -12,6 +12,7 @@ use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::measured::Measured;
+use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
@@ -180,6 +181,13 @@ impl MaterialRow for OpenPbrSurface {
         let (bsdf, turned) = evaluator.open_pbr(look, side.material, geometry, *frame);
         *frame = turned;
         Some(bsdf)
+    }
+}
+
+impl MaterialRow for NormalizedFresnel {
+    /// None: no material has it but where paths leave it that have entered elsewhere.
+    fn at(_: &mut Evaluator<'_>, _: &MaterialKind, _: Side) -> Option<Self> {
+        None
     }
 }
 

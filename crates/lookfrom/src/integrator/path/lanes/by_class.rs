@@ -16,6 +16,7 @@ use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
 use crate::shading::bsdf::layered::Layered;
 use crate::shading::bsdf::measured::Measured;
+use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::Plastic;
 use crate::shading::bsdf::principled::Principled;
@@ -37,8 +38,9 @@ macro_rules! with_class {
 macro_rules! call_with_class {
     (
         ($class:expr, $function:ident, $arguments:tt)
-        lanes { $($(#[$doc:meta])* $lane:ident($type:ty),)* }
-        one_by_one { $($rest:tt)* }
+        lanes { $($(#[$doc:meta])* $lane:ident($type:ty $(| $_whole:ident.$_part:ident)?),)* }
+        wholes { $($_wholes:tt)* }
+        one_by_one { $($_rest:tt)* }
     ) => {
         match $class {
             $(BsdfClass::$lane => call!($function, $type, $arguments),)*

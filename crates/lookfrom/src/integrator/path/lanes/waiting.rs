@@ -7,7 +7,7 @@ use crate::core::lanes::LANES;
 use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
-use crate::shading::bsdf::{Bsdf, BsdfClass};
+use crate::shading::bsdf::BsdfClass;
 use crate::world::{HitClass, World};
 
 /// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
@@ -89,17 +89,31 @@ impl Waiting {
         output: &mut StepOutput<'_, P>,
     ) {
         let scattered = &mut self.memory.scattered;
-        let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| self.in_lanes) else {
-            tracer.scatter_vertex(world, &vertex, scattered, output);
-            if let Bsdf::Subsurface(boundary) = &vertex.shading.bsdf {
-                tracer.leave_below(world, (&vertex, boundary), scattered, output);
+        let exits = if let Some(class) = BsdfClass::of(&vertex.shading.bsdf).filter(|_| self.in_lanes) {
+            let vertices = &mut self.vertices[class as usize];
+            if !fills_lanes(vertices, vertex) {
+                return;
             }
-            return;
-        };
-        let vertices = &mut self.vertices[class as usize];
-        if fills_lanes(vertices, vertex) {
-            tracer.scatter_vertices(class, world, vertices, scattered, output);
+            let exits = tracer.scatter_vertices(class, world, vertices, scattered, output);
             vertices.clear();
+            exits
+        } else {
+            tracer.scatter_vertex(world, &vertex, scattered, output)
+        };
+        self.push_exits(tracer, world, exits, output);
+    }
+
+    /// Adds the vertices where paths leave media in which light diffuses.
+    #[inline(never)]
+    fn push_exits<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        world: &World,
+        exits: Vec<Vertex>,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        for exit in exits {
+            self.push_vertex(tracer, world, exit, output);
         }
     }
 
@@ -230,9 +244,12 @@ impl Waiting {
         if !self.arrived.paths.is_empty() {
             self.scatter_arrived(tracer, batch, output);
         }
-        let (world, scattered) = (batch.world, &mut self.memory.scattered);
-        for (class, vertices) in BsdfClass::ALL.iter().copied().zip(&self.vertices) {
-            tracer.scatter_vertices(class, world, vertices, scattered, output);
+        // Exits are of the last class.
+        for &class in BsdfClass::ALL {
+            let vertices = std::mem::take(&mut self.vertices[class as usize]);
+            let scattered = &mut self.memory.scattered;
+            let exits = tracer.scatter_vertices(class, batch.world, &vertices, scattered, output);
+            self.push_exits(tracer, batch.world, exits, output);
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::shading::bsdf::disney::Disney;
 use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::layered::{CoatInterior, CoatLayer};
 use crate::shading::bsdf::measured::Measured;
+use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::open_pbr::OpenPbrSurface;
 use crate::shading::bsdf::plastic::{Interface, Plastic};
 use crate::shading::bsdf::principled::film::ThinFilm;
@@ -293,6 +294,11 @@ fn panes_in_lanes() {
         let tint = Tint { reflectance: spectrum(196, index), transmittance: spectrum(226, index) };
         Bsdf::ThinDielectric(ThinDielectric::new(eta).with_tint(tint))
     });
+}
+
+#[test]
+fn light_that_leaves_media_in_lanes() {
+    compare::<NormalizedFresnel>(|index| Bsdf::NormalizedFresnel(NormalizedFresnel::new(any(70, index, 3))));
 }
 
 #[test]

@@ -13,6 +13,7 @@ scattering_functions! {
     /// A table with one row.
     Extended
     lanes {}
+    wholes {}
     one_by_one {
         /// Rough matte surfaces.
         Clay(Clay),
