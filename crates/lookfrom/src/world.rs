@@ -325,7 +325,7 @@ impl World {
 
     /// Whether materials depend on the footprint of pixels.
     pub(crate) fn needs_footprint(&self) -> bool {
-        self.materials.iter().any(|material| material.has_bump_map() || material.needs_footprint)
+        self.materials.iter().any(|material| material.height_texture().is_some() || material.needs_footprint)
     }
 
     /// This world seen by a camera with these pixels.

@@ -49,14 +49,24 @@ pub(crate) struct Changes<R> {
 }
 
 impl PixelFootprint {
-    /// Half of what u and v change by from sample to sample at a point of a surface, by its geometric normal, ∂p/∂u and ∂p/∂v: both at least
-    /// 0; `None` where that is not defined.
-    pub(super) fn half(&self, world: DVec3, ng: Vec3, derivatives: [Vec3; 2]) -> Option<Vec2> {
-        let (steps, is_defined) = self.on_surface(world.into(), ng.as_dvec3().into());
-        let derivatives = derivatives.map(|along| Vector::from(along.as_dvec3()));
-        let [by_x, by_y] = steps.map(|step| solved(derivatives, step * SPACING).map(f64::abs));
-        let [u, v] = [0, 1].map(|k| (0.5 * (by_x[k] + by_y[k])) as f32);
-        (is_defined && u.is_finite() && v.is_finite()).then_some(Vec2::new(u, v))
+    /// Half of what u and v change by from sample to sample at a point of a surface, by its geometric normal, ∂p/∂u and ∂p/∂v, at any width:
+    /// at least 0; both 0 where that is not defined.
+    #[inline(always)]
+    pub(crate) fn half<R: Real>(
+        &self,
+        world: Vector<R::Double>,
+        ng: Vector<R>,
+        [dpdu, dpdv]: [Vector<R>; 2],
+    ) -> [R; 2] {
+        let ([x, y], is_defined) = self.on_surface(world, ng.widen());
+        let derivatives = [dpdu.widen(), dpdv.widen()];
+        let spacing = x.x.like(SPACING);
+        let (by_x, by_y) = (solved(derivatives, x * spacing), solved(derivatives, y * spacing));
+        let half = |x: R::Double, y: R::Double| R::narrow((Float::abs(x) + Float::abs(y)) * 0.5);
+        let [u, v] = [half(by_x[0], by_y[0]), half(by_x[1], by_y[1])];
+        let is_defined = u.narrow_mask(is_defined) & Float::is_finite(u) & Float::is_finite(v);
+        let zero = u.like(0.0);
+        [R::select(is_defined, u, zero), R::select(is_defined, v, zero)]
     }
 
     /// The footprint at a point of a surface, by its geometric normal, ∂p/∂u and ∂p/∂v.
@@ -207,18 +217,17 @@ mod tests {
     }
 
     impl Kernel for Eight<'_> {
-        type Output = [[f32; 10]; LANES];
+        type Output = [[f32; 12]; LANES];
 
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let [dpdu, dpdv] = self.derivatives;
-            let Changes { uv: [ux, uy], p: [x, y] } = self.pixels.changes::<f32x8<S>>(
-                gather_f64(simd, self.world),
-                gather_f64(simd, self.ng),
-                [gather(simd, dpdu), gather(simd, dpdv)],
-            );
-            let columns =
-                [ux[0], ux[1], uy[0], uy[1], x.x, x.y, x.z, y.x, y.y, y.z].map(<[f32; LANES]>::from);
+            let (world, ng) = (gather_f64(simd, self.world), gather_f64(simd, self.ng));
+            let derivatives: [Vector<f32x8<S>>; 2] = [gather(simd, dpdu), gather(simd, dpdv)];
+            let Changes { uv: [ux, uy], p: [x, y] } = self.pixels.changes(world, ng, derivatives);
+            let [u, v] = self.pixels.half(world, Vector::narrow(ng), derivatives);
+            let columns = [ux[0], ux[1], uy[0], uy[1], x.x, x.y, x.z, y.x, y.y, y.z, u, v];
+            let columns = columns.map(<[f32; LANES]>::from);
             std::array::from_fn(|lane| columns.map(|column| column[lane]))
         }
     }
@@ -257,8 +266,12 @@ mod tests {
                     let derivatives = [dpdu[lane].into(), dpdv[lane].into()];
                     let SurfaceFootprint { uv, p } =
                         pixels.at(world[lane].into(), ng[lane].into(), derivatives);
-                    let alone =
-                        [uv[0].x, uv[0].y, uv[1].x, uv[1].y, p[0].x, p[0].y, p[0].z, p[1].x, p[1].y, p[1].z];
+                    let [x, y] = p;
+                    let ng = DVec3::from(ng[lane]).as_vec3().into();
+                    let [u, v] =
+                        pixels.half(world[lane].into(), ng, derivatives.map(Vec3::into));
+                    let [[ux, vx], [uy, vy]] = uv.map(Vec2::to_array);
+                    let alone = [ux, vx, uy, vy, x.x, x.y, x.z, y.x, y.y, y.z, u, v];
                     assert_eq!(eight[lane].map(f32::to_bits), alone.map(f32::to_bits), "{alone:?} {round}");
                     assert!(alone.iter().all(|x| x.is_finite()), "{alone:?}");
                 }
@@ -268,25 +281,29 @@ mod tests {
 
     #[test]
     fn it_grows_with_the_distance_and_the_slant() {
-        let half = |pixel: f64, world: DVec3, ng: Vec3| camera(pixel).half(world, ng, wall(ng));
+        let half_on = |pixel: f64, world: DVec3, ng: Vec3, derivatives: [Vec3; 2]| {
+            let half = camera(pixel).half(world.into(), ng.into(), derivatives.map(Vector::from));
+            Vec2::from_array(half)
+        };
+        let half = |pixel: f64, world: DVec3, ng: Vec3| half_on(pixel, world, ng, wall(ng));
         // Facing the camera: half an eighth of a pixel, over the length of u and v.
         for distance in [1.0, 100.0] {
-            let half = half(1e-3, DVec3::Z * distance, Vec3::NEG_Z).unwrap();
+            let half = half(1e-3, DVec3::Z * distance, Vec3::NEG_Z);
             let expected = 0.5 * 0.125 * 1e-3 * distance as f32;
             assert!((half - expected / Vec2::new(2.0, 4.0)).length() < 1e-3 * expected, "{half}");
         }
         // Slanted about the y axis by 60°: twice as long along u.
         let slanted = Vec3::new(0.75_f32.sqrt(), 0.0, -0.5);
-        let seen = half(1e-4, DVec3::Z, slanted).unwrap();
+        let seen = half(1e-4, DVec3::Z, slanted);
         let expected = 0.5 * 0.125 * 1e-4;
         assert!((seen.x / (2.0 * expected / 2.0) - 1.0).abs() < 1e-3, "{seen}");
         assert!((seen.y / (expected / 4.0) - 1.0).abs() < 1e-3, "{seen}");
         // In any direction alike.
         let toward = DVec3::new(-2.0, 1.0, -2.0);
-        let seen = half(1e-3, toward, -toward.normalize().as_vec3()).unwrap();
+        let seen = half(1e-3, toward, -toward.normalize().as_vec3());
         assert!((seen.x * 2.0 - seen.y * 4.0).abs() < 0.3 * seen.x, "{seen}");
         // None in the camera itself, or where u and v are not independent.
-        assert_eq!(half(1e-3, DVec3::ZERO, slanted), None);
-        assert_eq!(camera(1e-3).half(DVec3::Z, slanted, [wall(slanted)[0]; 2]), None);
+        assert_eq!(half(1e-3, DVec3::ZERO, slanted), Vec2::ZERO);
+        assert_eq!(half_on(1e-3, DVec3::Z, slanted, [wall(slanted)[0]; 2]), Vec2::ZERO);
     }
 }

@@ -32,15 +32,16 @@ use crate::shading::texture::{PictureSet, TexturePoint};
 pub use albedo::albedo;
 pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub use bump::Relief;
-pub(crate) use bump::{Bending, Guard, LocalNormal, NormalLimit, frame_about};
+pub(crate) use bump::{Bending, Guard, LocalNormal, Neighbours, NormalLimit, frame_about};
 pub(crate) use compile::Compiler;
 pub use disney::DisneyMaterial;
 pub(crate) use evaluator::Evaluator;
 pub use evaluator::ShadingContext;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
-    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
-    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures, WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, HeightTexture, Ior, MaterialKind, Metal, NormalTexture,
+    PlasticMaterial, PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures,
+    WhittedMaterial,
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::{MaterialRow, Side};

@@ -148,6 +148,12 @@ impl TexturePoint<'_> {
         looked_up: None,
         values: None,
     };
+
+    /// The point without what was looked up for it, or near which others are.
+    #[inline]
+    pub(crate) fn alone(&self) -> TexturePoint<'static> {
+        TexturePoint { looked_up: None, values: None, ..*self }
+    }
 }
 
 impl Textures {

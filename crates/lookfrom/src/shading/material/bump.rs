@@ -7,25 +7,22 @@
 //! Blinn 1978 (bumps).
 
 mod guard;
+mod heights;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use lookfrom_scene::material::BumpGuard;
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Mask, Real};
 
 pub(crate) use guard::Guard;
+pub(crate) use heights::Neighbours;
 
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::shading::footprint::PixelFootprint;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::texture::{self, FloatTexture, TexturePoint, Textures};
-
-/// An offset in u and v that is much smaller than texels.
-const FINE_STEP: f32 = 0.000_02;
-/// The smallest offset, in parts of u and v: differences of numbers of single precision need one.
-const LEAST_STEP: f32 = 4e-6;
+use crate::shading::texture::{self, TexturePoint, Textures};
 
 /// Data that shading frames are bent by.
 #[derive(Clone, Copy, Debug)]
@@ -82,20 +79,9 @@ pub(super) fn frame(
     surface: &ShadingGeometry,
     at: &TexturePoint,
 ) -> Frame {
-    let (relief, derivatives) = match limit {
-        // The smoothed ∂p/∂v of pbrt's meshes is as long as ∂p/∂u.
-        NormalLimit::Outward => (relief, [surface.dpdu, surface.dpdv]),
-        // Mitsuba differentiates pictures between their texels, whatever is seen of them.
-        NormalLimit::Guarded(_) => {
-            (Relief { step: FINE_STEP, footprint: None, ..relief }, surface.derivatives)
-        }
-        NormalLimit::Valid => (relief, surface.derivatives),
-    };
     let bending = Bending::from(surface);
     let bent = match bump_mapping {
-        BumpMapping::Bump(height) => {
-            bumped(*height, relief, surface, derivatives, at).normalize_or(surface.ns).into()
-        }
+        BumpMapping::Bump(map) => heights::displaced((map, limit), relief, surface, at),
         map => LocalNormal::at(map, relief.textures, at)
             .map_or(bending.ns, |local| bending.mapped(local.n.into(), local.follows_dpdv)),
     };
@@ -258,36 +244,6 @@ impl<R: Real> Bending<R> {
 fn normalized_or<R: Real>(v: Vector<R>, other: Vector<R>) -> Vector<R> {
     let (unit, exists) = v.try_normalize();
     Vector::select(exists, unit, other)
-}
-
-/// The normal of the surface displaced along its shading normal; not of unit length.
-fn bumped(
-    height: FloatTexture,
-    relief: Relief<'_>,
-    surface: &ShadingGeometry,
-    derivatives: [Vec3; 2],
-    at: &TexturePoint,
-) -> Vec3 {
-    let Relief { textures, footprint, step: usual } = relief;
-    let n = surface.ns;
-    let here = textures.float(height, at);
-    let half = footprint.and_then(|pixels| pixels.half(at.world, surface.ng, derivatives));
-    let half = half.unwrap_or_default();
-    let [along_u, along_v] = derivatives;
-    let [dpdu, dpdv] = [(along_u, Vec2::X, half.x), (along_v, Vec2::Y, half.y)].map(|(along, axis, half)| {
-        let step = if half > 0.0 { half } else { usual };
-        let step = step.max(LEAST_STEP * at.uv.abs().dot(axis));
-        let uv = at.uv + step * axis;
-        // As far as u or v moves in single precision.
-        let step = (uv - at.uv).dot(axis);
-        let world = at.world + (step * along).as_dvec3();
-        let moved = TexturePoint { uv, world, looked_up: None, values: None, ..*at };
-        // In the tangent plane of the shading normal.
-        let tangent = along - n * n.dot(along);
-        tangent + n * ((textures.float(height, &moved) - here) / step)
-    });
-    let across = dpdu.cross(dpdv);
-    if along_u.cross(along_v).dot(n) < 0.0 { -across } else { across }
 }
 
 /// The frame about a normal with the first axis along ∂p/∂u.

@@ -1,7 +1,8 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
 use super::{
-    BumpMapping, Evaluator, Frame, Guard, LocalNormal, Material, MaterialKind, Relief, ShadingContext,
+    BumpMapping, Evaluator, Frame, Guard, HeightTexture, LocalNormal, Material, MaterialKind, Relief,
+    ShadingContext,
 };
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
@@ -53,9 +54,10 @@ impl Material {
         !matches!(self.bump_mapping, BumpMapping::None)
     }
 
-    /// Whether it has a bump map.
-    pub(crate) fn has_bump_map(&self) -> bool {
-        matches!(self.bump_mapping, BumpMapping::Bump(_))
+    /// Its bump map, if it has one.
+    #[inline]
+    pub(crate) fn height_texture(&self) -> Option<&HeightTexture> {
+        if let BumpMapping::Bump(map) = &self.bump_mapping { Some(map) } else { None }
     }
 
     /// Whether its shading frame is another than that of the surface.
@@ -64,7 +66,7 @@ impl Material {
         self.has_bumps() || self.reflects_outside
     }
 
-    /// Whether its frames are bent in lanes: without a bump map, and with a BSDF that does not depend on the frame.
+    /// Whether its frames are bent in lanes: its BSDF does not depend on them.
     #[inline]
     pub(crate) fn bends_in_lanes(&self) -> bool {
         let depends_on_frame = match &self.kind {
@@ -72,7 +74,7 @@ impl Material {
             MaterialKind::OpenPbr(_) => true,
             _ => false,
         };
-        self.bends_frames() && !depends_on_frame && !self.has_bump_map()
+        self.bends_frames() && !depends_on_frame
     }
 
     /// The normal of its normal map at a point, if it has one.

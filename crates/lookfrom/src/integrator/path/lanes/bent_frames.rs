@@ -1,13 +1,16 @@
-//! The shading frames of eight hits, bent by normal maps, and such that reflections stay outside.
+//! The shading frames of eight hits, bent by bump and normal maps, and such that reflections stay outside.
 
 use glam::DVec3;
 use lookfrom_simd::{Kernel, LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
+use super::class_hits::ClassHit;
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, LANES, load, row, set_row, shade_together};
+use crate::core::lanes::{Columns, LANES, bitmask, by_lane, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::material::{Bending, Guard, LocalNormal, NormalLimit, frame_about};
+use crate::shading::material::{Bending, Guard, LocalNormal, Material, Neighbours, NormalLimit, frame_about};
+use crate::shading::texture::{PictureSet, TexturePoint, Textures};
+use crate::world::World;
 
 /// The directions from which bent frames are made, and the normals of normal maps. Masks have bit i for lane i.
 #[derive(Default)]
@@ -19,15 +22,26 @@ pub(super) struct BentFrames {
     pub(super) derivatives: [Columns<3>; 2],
     /// The normals of normal maps along the tangents and the shading normals.
     local: Columns<3>,
+    bumps: Bumps,
     /// The lanes whose frames are bent together.
     bent: BentLanes,
     limits: [NormalLimit; LANES],
+}
+
+/// The heights of bump maps, at points and at their [`Neighbours`].
+#[derive(Default)]
+struct Bumps {
+    uv: Columns<2>,
+    steps: Columns<2>,
+    heights: Columns<3>,
 }
 
 /// Lanes whose frames are bent together, as masks.
 #[derive(Clone, Copy, Default)]
 struct BentLanes {
     all: u32,
+    /// Lanes with a bump map.
+    bumped: u32,
     /// Lanes with a normal map.
     mapped: u32,
     /// Lanes whose second tangent is on the side of ∂p/∂v.
@@ -53,11 +67,12 @@ impl BentFrames {
         }
     }
 
-    /// Notes a lane to be bent with others, by the normal of a normal map if there is one.
+    /// Notes a lane to be bent with others, with the normal of its normal map if there is one.
     #[inline]
-    pub(super) fn note(&mut self, lane: usize, local: Option<LocalNormal>, limit: NormalLimit) {
-        let (bent, bit) = (&mut self.bent, 1 << lane);
+    pub(super) fn note(&mut self, lane: usize, material: &Material, local: Option<LocalNormal>) {
+        let (bent, bit, limit) = (&mut self.bent, 1 << lane, material.normal_limit());
         bent.all |= bit;
+        bent.bumped |= u32::from(material.height_texture().is_some()) << lane;
         if let Some(LocalNormal { n, follows_dpdv }) = local {
             bent.mapped |= bit;
             bent.following_dpdv |= u32::from(follows_dpdv) << lane;
@@ -66,6 +81,64 @@ impl BentFrames {
         bent.valid |= u32::from(limit.keeps_valid()) << lane;
         bent.turning |= u32::from(limit.turns()) << lane;
         self.limits[lane] = limit;
+    }
+
+    /// Looks up the heights of the bump maps of the lanes that were noted.
+    #[inline]
+    pub(super) fn look_up_heights(
+        &mut self,
+        world: &World,
+        hits: &[ClassHit<'_>; LANES],
+        points: &[TexturePoint<'_>; LANES],
+        (surfaces, uv): (&VertexColumns, &Columns<2>),
+    ) {
+        if self.bent.bumped != 0 {
+            find_neighbours(NeighboursKernel { world, frames: self, surfaces, uv });
+            self.look_up_noted_heights(&world.textures, hits, points);
+        }
+    }
+
+    #[inline(never)]
+    fn look_up_noted_heights(
+        &mut self,
+        textures: &Textures,
+        hits: &[ClassHit<'_>; LANES],
+        points: &[TexturePoint<'_>; LANES],
+    ) {
+        let (noted, frames) = (LaneMask(self.bent.bumped), [&[self.dpdu, self.dpdv], &self.derivatives]);
+        let maps = by_lane!(lane => hits[lane].material.height_texture());
+        let pictures = by_lane!(lane => maps[lane].map_or(&PictureSet::EMPTY, |map| &map.pictures));
+        for place in 0..3 {
+            let at = std::array::from_fn(|lane| match place {
+                _ if self.bent.bumped & 1 << lane == 0 => TexturePoint::NOWHERE,
+                0 => points[lane].alone(),
+                next => {
+                    let (uv, steps) = (row(&self.bumps.uv, lane), row(&self.bumps.steps, lane));
+                    let is_smooth = self.limits[lane].takes_smooth_derivatives();
+                    let along = row(&frames[usize::from(!is_smooth)][next - 1], lane).into();
+                    Neighbours { uv, steps }.texture_point(next - 1, &points[lane], along)
+                }
+            });
+            let look_ups = textures.look_up_lanes(&pictures, &at);
+            for lane in noted {
+                let Some(map) = maps[lane] else { continue };
+                let looked_up = look_ups.as_ref().map(|look_ups| look_ups.of(pictures[lane], lane));
+                let point = TexturePoint { looked_up, ..at[lane] };
+                self.bumps.heights[place][lane] = textures.float(map.height, &point);
+            }
+        }
+    }
+
+    /// ∂p/∂u and ∂p/∂v by which heights are compared.
+    #[inline(always)]
+    fn derivatives_of_heights<S: Simd>(&self, simd: S) -> [Vector<f32x8<S>>; 2] {
+        let smooth = bitmask(&by_lane!(lane => self.limits[lane].takes_smooth_derivatives()));
+        let is_smooth = mask32x8::from_bitmask(simd, smooth.into());
+        let [along_u, along_v] = &self.derivatives;
+        [
+            Vector::select(is_smooth, load(simd, &self.dpdu), load(simd, along_u)),
+            Vector::select(is_smooth, load(simd, &self.dpdv), load(simd, along_v)),
+        ]
     }
 
     /// Bends the frames of the lanes that were noted. `front` are the lanes whose ray hit the outside.
@@ -82,6 +155,46 @@ impl BentFrames {
             }
         }
         self.bent = BentLanes::default();
+    }
+}
+
+#[inline(never)]
+fn find_neighbours(kernel: NeighboursKernel<'_>) {
+    shade_together(kernel);
+}
+
+struct NeighboursKernel<'a> {
+    world: &'a World,
+    frames: &'a mut BentFrames,
+    surfaces: &'a VertexColumns,
+    uv: &'a Columns<2>,
+}
+
+impl Kernel for NeighboursKernel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { world, frames, surfaces, uv } = self;
+        let (limits, relief) = (&frames.limits, world.relief());
+        let load_f32 = |values: [f32; LANES]| f32x8::load_array(simd, values);
+        let seen = frames.bent.bumped & bitmask(&by_lane!(lane => limits[lane].sees_pixels()));
+        let zero = f32x8::splat(simd, 0.0);
+        let half = match relief.footprint.filter(|_| seen != 0) {
+            Some(pixels) => {
+                let position = surfaces.load_position(simd);
+                let position = Vector::splat(position.x, world.origin.to_array()) + position;
+                let (ng, derivatives) = (surfaces.load_ng(simd), frames.derivatives_of_heights(simd));
+                let [u, v]: [f32x8<S>; 2] = pixels.half(position, ng, derivatives);
+                let is_seen = mask32x8::from_bitmask(simd, seen.into());
+                [is_seen.select(u, zero), is_seen.select(v, zero)]
+            }
+            None => [zero; 2],
+        };
+        let step = load_f32(by_lane!(lane => limits[lane].step(relief.step)));
+        let Neighbours { uv, steps } = Neighbours::new([load_f32(uv[0]), load_f32(uv[1])], half, step);
+        frames.bumps.uv = uv.map(Into::into);
+        frames.bumps.steps = steps.map(Into::into);
     }
 }
 
@@ -119,14 +232,21 @@ impl Kernel for BendKernel<'_> {
             wo,
         };
         let is_in = |lanes: u32| mask32x8::from_bitmask(simd, lanes.into());
-        let BentLanes { all, mapped, following_dpdv, valid, turning } = frames.bent;
-        let bent = match mapped {
-            0 => ns,
-            mapped => {
-                let mapped_n = bending.mapped(load(simd, &frames.local), is_in(following_dpdv));
-                Vector::select(is_in(mapped), mapped_n, ns)
-            }
-        };
+        let BentLanes { all, bumped, mapped, following_dpdv, valid, turning } = frames.bent;
+        let mut bent = ns;
+        if mapped != 0 {
+            let n = bending.mapped(load(simd, &frames.local), is_in(following_dpdv));
+            bent = Vector::select(is_in(mapped), n, bent);
+        }
+        if bumped != 0 {
+            let load_f32 = |values: &[f32; LANES]| f32x8::load_array(simd, *values);
+            let Bumps { uv, steps, heights } = &frames.bumps;
+            let uv = [load_f32(&uv[0]), load_f32(&uv[1])];
+            let neighbours = Neighbours { uv, steps: [load_f32(&steps[0]), load_f32(&steps[1])] };
+            let heights = [load_f32(&heights[0]), load_f32(&heights[1]), load_f32(&heights[2])];
+            let n = neighbours.normal(ns, frames.derivatives_of_heights(simd), heights);
+            bent = Vector::select(is_in(bumped), n, bent);
+        }
         let n = bending.limited(bent, is_in(valid), is_in(turning));
         let (s, t) = frame_about(n, dpdu);
         surfaces.set_frames(simd, all, [s, t, n]);

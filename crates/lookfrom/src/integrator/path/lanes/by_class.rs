@@ -102,6 +102,16 @@ impl MaterialHits<'_> {
         with_class!(class, scatter_hits_by(self, points, queues, scattered, told))
     }
 
+    /// Bends the frames that were noted.
+    #[inline]
+    fn bend(&self, points: &mut ClassPoints) {
+        let &mut ClassPoints { ref mut surfaces, ref uv, front, ref mut bent, .. } = points;
+        if let Some(varying) = self.varying {
+            bent.look_up_heights(self.batch.world, self.hits, varying, (surfaces, uv));
+        }
+        bent.bend(surfaces, front);
+    }
+
     /// The rows of the materials' BSDFs. Frames that are bent alone are replaced; those that are bent together are noted.
     #[inline(always)]
     fn rows<B: MaterialRow>(&self, points: &mut ClassPoints, queues: &mut Queues) -> [Option<B>; LANES] {
@@ -124,7 +134,7 @@ impl MaterialHits<'_> {
             let at = (side, point);
             let bends_in_lanes = material.bends_in_lanes();
             if bends_in_lanes && (smooth & 1 << lane != 0 || material.has_bumps()) {
-                bent.note(lane, material.local_normal(&world.textures, point), material.normal_limit());
+                bent.note(lane, material, material.local_normal(&world.textures, point));
             }
             let mut row: Option<B> = if material.bends_frames() && !bends_in_lanes {
                 let geometry = bent.geometry(surfaces, lane, side.front);
@@ -155,7 +165,7 @@ fn scatter_hits_by<B: MaterialRow>(
     told: Option<&mut [Option<Bsdf>; LANES]>,
 ) -> bool {
     let rows = hits.rows::<B>(points, queues);
-    points.bent.bend(&mut points.surfaces, points.front);
+    hits.bend(points);
     if let Some(told) = told {
         *told = rows.map(|row| row.map(B::bsdf));
     }

@@ -126,6 +126,12 @@ impl VertexColumns {
         Vector::narrow(load_f64(simd, &self.ng))
     }
 
+    /// The positions, in render space.
+    #[inline(always)]
+    pub(super) fn load_position<S: Simd>(&self, simd: S) -> Vector<f64x8<S>> {
+        load_f64(simd, &self.position)
+    }
+
     /// The directions back along the rays.
     #[inline(always)]
     pub(super) fn load_wo<S: Simd>(&self, simd: S) -> Vector<f32x8<S>> {

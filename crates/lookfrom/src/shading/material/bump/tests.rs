@@ -141,3 +141,65 @@ fn eight_frames_at_once_are_eight_one_by_one() {
         }
     }
 }
+
+/// The neighbours of eight points, and their normals.
+struct EightBumps<'a> {
+    points: &'a [[f32; 14]; LANES],
+}
+
+/// The neighbours of a point and the normal there, of u and v, half a footprint, a step, two derivatives and three heights.
+fn bumps<R: Real>(numbers: [R; 14], n: Vector<R>) -> [R; 7] {
+    let [u, v, half_u, half_v, step, ux, uy, uz, vx, vy, vz, here, along_u, along_v] = numbers;
+    let neighbours = Neighbours::new([u, v], [half_u, half_v], step);
+    let derivatives = [Vector { x: ux, y: uy, z: uz }, Vector { x: vx, y: vy, z: vz }];
+    let n = neighbours.normal(n, derivatives, [here, along_u, along_v]);
+    let Neighbours { uv, steps } = neighbours;
+    [uv[0], uv[1], steps[0], steps[1], n.x, n.y, n.z]
+}
+
+impl Kernel for EightBumps<'_> {
+    type Output = [[f32; LANES]; 7];
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        let numbers = std::array::from_fn(
+            #[inline(always)]
+            |k| f32x8::load_array(simd, by_lane!(lane => self.points[lane][k])),
+        );
+        let n: Vector<f32x8<S>> = Vector::splat(numbers[0], [0.6, 0.0, 0.8]);
+        bumps(numbers, n).map(Into::into)
+    }
+}
+
+#[test]
+fn eight_bumps_at_once_are_eight_one_by_one() {
+    let mut levels = vec![Level::baseline(), Level::new()];
+    #[cfg(target_arch = "x86_64")]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    for round in 0..4000 {
+        // Numbers of any size, now and then 0.
+        let number = |lane: usize, k: u64| {
+            let bits = hash::pair(8 * round + lane as u64, k);
+            let size = libm::exp2f((bits % 41) as f32 - 20.0);
+            if bits.is_multiple_of(23) { 0.0 } else { size * ((bits >> 40) as f32 / 8_388_608.0 - 1.0) }
+        };
+        let points: [[f32; 14]; LANES] = std::array::from_fn(|lane| {
+            std::array::from_fn(|k| match k {
+                2..=4 => number(lane, k as u64).abs(),
+                _ => number(lane, k as u64),
+            })
+        });
+        for &level in &levels {
+            let together = dispatch(level, EightBumps { points: &points });
+            for (lane, &numbers) in points.iter().enumerate() {
+                let alone = bumps(numbers, Vector::from(Vec3::new(0.6, 0.0, 0.8)));
+                let bits = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
+                assert_eq!(together.map(|column| bits(column[lane])), alone.map(bits), "{numbers:?}");
+                if numbers[4] > 0.0 {
+                    let [u, v, step_u, step_v, ..] = alone;
+                    assert!(step_u > 0.0 && step_v > 0.0 && u > numbers[0] && v > numbers[1], "{numbers:?}");
+                }
+            }
+        }
+    }
+}
