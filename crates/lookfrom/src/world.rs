@@ -44,7 +44,7 @@ use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
 use crate::shading::material::{self, Material, MaterialKind, Relief, Shading, ShadingContext};
 use crate::shading::texture::{
-    FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
+    PicturedFloat, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
 };
 
 /// A scene compiled for light transport: geometry, materials, media and lights.
@@ -69,7 +69,7 @@ pub struct World {
     /// Materials of surfaces.
     pub(crate) materials: Arc<[Material]>,
     /// Alpha textures, see [`MaterialBinding::alpha`](crate::primitive::MaterialBinding::alpha).
-    pub(crate) alphas: Vec<FloatTexture>,
+    pub(crate) alphas: Vec<PicturedFloat>,
     /// Media that fill bodies and space.
     pub(crate) media: Vec<Medium>,
     /// Whether media that fill space count
@@ -200,7 +200,7 @@ impl World {
             light: binding.light,
             single_sided: binding.single_sided,
             vertex_data: binding.vertex_data,
-            alpha: binding.alpha.map(|index| self.alphas[index as usize]),
+            alpha: binding.alpha.map(|index| self.alphas[index as usize].texture),
             medium_interface: binding.medium_interface.map(|index| self.medium_interfaces[index as usize]),
             shape: binding.shape,
             primitive: hit.primitive,
@@ -325,7 +325,7 @@ impl World {
 
     /// Whether materials depend on the footprint of pixels.
     pub(crate) fn needs_footprint(&self) -> bool {
-        self.materials.iter().any(|material| material.height_texture().is_some() || material.needs_footprint)
+        self.materials.iter().any(|material| material.heights().is_some() || material.needs_footprint)
     }
 
     /// This world seen by a camera with these pixels.

@@ -268,8 +268,7 @@ mod tests {
                         pixels.at(world[lane].into(), ng[lane].into(), derivatives);
                     let [x, y] = p;
                     let ng = DVec3::from(ng[lane]).as_vec3().into();
-                    let [u, v] =
-                        pixels.half(world[lane].into(), ng, derivatives.map(Vec3::into));
+                    let [u, v] = pixels.half(world[lane].into(), ng, derivatives.map(Vec3::into));
                     let [[ux, vx], [uy, vy]] = uv.map(Vec2::to_array);
                     let alone = [ux, vx, uy, vy, x.x, x.y, x.z, y.x, y.y, y.z, u, v];
                     assert_eq!(eight[lane].map(f32::to_bits), alone.map(f32::to_bits), "{alone:?} {round}");

@@ -39,9 +39,8 @@ pub(crate) use evaluator::Evaluator;
 pub use evaluator::ShadingContext;
 pub use hair::{HairMaterial, Pigment};
 pub use kind::{
-    Anisotropy, BumpMapping, CoatMaterial, HeightTexture, Ior, MaterialKind, Metal, NormalTexture,
-    PlasticMaterial, PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures,
-    WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures, WhittedMaterial,
 };
 pub use open_pbr::{OpenPbrMaterial, Tangent};
 pub(crate) use rows::{MaterialRow, Side};

@@ -33,7 +33,7 @@ use lookfrom_scene::texture::{Channel, Mapping, TextureKind, Wrap};
 
 pub(crate) use self::input::uplift;
 pub use self::input::{FloatTexture, SpectrumTexture, SpectrumType};
-pub use self::look_ups::{LookUps, LookedUp, PictureSet};
+pub use self::look_ups::{LookUps, LookedUp, PictureSet, PicturedFloat};
 pub(crate) use self::mapping::sphere_uv;
 pub use self::picture::{blended_texels, look_up};
 pub(crate) use self::picture::{look_up_lanes, nearest_lanes};

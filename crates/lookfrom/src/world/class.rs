@@ -13,8 +13,8 @@ use crate::shading::material::MaterialKind;
 pub(crate) enum Class {
     /// A mesh.
     Mesh {
-        /// The class of its material's BSDFs, where it has no emission or alpha.
-        bsdf: Option<BsdfClass>,
+        /// That of hits which are shaded in lanes: where its material has a class of BSDFs, and it has no emission.
+        hits: Option<HitClass>,
         /// Its material, where it is bare.
         bare: Option<u32>,
         /// Whether it is an interface of media and nothing else.
@@ -24,8 +24,8 @@ pub(crate) enum Class {
     Spheres {
         /// The material of each one that is bare.
         bare: Vec<Option<u32>>,
-        /// The class of the BSDFs of each one, as for meshes.
-        bsdfs: Vec<Option<BsdfClass>>,
+        /// The class of hits on each one, as for meshes.
+        hits: Vec<Option<HitClass>>,
         /// Whether each is an interface of media and nothing else.
         are_interfaces: Vec<bool>,
     },
@@ -50,6 +50,8 @@ pub(crate) struct HitClass {
     pub(crate) bsdf: BsdfClass,
     /// Whether it is on a sphere, and not on a mesh.
     pub(crate) is_sphere: bool,
+    /// Index into the world's alphas, where the surface has one.
+    pub(crate) alpha: Option<u32>,
 }
 
 impl World {
@@ -71,15 +73,15 @@ impl World {
             let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
             is_alone && matches!(self.materials[binding.material as usize].kind, MaterialKind::Interface)
         };
-        let bsdf = |binding: &MaterialBinding| {
-            let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_only_material();
-            let is_whole = is_alone && !(self.has_open_fronts && binding.single_sided);
+        let hits_on = |binding: &MaterialBinding, is_sphere: bool| {
+            let is_whole = binding.light.is_none() && !(self.has_open_fronts && binding.single_sided);
             let material = &self.materials[binding.material as usize];
-            material.class().filter(|_| is_whole)
+            let bsdf = material.class().filter(|_| is_whole)?;
+            Some(HitClass { bsdf, is_sphere, alpha: binding.alpha })
         };
         match primitives {
             Primitives::Mesh(mesh) => Class::Mesh {
-                bsdf: bsdf(&mesh.binding),
+                hits: hits_on(&mesh.binding, false),
                 bare: bare(&mesh.binding),
                 is_interface: is_interface(&mesh.binding),
             },
@@ -87,7 +89,7 @@ impl World {
                 let bindings = || spheres.binding_of.iter().map(|&of| &spheres.bindings[of as usize].binding);
                 Class::Spheres {
                     bare: bindings().map(bare).collect(),
-                    bsdfs: bindings().map(bsdf).collect(),
+                    hits: bindings().map(|binding| hits_on(binding, true)).collect(),
                     are_interfaces: bindings().map(is_interface).collect(),
                 }
             }
@@ -137,12 +139,11 @@ impl World {
                 &self.object_classes[instance.object as usize][hit.geometry as usize]
             }
         };
-        let (bsdf, is_sphere) = match class {
-            Class::Mesh { bsdf, .. } => (*bsdf, false),
-            Class::Spheres { bsdfs, .. } if hit.instance == NONE => (bsdfs[hit.primitive as usize], true),
-            Class::Spheres { .. } | Class::General => (None, false),
-        };
-        bsdf.map(|bsdf| HitClass { bsdf, is_sphere })
+        match class {
+            Class::Mesh { hits, .. } => *hits,
+            Class::Spheres { hits, .. } if hit.instance == NONE => hits[hit.primitive as usize],
+            Class::Spheres { .. } | Class::General => None,
+        }
     }
 
     /// The mesh of a hit on what stands still, and the placement of the instance that it is in; `None` for other geometries.

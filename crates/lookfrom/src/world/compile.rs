@@ -167,7 +167,7 @@ impl World {
             radius,
             catcher_irradiance: None,
             materials: materials.into(),
-            alphas,
+            alphas: alphas.into_iter().map(|alpha| textures.pictured(alpha)).collect(),
             media,
             medium_interfaces,
             vertex_data,

@@ -10,6 +10,7 @@ mod bent_frames;
 mod by_class;
 mod class_hits;
 mod class_points;
+mod gaps;
 mod in_medium;
 mod kernel;
 mod medium;

@@ -81,7 +81,7 @@ pub(super) fn frame(
 ) -> Frame {
     let bending = Bending::from(surface);
     let bent = match bump_mapping {
-        BumpMapping::Bump(map) => heights::displaced((map, limit), relief, surface, at),
+        BumpMapping::Bump(heights) => heights::displaced((heights, limit), relief, surface, at),
         map => LocalNormal::at(map, relief.textures, at)
             .map_or(bending.ns, |local| bending.mapped(local.n.into(), local.follows_dpdv)),
     };

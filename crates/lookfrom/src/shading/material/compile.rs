@@ -7,9 +7,8 @@ use lookfrom_scene::material::{Color, Scalar};
 use lookfrom_scene::scene::{TextureId, VertexNormals};
 
 use super::kind::{
-    Anisotropy, BumpMapping, CoatMaterial, HeightTexture, Ior, MaterialKind, Metal, NormalTexture,
-    PlasticMaterial, PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures,
-    WhittedMaterial,
+    Anisotropy, BumpMapping, CoatMaterial, Ior, MaterialKind, Metal, NormalTexture, PlasticMaterial,
+    PrincipledMaterial, Roughness, SubsurfaceMaterial, SubsurfaceMedium, TintTextures, WhittedMaterial,
 };
 use super::{Material, albedo, approximate, measured, pictures, principled};
 use crate::shading::bsdf::layered::CoatInterior;
@@ -17,7 +16,7 @@ use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
 use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bssrdf::table::ProfileTable;
-use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, SpectrumType, Textures};
+use crate::shading::texture::{SpectrumTexture, SpectrumType, Textures};
 
 /// Whether a path sees nothing of Whitted's model but diffuse reflection.
 fn is_matte(whitted: &written::Whitted) -> bool {
@@ -239,16 +238,10 @@ impl<'a> Compiler<'a> {
     fn bump_mapping(&self, written: &written::BumpMapping) -> BumpMapping {
         match written {
             written::BumpMapping::None => BumpMapping::None,
-            written::BumpMapping::Bump(height) => BumpMapping::Bump(self.heights((*height).into())),
+            written::BumpMapping::Bump(height) => BumpMapping::Bump(self.textures.pictured((*height).into())),
             written::BumpMapping::NormalMap(image) => BumpMapping::NormalMap(image.index()),
             written::BumpMapping::NormalTexture(map) => BumpMapping::NormalTexture(self.normals(map)),
         }
-    }
-
-    fn heights(&self, height: FloatTexture) -> HeightTexture {
-        let mut pictures = PictureSet::EMPTY;
-        self.textures.add_pictures_of_float(height, &mut pictures);
-        HeightTexture { height, pictures }
     }
 
     pub(super) fn normals(&self, map: &written::NormalTexture) -> NormalTexture {

@@ -16,7 +16,7 @@ use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
 use crate::shading::bsdf::plastic::Interface;
 use crate::shading::bsdf::principled as bsdf;
 use crate::shading::bssrdf::table::ProfileTable;
-use crate::shading::texture::{FloatTexture, PictureSet, SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{FloatTexture, PicturedFloat, SpectrumTexture, TexturePoint, Textures};
 
 /// The types of materials.
 #[derive(Clone, Debug)]
@@ -291,22 +291,13 @@ pub enum SubsurfaceMedium {
 pub enum BumpMapping {
     /// Nothing.
     None,
-    /// A bump map.
-    Bump(HeightTexture),
+    /// Heights along the normal, in the world's unit of length.
+    Bump(PicturedFloat),
     /// A normal map in the tangent frame (u, v, outward), by its image index: x, y, z are 2·texel − 1. Row 0 is v =
     /// 1.
     NormalMap(usize),
     /// A normal map by a texture, as in glTF.
     NormalTexture(NormalTexture),
-}
-
-/// Heights along the normal, in the world's unit of length.
-#[derive(Clone, Copy, Debug)]
-pub struct HeightTexture {
-    /// By texture.
-    pub height: FloatTexture,
-    /// The pictures that it depends on.
-    pub pictures: PictureSet,
 }
 
 /// A normal map in the tangent frame: `(scale, scale, 1) · (2·texel − 1)`, normalised.

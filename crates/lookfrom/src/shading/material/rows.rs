@@ -1,8 +1,7 @@
 //! Materials whose BSDFs are computed in lanes: their classes, and their evaluation to a BSDF of a class.
 
 use super::{
-    BumpMapping, Evaluator, Frame, Guard, HeightTexture, LocalNormal, Material, MaterialKind, Relief,
-    ShadingContext,
+    BumpMapping, Evaluator, Frame, Guard, LocalNormal, Material, MaterialKind, Relief, ShadingContext,
 };
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::bsdf::conductor::Conductor;
@@ -21,7 +20,7 @@ use crate::shading::bsdf::thin_dielectric::ThinDielectric;
 use crate::shading::bsdf::tinted::TintedDielectric;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::texture::{TexturePoint, Textures};
+use crate::shading::texture::{PicturedFloat, TexturePoint, Textures};
 
 impl Material {
     /// The class of its BSDFs, if they are computed in lanes: not chosen at random, and the same in all media.
@@ -54,10 +53,10 @@ impl Material {
         !matches!(self.bump_mapping, BumpMapping::None)
     }
 
-    /// Its bump map, if it has one.
+    /// The heights of its bump map, if it has one.
     #[inline]
-    pub(crate) fn height_texture(&self) -> Option<&HeightTexture> {
-        if let BumpMapping::Bump(map) = &self.bump_mapping { Some(map) } else { None }
+    pub(crate) fn heights(&self) -> Option<&PicturedFloat> {
+        if let BumpMapping::Bump(heights) = &self.bump_mapping { Some(heights) } else { None }
     }
 
     /// Whether its shading frame is another than that of the surface.

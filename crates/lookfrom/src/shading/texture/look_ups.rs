@@ -85,6 +85,15 @@ impl PictureSet {
     }
 }
 
+/// A number that may vary over a surface, with the pictures that it depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PicturedFloat {
+    /// The number.
+    pub texture: FloatTexture,
+    /// Its pictures.
+    pub pictures: PictureSet,
+}
+
 /// The colours and opacities of pictures at eight points, by place in the points' sets and by point.
 #[derive(Clone, Copy, Debug)]
 pub struct LookUps([[[f32; 4]; LANES]; MOST]);
@@ -256,6 +265,27 @@ impl Textures {
     #[inline]
     fn mip_map(&self, image: usize) -> MipMap<'_> {
         MipMap { image: &self.images[image], coarser: &self.coarser_levels[image] }
+    }
+
+    /// A number with its pictures.
+    pub fn pictured(&self, texture: FloatTexture) -> PicturedFloat {
+        let mut pictures = PictureSet::EMPTY;
+        self.add_pictures_of_float(texture, &mut pictures);
+        PicturedFloat { texture, pictures }
+    }
+
+    /// The numbers at eight points, in the lanes where there are any.
+    pub(crate) fn floats(
+        &self,
+        numbers: &[Option<&PicturedFloat>; LANES],
+        points: &[TexturePoint<'_>; LANES],
+    ) -> [f32; LANES] {
+        let pictures = by_lane!(lane => numbers[lane].map_or(&PictureSet::EMPTY, |number| &number.pictures));
+        let look_ups = self.look_up_lanes(&pictures, points);
+        by_lane!(lane => numbers[lane].map_or(0.0, |number| {
+            let looked_up = look_ups.as_ref().map(|look_ups| look_ups.of(pictures[lane], lane));
+            self.float(number.texture, &TexturePoint { looked_up, ..points[lane] })
+        }))
     }
 
     /// Adds the pictures of a colour.

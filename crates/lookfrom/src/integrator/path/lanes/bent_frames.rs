@@ -9,7 +9,7 @@ use crate::core::lanes::{Columns, LANES, bitmask, by_lane, load, row, set_row, s
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::material::{Bending, Guard, LocalNormal, Material, Neighbours, NormalLimit, frame_about};
-use crate::shading::texture::{PictureSet, TexturePoint, Textures};
+use crate::shading::texture::{TexturePoint, Textures};
 use crate::world::World;
 
 /// The directions from which bent frames are made, and the normals of normal maps. Masks have bit i for lane i.
@@ -72,7 +72,7 @@ impl BentFrames {
     pub(super) fn note(&mut self, lane: usize, material: &Material, local: Option<LocalNormal>) {
         let (bent, bit, limit) = (&mut self.bent, 1 << lane, material.normal_limit());
         bent.all |= bit;
-        bent.bumped |= u32::from(material.height_texture().is_some()) << lane;
+        bent.bumped |= u32::from(material.heights().is_some()) << lane;
         if let Some(LocalNormal { n, follows_dpdv }) = local {
             bent.mapped |= bit;
             bent.following_dpdv |= u32::from(follows_dpdv) << lane;
@@ -105,28 +105,23 @@ impl BentFrames {
         hits: &[ClassHit<'_>; LANES],
         points: &[TexturePoint<'_>; LANES],
     ) {
-        let (noted, frames) = (LaneMask(self.bent.bumped), [&[self.dpdu, self.dpdv], &self.derivatives]);
-        let maps = by_lane!(lane => hits[lane].material.height_texture());
-        let pictures = by_lane!(lane => maps[lane].map_or(&PictureSet::EMPTY, |map| &map.pictures));
-        for place in 0..3 {
-            let at = std::array::from_fn(|lane| match place {
-                _ if self.bent.bumped & 1 << lane == 0 => TexturePoint::NOWHERE,
-                0 => points[lane].alone(),
-                next => {
+        let is_noted = |lane: usize| self.bent.bumped & 1 << lane != 0;
+        let maps = by_lane!(lane => hits[lane].material.heights().filter(|_| is_noted(lane)));
+        let here = textures.floats(&maps, points);
+        let [further_along_u, further_along_v] = [0, 1].map(|axis| {
+            let derivatives = [&self.derivatives[axis], [&self.dpdu, &self.dpdv][axis]];
+            let neighbours = by_lane!(lane => match is_noted(lane) {
+                true => {
                     let (uv, steps) = (row(&self.bumps.uv, lane), row(&self.bumps.steps, lane));
                     let is_smooth = self.limits[lane].takes_smooth_derivatives();
-                    let along = row(&frames[usize::from(!is_smooth)][next - 1], lane).into();
-                    Neighbours { uv, steps }.texture_point(next - 1, &points[lane], along)
+                    let along = row(derivatives[usize::from(is_smooth)], lane).into();
+                    Neighbours { uv, steps }.texture_point(axis, &points[lane], along)
                 }
+                false => TexturePoint::NOWHERE,
             });
-            let look_ups = textures.look_up_lanes(&pictures, &at);
-            for lane in noted {
-                let Some(map) = maps[lane] else { continue };
-                let looked_up = look_ups.as_ref().map(|look_ups| look_ups.of(pictures[lane], lane));
-                let point = TexturePoint { looked_up, ..at[lane] };
-                self.bumps.heights[place][lane] = textures.float(map.height, &point);
-            }
-        }
+            textures.floats(&maps, &neighbours)
+        });
+        self.bumps.heights = [here, further_along_u, further_along_v];
     }
 
     /// ∂p/∂u and ∂p/∂v by which heights are compared.

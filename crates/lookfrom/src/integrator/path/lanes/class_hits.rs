@@ -41,6 +41,12 @@ pub(super) struct ClassHit<'a> {
 }
 
 impl ClassHit<'_> {
+    /// Whether its material varies, or it has an alpha.
+    #[inline]
+    fn varies(&self) -> bool {
+        self.material.varies || self.binding.alpha.is_some()
+    }
+
     /// Whether the path passes the surface where it hit the back of it.
     #[inline]
     fn passes_back_faces(&self) -> bool {
@@ -59,7 +65,7 @@ pub(super) enum Shapes<'a> {
 pub(super) struct ClassHits<'a> {
     pub(super) hits: [ClassHit<'a>; LANES],
     pub(super) shapes: Shapes<'a>,
-    /// Whether any material varies.
+    /// Whether any material varies, or any surface has an alpha.
     pub(super) vary: bool,
     /// Lanes of camera rays whose surfaces AOVs need.
     pub(super) are_first: u32,
@@ -113,9 +119,11 @@ impl PathTracer {
         if P::LISTENS {
             tell_of_shading(world, (hits, active), &told, points, output);
         }
-        if active & class_hits.are_first != 0 {
-            let first = output.queues.first_surfaces.block();
-            class_hits.leave(world, active, varying, points, first);
+        let first = active & class_hits.are_first;
+        if first != 0 {
+            let opaque = class_hits.are_opaque(world, points);
+            let block = output.queues.first_surfaces.block();
+            class_hits.leave(world, first & opaque, varying, points, block);
             output.queues.first_surfaces.leave_block();
         }
         if !are_scattered {
@@ -137,7 +145,7 @@ impl PathTracer {
 
     /// Takes paths that pass the surface, because they hit the back of it, through it one by one. Returns the lanes of the others.
     #[inline(always)]
-    fn pass_back_faces<P: Probe>(
+    pub(super) fn pass_back_faces<P: Probe>(
         &self,
         batch: &HitBatch<'_>,
         indices: &[u32],
@@ -158,7 +166,11 @@ impl PathTracer {
 
 impl<'a> ClassHits<'a> {
     #[inline(always)]
-    fn of(batch: &HitBatch<'a>, indices: &[u32], is_first: impl Fn(&Path) -> bool) -> Option<Self> {
+    pub(super) fn of(
+        batch: &HitBatch<'a>,
+        indices: &[u32],
+        is_first: impl Fn(&Path) -> bool,
+    ) -> Option<Self> {
         let index = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
         let (world, all) = (batch.world, batch.hits);
         let (shapes, bindings) = match world.sphere(&all[index(0)]) {
@@ -177,7 +189,7 @@ impl<'a> ClassHits<'a> {
             binding: bindings[lane],
             material: &world.materials[bindings[lane].material as usize],
         });
-        let vary = hits.iter().any(|hit| hit.material.varies);
+        let vary = hits.iter().any(|hit| hit.varies());
         let are_first = bitmask(&by_lane!(lane => is_first(hits[lane].path)));
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
         let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
@@ -195,22 +207,56 @@ impl<'a> ClassHits<'a> {
         LaneMask(black).filter(is_behind).fold(0, |lanes, lane| lanes | 1 << lane)
     }
 
+    /// The alphas; 1 where there are none.
+    pub(super) fn alphas(&self, world: &World, points: &ClassPoints) -> [f32; LANES] {
+        let alphas =
+            by_lane!(lane => self.hits[lane].binding.alpha.map(|alpha| &world.alphas[alpha as usize]));
+        let mut at = self.points_alone(world, points);
+        at.iter_mut().for_each(|point| point.footprint = None);
+        let values = world.textures.floats(&alphas, &at);
+        by_lane!(lane => if alphas[lane].is_some() { values[lane] } else { 1.0 })
+    }
+
+    /// The lanes that show nothing of what is behind.
+    fn are_opaque(&self, world: &World, points: &ClassPoints) -> u32 {
+        if self.hits.iter().all(|hit| hit.binding.alpha.is_none()) {
+            return u32::MAX;
+        }
+        let alphas = self.alphas(world, points);
+        bitmask(&by_lane!(lane => alphas[lane] >= 1.0))
+    }
+
     /// The texture points of materials that vary, with what their pictures are there, if any does.
     #[inline(always)]
     fn texture_points<'b>(
-        &self,
+        &'b self,
         world: &'b World,
-        ClassPoints { surfaces, uv, front, footprints, .. }: &ClassPoints,
+        points: &ClassPoints,
         look_ups: &'b mut Option<LookUps>,
-    ) -> Option<[TexturePoint<'b>; LANES]>
-    where
-        'a: 'b,
-    {
+    ) -> Option<[TexturePoint<'b>; LANES]> {
         if !self.vary {
             return None;
         }
+        let mut points = self.points_alone(world, points);
+        let pictures = by_lane!(lane => &self.hits[lane].material.pictures);
+        *look_ups = world.textures.look_up_lanes(&pictures, &points);
+        if let Some(look_ups) = look_ups {
+            for (lane, point) in points.iter_mut().enumerate() {
+                point.looked_up = Some(look_ups.of(pictures[lane], lane));
+            }
+        }
+        Some(points)
+    }
+
+    /// The texture points of hits that vary.
+    #[inline(always)]
+    fn points_alone(
+        &self,
+        world: &World,
+        ClassPoints { surfaces, uv, front, footprints, .. }: &ClassPoints,
+    ) -> [TexturePoint<'a>; LANES] {
         let mut points = [TexturePoint::NOWHERE; LANES];
-        for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.material.varies) {
+        for (lane, hit) in self.hits.iter().enumerate().filter(|(_, hit)| hit.varies()) {
             let at = (surfaces.position(lane), DVec3::from_array(surfaces.ng(lane)).as_vec3());
             points[lane] = match &self.shapes {
                 Shapes::Meshes(meshes) => {
@@ -223,28 +269,21 @@ impl<'a> ClassHits<'a> {
                 points[lane].footprint = Some(footprints.of(lane));
             }
         }
-        let pictures = by_lane!(lane => &self.hits[lane].material.pictures);
-        *look_ups = world.textures.look_up_lanes(&pictures, &points);
-        if let Some(look_ups) = look_ups {
-            for (lane, point) in points.iter_mut().enumerate() {
-                point.looked_up = Some(look_ups.of(pictures[lane], lane));
-            }
-        }
-        Some(points)
+        points
     }
 
-    /// Leaves the surfaces of active camera rays to AOVs.
+    /// Leaves the surfaces of camera rays, in the lanes of a mask, to AOVs.
     #[inline(never)]
     fn leave(
         &self,
         world: &World,
-        active: u32,
+        lanes: u32,
         varying: Option<&[TexturePoint<'_>; LANES]>,
         ClassPoints { surfaces, uv, bent, .. }: &ClassPoints,
         first: &mut FirstSurfaceColumns,
     ) {
         surfaces.leave(first);
-        (first.lanes, first.ns, first.uv) = (active & self.are_first, bent.ns, *uv);
+        (first.lanes, first.ns, first.uv) = (lanes, bent.ns, *uv);
         for lane in LaneMask(first.lanes) {
             let hit = &self.hits[lane];
             let point = varying.map_or(&TexturePoint::NOWHERE, |points| &points[lane]);

@@ -102,7 +102,7 @@ impl Kernel for PointsKernel<'_> {
             (points.bent.ns, points.bent.dpdu) = (store(ns), store(dpdu));
             points.bent.dpdv = store(dpdv);
         }
-        if hits.iter().any(|hit| hit.material.height_texture().is_some()) {
+        if hits.iter().any(|hit| hit.material.heights().is_some()) {
             let [dpdu, dpdv]: [Vector<f32x8<S>>; 2] = [Vector::narrow(at.dpdu), Vector::narrow(at.dpdv)];
             points.bent.derivatives = [store(dpdu), store(dpdv)];
         }

@@ -1,13 +1,16 @@
 //! Paths that wait until eight of them have met BSDFs of one class, in bins.
 
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_simd::LaneMask;
 
+use super::gaps::is_there;
 use super::{MediumVertex, Memory, Path, StepOutput};
-use crate::core::lanes::LANES;
+use crate::core::lanes::{LANES, by_lane};
 use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
 use crate::shading::bsdf::BsdfClass;
+use crate::shading::texture::FloatTexture;
 use crate::world::{HitClass, World};
 
 /// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
@@ -20,6 +23,8 @@ pub(in crate::integrator::path) struct Waiting {
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
     in_media: Vec<MediumVertex>,
     interfaces: Interfaces,
+    /// Hits on surfaces with an alpha that is not tested yet, of meshes and of spheres: their classes and indices in the batch.
+    with_alpha: [Vec<(HitClass, u32)>; 2],
     /// Paths at interfaces of media.
     at_interfaces: Vec<(Path, Hit)>,
     /// Paths that have come through a medium to shapes whose BSDFs have a class, and what they have hit.
@@ -62,13 +67,66 @@ impl Waiting {
         self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape_together(batch, eight, output));
     }
 
-    /// Adds a hit, and scatters the hits of its class where they fill the lanes.
+    /// Adds a hit: it waits for others of its class, if it is there.
     #[inline]
     pub(in crate::integrator::path) fn push_hit<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (HitClass { bsdf, is_sphere }, index): (HitClass, usize),
+        (class, index): (HitClass, usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        match class.alpha.map(|alpha| &batch.world.alphas[alpha as usize].texture) {
+            Some(FloatTexture::Constant(alpha)) if is_there(batch, &batch.paths[index], *alpha) => {
+                self.push_present(tracer, batch, (class, index), output);
+            }
+            Some(_) => self.push_with_alpha(tracer, batch, (class, index), output),
+            None => self.push_present(tracer, batch, (class, index), output),
+        }
+    }
+
+    /// Adds a hit on a surface with an alpha, and tests those that are there where they fill the lanes.
+    #[inline(never)]
+    fn push_with_alpha<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        (class, index): (HitClass, usize),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let hits = &mut self.with_alpha[usize::from(class.is_sphere)];
+        if fills_lanes(hits, (class, index as u32)) {
+            self.test_alphas(tracer, batch, class.is_sphere, output);
+        }
+    }
+
+    /// Tests hits on surfaces with an alpha, and adds those that are there.
+    fn test_alphas<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        are_spheres: bool,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        let mut hits = std::mem::take(&mut self.with_alpha[usize::from(are_spheres)]);
+        let Some((_, last)) = hits.last() else { return };
+        let indices = by_lane!(lane => hits.get(lane).map_or(*last, |(_, index)| *index));
+        let there = tracer.pass_gaps(batch, &indices[..hits.len()], &mut self.memory.points, output);
+        for lane in LaneMask(there) {
+            let (class, index) = hits[lane];
+            self.push_present(tracer, batch, (class, index as usize), output);
+        }
+        hits.clear();
+        self.with_alpha[usize::from(are_spheres)] = hits;
+    }
+
+    /// Adds a hit on a surface that is there, and scatters the hits of its class where they fill the lanes.
+    #[inline]
+    fn push_present<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        (HitClass { bsdf, is_sphere, .. }, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
         let memory = &mut self.memory;
@@ -175,13 +233,16 @@ impl Waiting {
         self.flush_hits(tracer, &batch, output);
     }
 
-    /// Scatters the hits that are left.
+    /// Tests and scatters the hits that are left.
     fn flush_hits<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
+        for are_spheres in [false, true] {
+            self.test_alphas(tracer, batch, are_spheres, output);
+        }
         let Self { bins, memory, .. } = self;
         for &class in BsdfClass::ALL {
             for first in [0, ON_SPHERES] {

@@ -8,8 +8,7 @@ use lookfrom_simd::{Float, Real};
 use super::{NormalLimit, Relief, normalized_or};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::material::HeightTexture;
-use crate::shading::texture::TexturePoint;
+use crate::shading::texture::{PicturedFloat, TexturePoint};
 
 /// An offset in u and v that is much smaller than texels.
 const FINE_STEP: f32 = 0.000_02;
@@ -97,7 +96,7 @@ impl Neighbours<f32> {
 
 /// The normal of the surface displaced along its shading normal by a bump map.
 pub(super) fn displaced(
-    (map, limit): (&HeightTexture, NormalLimit),
+    (heights, limit): (&PicturedFloat, NormalLimit),
     relief: Relief<'_>,
     surface: &ShadingGeometry,
     at: &TexturePoint<'_>,
@@ -112,7 +111,7 @@ pub(super) fn displaced(
         None => [0.0; 2],
     };
     let neighbours = Neighbours::new(at.uv.into(), half, limit.step(relief.step));
-    let height = |at: &TexturePoint<'_>| relief.textures.float(map.height, at);
+    let height = |at: &TexturePoint<'_>| relief.textures.float(heights.texture, at);
     let further = |axis: usize| height(&neighbours.texture_point(axis, at, along[axis]));
     neighbours.normal(surface.ns.into(), derivatives, [height(at), further(0), further(1)])
 }
