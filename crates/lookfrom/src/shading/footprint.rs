@@ -269,7 +269,7 @@ mod tests {
                     let [x, y] = p;
                     let ng = DVec3::from(ng[lane]).as_vec3().into();
                     let [u, v] = pixels.half(world[lane].into(), ng, derivatives.map(Vec3::into));
-                    let [[ux, vx], [uy, vy]] = uv.map(Vec2::to_array);
+                    let [[ux, vx], [uy, vy]] = uv.map(<[f32; 2]>::from);
                     let alone = [ux, vx, uy, vy, x.x, x.y, x.z, y.x, y.y, y.z, u, v];
                     assert_eq!(eight[lane].map(f32::to_bits), alone.map(f32::to_bits), "{alone:?} {round}");
                     assert!(alone.iter().all(|x| x.is_finite()), "{alone:?}");

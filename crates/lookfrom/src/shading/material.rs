@@ -27,7 +27,7 @@ use lookfrom_scene::material::{BackFace, BumpGuard};
 
 use crate::shading::bsdf::Bsdf;
 use crate::shading::interaction::{ShadingGeometry, SurfaceInteraction};
-use crate::shading::texture::{PictureSet, TexturePoint};
+use crate::shading::texture::{FloatTexture, PictureSet, TexturePoint};
 
 pub use albedo::albedo;
 pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
@@ -85,6 +85,30 @@ impl Material {
         }
     }
 
+    /// Whether it is mixed of others.
+    #[inline]
+    pub(crate) fn is_mixture(&self) -> bool {
+        matches!(self.kind, MaterialKind::Mix { .. })
+    }
+
+    /// One of the materials that the material of an index is mixed of, by the shares of the second ones and a number in [0, 1), and what
+    /// is left of that number, which serves again; itself, where it is not mixed. `None` where a share is not known.
+    pub(crate) fn chosen(
+        materials: &[Self],
+        mut index: u32,
+        share: impl Fn(FloatTexture) -> Option<f32>,
+        number: impl FnOnce() -> f32,
+    ) -> Option<(u32, f32)> {
+        let mut u = number();
+        while let MaterialKind::Mix { materials: [first, second], amount } = &materials[index as usize].kind {
+            let amount = share(*amount)?.clamp(0.0, 1.0);
+            let takes_second = u < amount;
+            index = if takes_second { *second } else { *first };
+            u = if takes_second { u / amount } else { (u - amount) / (1.0 - amount) };
+        }
+        Some((index, u))
+    }
+
     /// True if it is layered, or may be replaced by a material that is.
     #[inline]
     pub(crate) fn takes_seed(&self) -> bool {
@@ -139,16 +163,9 @@ pub fn shading(
     arrival: ShadingContext<'_>,
 ) -> Option<Shading> {
     let textures = relief.textures;
-    let mut u = arrival.u;
-    let mut index = surface.material;
-    let mut material = &materials[index as usize];
-    while let MaterialKind::Mix { materials: [first, second], amount } = &material.kind {
-        let amount = textures.float(*amount, point).clamp(0.0, 1.0);
-        let chosen = if u < amount { second } else { first };
-        u = if u < amount { u / amount } else { (u - amount) / (1.0 - amount) };
-        index = *chosen;
-        material = &materials[index as usize];
-    }
+    let share = |amount: FloatTexture| Some(textures.float(amount, point));
+    let (index, u) = Material::chosen(materials, surface.material, share, || arrival.u)?;
+    let material = &materials[index as usize];
     let mut at = Evaluator::new(materials, textures, point, ShadingContext { u, ..arrival });
     let geometry = surface.shading_geometry();
     if let MaterialKind::Principled(look) = &material.kind {

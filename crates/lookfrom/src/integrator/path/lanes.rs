@@ -10,11 +10,11 @@ mod bent_frames;
 mod by_class;
 mod class_hits;
 mod class_points;
-mod gaps;
 mod in_medium;
 mod kernel;
 mod medium;
 mod skies;
+mod undecided;
 mod vertices;
 mod waiting;
 

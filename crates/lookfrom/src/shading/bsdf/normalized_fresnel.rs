@@ -153,6 +153,7 @@ impl RowBsdf for NormalizedFresnel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shading::bsdf::Bsdf;
     use crate::shading::bsdf::tests::{direction, numbers};
 
     /// Its integral with the cosine is 1 for importance, and η² for radiance.
@@ -160,7 +161,7 @@ mod tests {
     fn it_is_normalized() {
         const COUNT: u32 = 1000;
         for eta in [1.0, 1.1, 1.33, 1.5, 2.4] {
-            let bsdf = NormalizedFresnel::new(eta);
+            let bsdf = Bsdf::NormalizedFresnel(NormalizedFresnel::new(eta));
             for (mode, expected) in [(Mode::Importance, 1.0), (Mode::Radiance, eta * eta)] {
                 let part = |i: u32| {
                     let wi = direction(90.0 * (i as f32 + 0.5) / COUNT as f32, 30.0);
@@ -175,7 +176,7 @@ mod tests {
 
     #[test]
     fn samples_are_on_the_side_of_the_viewer() {
-        let bsdf = NormalizedFresnel::new(1.4);
+        let bsdf = Bsdf::NormalizedFresnel(NormalizedFresnel::new(1.4));
         for wo in [Vec3::Z, -Vec3::Z] {
             for index in 0..100 {
                 let (uc, u) = numbers(1, index);

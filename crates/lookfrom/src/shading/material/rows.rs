@@ -47,6 +47,16 @@ impl Material {
         }
     }
 
+    /// Whether all BSDFs of the material of an index have classes, also where it is mixed.
+    pub(crate) fn has_class(materials: &[Self], index: u32) -> bool {
+        match &materials[index as usize].kind {
+            MaterialKind::Mix { materials: parts, .. } => {
+                parts.iter().all(|part| Self::has_class(materials, *part))
+            }
+            _ => materials[index as usize].class().is_some(),
+        }
+    }
+
     /// Whether it has a bump or normal map.
     #[inline]
     pub(crate) fn has_bumps(&self) -> bool {

@@ -130,7 +130,7 @@ impl MaterialHits<'_> {
                 u: 0.0,
                 seed: seed_of_walks::<B>(&batch.streams.of(path)),
             };
-            let side = Side { material: hit.binding.material, front: front & 1 << lane != 0 };
+            let side = Side { material: hit.material_index, front: front & 1 << lane != 0 };
             let at = (side, point);
             let bends_in_lanes = material.bends_in_lanes();
             if bends_in_lanes && (smooth & 1 << lane != 0 || material.has_bumps()) {

@@ -37,7 +37,10 @@ pub(super) struct ClassHit<'a> {
     pub(super) path: &'a Path,
     pub(super) hit: &'a Hit,
     pub(super) binding: &'a MaterialBinding,
+    /// The material: that of the binding, or one that this is mixed of.
     pub(super) material: &'a Material,
+    /// Its index.
+    pub(super) material_index: u32,
 }
 
 impl ClassHit<'_> {
@@ -45,6 +48,12 @@ impl ClassHit<'_> {
     #[inline]
     fn varies(&self) -> bool {
         self.material.varies || self.binding.alpha.is_some()
+    }
+
+    /// Whether the material is one that the surface's is mixed of.
+    #[inline]
+    fn is_chosen(&self) -> bool {
+        self.material_index != self.binding.material
     }
 
     /// Whether the path passes the surface where it hit the back of it.
@@ -67,7 +76,7 @@ pub(super) struct ClassHits<'a> {
     pub(super) shapes: Shapes<'a>,
     /// Whether any material varies, or any surface has an alpha.
     pub(super) vary: bool,
-    /// Lanes of camera rays whose surfaces AOVs need.
+    /// Lanes of camera rays whose surfaces AOVs need: of mixed materials these are others than what chance has chosen.
     pub(super) are_first: u32,
     /// The pixels of the camera, if any material depends on their footprint.
     pub(super) pixels: Option<&'a PixelFootprint>,
@@ -98,7 +107,9 @@ impl PathTracer {
         let Memory { points, scattered } = memory;
         let first_surfaces = &output.queues.first_surfaces;
         let is_first = |path: &Path| path.is_root() && first_surfaces.are_left_in(path.interior);
-        let Some(class_hits) = ClassHits::of(batch, eight.paths, is_first) else { return };
+        let Some(class_hits) = ClassHits::of(batch, (eight.paths, Some(eight.materials)), is_first) else {
+            return;
+        };
         let hits = &class_hits.hits;
 
         // Find the points; paths from the camera pass the back faces of single-sided shapes.
@@ -165,10 +176,16 @@ impl PathTracer {
 }
 
 impl<'a> ClassHits<'a> {
+    /// Hits about which chance has still to decide.
+    pub(super) fn undecided(batch: &HitBatch<'a>, indices: &[u32]) -> Option<Self> {
+        Self::of(batch, (indices, None), |_| false)
+    }
+
+    /// Hits of paths of a batch, by their indices, of materials by theirs: those of the surfaces, where they are not given.
     #[inline(always)]
-    pub(super) fn of(
+    fn of(
         batch: &HitBatch<'a>,
-        indices: &[u32],
+        (indices, materials): (&[u32], Option<&[u32]>),
         is_first: impl Fn(&Path) -> bool,
     ) -> Option<Self> {
         let index = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
@@ -183,14 +200,19 @@ impl<'a> ClassHits<'a> {
                 (Shapes::Spheres(spheres), by_lane!(lane => &spheres[lane].1.binding))
             }
         };
+        let material = |lane: usize| match materials {
+            Some(materials) => materials[lane.min(indices.len() - 1)],
+            None => bindings[lane].material,
+        };
         let hits = by_lane!(lane => ClassHit {
             path: &batch.paths[index(lane)],
             hit: &all[index(lane)],
             binding: bindings[lane],
-            material: &world.materials[bindings[lane].material as usize],
+            material: &world.materials[material(lane) as usize],
+            material_index: material(lane),
         });
-        let vary = hits.iter().any(|hit| hit.varies());
-        let are_first = bitmask(&by_lane!(lane => is_first(hits[lane].path)));
+        let vary = hits.iter().any(ClassHit::varies);
+        let are_first = bitmask(&by_lane!(lane => !hits[lane].is_chosen() && is_first(hits[lane].path)));
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
         let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
         Some(Self { hits, shapes, vary, are_first, pixels })
@@ -250,7 +272,7 @@ impl<'a> ClassHits<'a> {
 
     /// The texture points of hits that vary.
     #[inline(always)]
-    fn points_alone(
+    pub(super) fn points_alone(
         &self,
         world: &World,
         ClassPoints { surfaces, uv, front, footprints, .. }: &ClassPoints,

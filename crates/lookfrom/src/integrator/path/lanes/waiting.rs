@@ -3,14 +3,13 @@
 use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
 use lookfrom_simd::LaneMask;
 
-use super::gaps::is_there;
+use super::undecided::Decided;
 use super::{MediumVertex, Memory, Path, StepOutput};
-use crate::core::lanes::{LANES, by_lane};
+use crate::core::lanes::LANES;
 use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
 use crate::shading::bsdf::BsdfClass;
-use crate::shading::texture::FloatTexture;
 use crate::world::{HitClass, World};
 
 /// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
@@ -23,8 +22,8 @@ pub(in crate::integrator::path) struct Waiting {
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
     in_media: Vec<MediumVertex>,
     interfaces: Interfaces,
-    /// Hits on surfaces with an alpha that is not tested yet, of meshes and of spheres: their classes and indices in the batch.
-    with_alpha: [Vec<(HitClass, u32)>; 2],
+    /// Indices in the batch of hits about which chance has still to decide, on meshes and on spheres.
+    undecided: [Vec<u32>; 2],
     /// Paths at interfaces of media.
     at_interfaces: Vec<(Path, Hit)>,
     /// Paths that have come through a medium to shapes whose BSDFs have a class, and what they have hit.
@@ -67,7 +66,7 @@ impl Waiting {
         self.bins.push(ESCAPED, index as u32, 0, |eight| tracer.escape_together(batch, eight, output));
     }
 
-    /// Adds a hit: it waits for others of its class, if it is there.
+    /// Adds a hit: it waits for others of its class, once chance has decided about it.
     #[inline]
     pub(in crate::integrator::path) fn push_hit<P: Probe>(
         &mut self,
@@ -76,62 +75,60 @@ impl Waiting {
         (class, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        match class.alpha.map(|alpha| &batch.world.alphas[alpha as usize].texture) {
-            Some(FloatTexture::Constant(alpha)) if is_there(batch, &batch.paths[index], *alpha) => {
-                self.push_present(tracer, batch, (class, index), output);
+        match PathTracer::decided_at_once(batch, class, index) {
+            Some(material) => {
+                self.push_decided(tracer, batch, (class.is_sphere, index as u32, material), output);
             }
-            Some(_) => self.push_with_alpha(tracer, batch, (class, index), output),
-            None => self.push_present(tracer, batch, (class, index), output),
+            None => self.push_undecided(tracer, batch, (class.is_sphere, index as u32), output),
         }
     }
 
-    /// Adds a hit on a surface with an alpha, and tests those that are there where they fill the lanes.
+    /// Adds a hit about which chance decides, and does so for those where they fill the lanes.
     #[inline(never)]
-    fn push_with_alpha<P: Probe>(
+    fn push_undecided<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (class, index): (HitClass, usize),
+        (is_sphere, index): (bool, u32),
         output: &mut StepOutput<'_, P>,
     ) {
-        let hits = &mut self.with_alpha[usize::from(class.is_sphere)];
-        if fills_lanes(hits, (class, index as u32)) {
-            self.test_alphas(tracer, batch, class.is_sphere, output);
+        if fills_lanes(&mut self.undecided[usize::from(is_sphere)], index) {
+            self.decide(tracer, batch, is_sphere, output);
         }
     }
 
-    /// Tests hits on surfaces with an alpha, and adds those that are there.
-    fn test_alphas<P: Probe>(
+    /// Decides about hits, and adds those whose surfaces are there.
+    fn decide<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
         are_spheres: bool,
         output: &mut StepOutput<'_, P>,
     ) {
-        let mut hits = std::mem::take(&mut self.with_alpha[usize::from(are_spheres)]);
-        let Some((_, last)) = hits.last() else { return };
-        let indices = by_lane!(lane => hits.get(lane).map_or(*last, |(_, index)| *index));
-        let there = tracer.pass_gaps(batch, &indices[..hits.len()], &mut self.memory.points, output);
-        for lane in LaneMask(there) {
-            let (class, index) = hits[lane];
-            self.push_present(tracer, batch, (class, index as usize), output);
+        let mut hits = std::mem::take(&mut self.undecided[usize::from(are_spheres)]);
+        if !hits.is_empty() {
+            let Decided { there, materials } = tracer.decide(batch, &hits, &mut self.memory.points, output);
+            for lane in LaneMask(there) {
+                self.push_decided(tracer, batch, (are_spheres, hits[lane], materials[lane]), output);
+            }
+            hits.clear();
         }
-        hits.clear();
-        self.with_alpha[usize::from(are_spheres)] = hits;
+        self.undecided[usize::from(are_spheres)] = hits;
     }
 
-    /// Adds a hit on a surface that is there, and scatters the hits of its class where they fill the lanes.
+    /// Adds a hit on a surface that is there, of a material, and scatters the hits of its class where they fill the lanes.
     #[inline]
-    fn push_present<P: Probe>(
+    fn push_decided<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (HitClass { bsdf, is_sphere, .. }, index): (HitClass, usize),
+        (is_sphere, index, material): (bool, u32, u32),
         output: &mut StepOutput<'_, P>,
     ) {
+        let Some(bsdf) = batch.world.materials[material as usize].class() else { return };
         let memory = &mut self.memory;
         let first = if is_sphere { ON_SPHERES } else { 0 };
-        self.bins.push(first + bsdf as usize, index as u32, 0, |eight| {
+        self.bins.push(first + bsdf as usize, index, material, |eight| {
             tracer.scatter_hits(bsdf, batch, eight, memory, output);
         });
     }
@@ -233,7 +230,7 @@ impl Waiting {
         self.flush_hits(tracer, &batch, output);
     }
 
-    /// Tests and scatters the hits that are left.
+    /// Decides about the hits that are left, and scatters them.
     fn flush_hits<P: Probe>(
         &mut self,
         tracer: &PathTracer,
@@ -241,7 +238,7 @@ impl Waiting {
         output: &mut StepOutput<'_, P>,
     ) {
         for are_spheres in [false, true] {
-            self.test_alphas(tracer, batch, are_spheres, output);
+            self.decide(tracer, batch, are_spheres, output);
         }
         let Self { bins, memory, .. } = self;
         for &class in BsdfClass::ALL {

@@ -1,0 +1,145 @@
+//! Hits on meshes and spheres about which chance decides, eight at a time: paths go on behind surfaces that fail the alpha test, and one
+//! of mixed materials is chosen.
+
+use lookfrom_bvh::{OriginPrimitive, Ray};
+use lookfrom_simd::{Kernel, LaneMask, Simd};
+
+use super::class_hits::ClassHits;
+use super::class_points::{ClassPoints, PointsKernel};
+use super::vertices::VertexColumns;
+use crate::core::lanes::{Columns, LANES, by_lane, gather, row, shade_together, store};
+use crate::integrator::Probe;
+use crate::integrator::path::{HitBatch, Path, PathTracer, StepOutput, dimension};
+use crate::shading::material::Material;
+use crate::shading::texture::FloatTexture;
+use crate::world::{HitClass, World};
+
+/// Decided hits.
+pub(super) struct Decided {
+    /// The lanes whose surfaces are there.
+    pub(super) there: u32,
+    /// Indices of their materials, of which none is mixed.
+    pub(super) materials: [u32; LANES],
+}
+
+impl PathTracer {
+    /// The material of a hit, if it is known to be there whatever the textures are at the point: a random number decides about constants.
+    #[inline]
+    pub(super) fn decided_at_once(batch: &HitBatch<'_>, class: HitClass, index: usize) -> Option<u32> {
+        let HitClass { alpha, material, is_mixture, .. } = class;
+        if alpha.is_none() && !is_mixture {
+            return Some(material);
+        }
+        let (world, numbers) = (batch.world, || presence(batch, &batch.paths[index]));
+        let constant = |number: FloatTexture| match number {
+            FloatTexture::Constant(value) => Some(value),
+            FloatTexture::Texture(_) => None,
+        };
+        if let Some(alpha) = alpha {
+            let alpha = constant(world.alphas[alpha as usize].texture)?;
+            if !is_there(alpha, numbers) {
+                return None;
+            }
+        }
+        match is_mixture {
+            true => Material::chosen(&world.materials, material, constant, || numbers()[1])
+                .map(|(chosen, _)| chosen),
+            false => Some(material),
+        }
+    }
+
+    /// Decides about up to eight paths' hits. Those whose surfaces are not there go on behind them, as those do that pass back faces.
+    pub(super) fn decide<P: Probe>(
+        &self,
+        batch: &HitBatch<'_>,
+        indices: &[u32],
+        points: &mut ClassPoints,
+        output: &mut StepOutput<'_, P>,
+    ) -> Decided {
+        let (world, materials) = (batch.world, [0; LANES]);
+        let Some(class_hits) = ClassHits::undecided(batch, indices) else {
+            return Decided { there: 0, materials };
+        };
+        PointsKernel { world, class_hits: &class_hits, points }.set_points();
+        let hits = &class_hits.hits;
+        let active = self.pass_back_faces(batch, indices, (hits, points.front), output);
+
+        // Test the alphas, and go on behind surfaces that are not there.
+        let alphas = class_hits.alphas(world, points);
+        let is_there = |lane: &usize| is_there(alphas[*lane], || presence(batch, hits[*lane].path));
+        let there = LaneMask(active).filter(is_there).fold(0, |lanes, lane| lanes | 1 << lane);
+        let gaps = active & !there;
+        if gaps != 0 {
+            let paths = by_lane!(lane => hits[lane].path);
+            let origins = origins_behind(&points.surfaces, &paths);
+            output.paths.extend(LaneMask(gaps).map(|lane| Path {
+                ray: Ray::new(row(&origins, lane), paths[lane].ray.direction),
+                address: paths[lane].address + 1,
+                origin_primitive: OriginPrimitive::of(hits[lane].hit),
+                ..*paths[lane]
+            }));
+        }
+
+        Decided {
+            there,
+            materials: class_hits
+                .chosen_materials(world, points, there, |lane| presence(batch, hits[lane].path)[1]),
+        }
+    }
+}
+
+/// The random numbers of a hit: for the alpha test, and for the choice between mixed materials.
+fn presence(batch: &HitBatch<'_>, path: &Path) -> [f32; 2] {
+    batch.streams.of(path).two(dimension::PRESENCE)
+}
+
+/// The alpha test: a random number decides where the alpha is between 0 and 1.
+#[inline]
+fn is_there(alpha: f32, numbers: impl FnOnce() -> [f32; 2]) -> bool {
+    alpha >= 1.0 || alpha > 0.0 && numbers()[0] < alpha
+}
+
+impl ClassHits<'_> {
+    /// The materials of hits in the lanes of a mask, by random numbers by lane where they are mixed.
+    fn chosen_materials(
+        &self,
+        world: &World,
+        points: &ClassPoints,
+        lanes: u32,
+        number: impl Fn(usize) -> f32,
+    ) -> [u32; LANES] {
+        let mut materials = by_lane!(lane => self.hits[lane].binding.material);
+        let is_mixed = |lane: &usize| world.materials[materials[*lane] as usize].is_mixture();
+        let mixed = LaneMask(lanes).filter(is_mixed).fold(0, |mixed, lane| mixed | 1 << lane);
+        if mixed != 0 {
+            let at = self.points_alone(world, points);
+            for lane in LaneMask(mixed) {
+                let amount = |amount: FloatTexture| Some(world.textures.float(amount, &at[lane]));
+                let chosen = Material::chosen(&world.materials, materials[lane], amount, || number(lane));
+                materials[lane] = chosen.map_or(materials[lane], |(chosen, _)| chosen);
+            }
+        }
+        materials
+    }
+}
+
+/// The origins of rays that pass surfaces.
+#[inline(never)]
+fn origins_behind(surfaces: &VertexColumns, paths: &[&Path; LANES]) -> Columns<3> {
+    shade_together(BehindKernel { surfaces, paths })
+}
+
+struct BehindKernel<'a> {
+    surfaces: &'a VertexColumns,
+    paths: &'a [&'a Path; LANES],
+}
+
+impl Kernel for BehindKernel<'_> {
+    type Output = Columns<3>;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> Columns<3> {
+        let direction = gather(simd, &by_lane!(lane => self.paths[lane].ray.direction));
+        store(self.surfaces.load(simd).exits().toward(direction))
+    }
+}
