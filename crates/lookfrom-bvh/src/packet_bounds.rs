@@ -63,10 +63,6 @@ impl<S: Simd> PacketBounds<S> {
         }
         let [x, y, z] = [extremes(groups, 0), extremes(groups, 1), extremes(groups, 2)];
         let (min, max) = ([x[0], y[0], z[0]], [x[1], y[1], z[1]]);
-        let boxed = |[min, max]: [[f32x8<S>; 3]; 2]| Aabb {
-            min: [least(min[0]), least(min[1]), least(min[2])],
-            max: [-least(-max[0]), -least(-max[1]), -least(-max[2])],
-        };
         let (origins, directions) = (boxed(origins), boxed([min, max]));
         let greatest = |x: [f32; 3]| x.iter().fold(0.0_f32, |greatest, x| greatest.max(x.abs()));
         let spread = [0, 1, 2].map(|axis| directions.max[axis] - directions.min[axis]);
@@ -153,6 +149,15 @@ impl<S: Simd> PacketBounds<S> {
         let far = far(0).min(far(1)).min(far(2).min(i32x8::splat(simd, end.to_bits() as i32)));
         let missed = near.simd_gt(far).to_bitmask() as u32;
         Entered { children: missed ^ 0xff, near: near.bitcast() }
+    }
+}
+
+/// The box around least and greatest numbers of eight lanes, by axis.
+#[inline(always)]
+fn boxed<S: Simd>([min, max]: [[f32x8<S>; 3]; 2]) -> Aabb {
+    Aabb {
+        min: [least(min[0]), least(min[1]), least(min[2])],
+        max: [-least(-max[0]), -least(-max[1]), -least(-max[2])],
     }
 }
 

@@ -67,10 +67,13 @@ impl<S: Simd> Surfaces<f32x8<S>> {
         let wo = -direction.normalize();
         let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
         let ns = Vector::<f32x8<S>>::narrow(ns);
-        let lift = way.map(|way| {
-            let none = Vector::splat(way.x, [0.0; 3]);
-            Lift { way: Vector::narrow(Vector::select(front, way, none)), ns }
-        });
+        let lift = match way {
+            Some(way) => {
+                let none = Vector::splat(way.x, [0.0; 3]);
+                Some(Lift { way: Vector::narrow(Vector::select(front, way, none)), ns })
+            }
+            None => None,
+        };
         let ng_facing = Vector::narrow(ng.negate_where(!front));
         let (wo, front) = (Vector::<f32x8<S>>::narrow(wo), ns.x.narrow_mask(front));
         let ns_facing = ns.negate_where(!front);

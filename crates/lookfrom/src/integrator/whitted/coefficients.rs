@@ -75,9 +75,12 @@ impl<S: Simd> WhittedCoefficients<f32x8<S>> {
                 } else if let Some(spectra) = side_by_side(simd, world, texture, surfaces, modes) {
                     spectra
                 } else {
-                    let points = points.get_or_insert_with(|| texture_points(world, eight, surfaces));
+                    let at = match &mut points {
+                        Some(points) => points,
+                        none => none.insert(texture_points(world, eight, surfaces)),
+                    };
                     gather_spectrum(simd, &by_lane!(lane =>
-                        world.textures.spectrum(texture, &points[lane], modes.lane(lane))))
+                        world.textures.spectrum(texture, &at[lane], modes.lane(lane))))
                 }
             }};
         }

@@ -8,7 +8,9 @@ use super::shaded::{BranchRays, FromLight, Shaded};
 use super::told::Told;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::{One, Width};
-use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together};
+use crate::core::lanes::{
+    LANES, both, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together,
+};
 use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
 use crate::core::vector::Vector;
@@ -95,8 +97,11 @@ impl<W: Width> Step<'_, W> {
             }
             let (diffuse, specular) = coefficients.lit(surfaces.ns_facing, surfaces.wo, wi);
             if let Some(told) = &mut told {
-                let reflected =
-                    [diffuse, specular].map(|part| Spectrum::select(lit, part, Spectrum::splat(zero)));
+                let reflected = both(
+                    [diffuse, specular],
+                    #[inline(always)]
+                    |part| Spectrum::select(lit, part, Spectrum::splat(zero)),
+                );
                 told.add_light(width, (&paths, is_lit), samples, faces, reflected);
             }
             let intensity = li / (width.load_f32(&samples.pdf) * std::f32::consts::PI);

@@ -42,6 +42,7 @@ use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, is_grazing,
 };
 use crate::core::elementary::exp;
+use crate::core::lanes::both;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -275,7 +276,8 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         }
         if is_known.any() {
             let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, is_known);
-            let [entering, leaving] = [entry, exit].map(
+            let [entering, leaving] = both(
+                [entry, exit],
                 #[inline(always)]
                 |way| {
                     let passed = transmittance(self.thickness, way.wi) / way.pdf;

@@ -107,18 +107,25 @@ impl<R: Real, T: AsRef<[&'static Interface]>> Plastic<R, T> {
         }
         let place = Float::clamp(cos, 0.0, 1.0) * (COSINES - 1) as f32;
         let first = Float::floor(Float::min(place, cos.like((COSINES - 2) as f32)));
-        let rough = |side: usize| {
-            let [low, high] = R::by_lane(
-                [first],
-                #[inline(always)]
-                |lane, [first]| {
-                    let (table, first) = (&self.interfaces.as_ref()[lane].sides[side], first as usize);
-                    [table[first], table[first + 1]]
-                },
-            );
-            R::select(is_tabulated, low + (high - low) * (place - first), smooth[side])
-        };
-        [if BOTH { rough(0) } else { zero }, rough(1)]
+        let through = R::select(is_tabulated, self.tabulated_fraction(1, first, place), smooth[1]);
+        match BOTH {
+            true => [R::select(is_tabulated, self.tabulated_fraction(0, first, place), smooth[0]), through],
+            false => [zero, through],
+        }
+    }
+
+    /// A fraction of the tables of one side, at a place between the nodes of an index and the next.
+    #[inline(always)]
+    fn tabulated_fraction(&self, side: usize, first: R, place: R) -> R {
+        let [low, high] = R::by_lane(
+            [first],
+            #[inline(always)]
+            |lane, [first]| {
+                let (table, first) = (&self.interfaces.as_ref()[lane].sides[side], first as usize);
+                [table[first], table[first + 1]]
+            },
+        );
+        low + (high - low) * (place - first)
     }
 
     /// The light from below over what gets through the surface both ways: `ρ / (π η² (1 − r ρ))`.

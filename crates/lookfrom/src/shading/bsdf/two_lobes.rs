@@ -15,6 +15,7 @@ use lookfrom_scene::medium::DraineLobe;
 use lookfrom_simd::{Float, Real};
 
 use crate::core::elementary::sin_cos_of_turns;
+use crate::core::lanes::both;
 use crate::core::vector::Vector;
 use crate::core::warp;
 
@@ -96,14 +97,17 @@ impl<R: Real> TwoLobes<R> {
         // 1 − μ = 1 + wo·wi of unit vectors.
         let apart = (wo + wi).length_squared() * 0.5;
         let mu = apart.like(1.0) - apart;
-        let of = |g: R, alpha: R| {
-            let (one, g2) = (g.like(1.0), g * g);
-            let ahead = one - g;
-            let square = Float::max(ahead * ahead + g * 2.0 * apart, g.like(f32::MIN_POSITIVE));
-            let shape = (alpha * mu * mu + 1.0) / (alpha * (g2 * 2.0 + 1.0) / 3.0 + 1.0);
-            (one - g2) * (0.25 * FRAC_1_PI) / (square * Float::sqrt(square)) * shape
-        };
-        [of(self.ahead, mu.like(0.0)), of(self.g, self.alpha)]
+        both(
+            [(self.ahead, mu.like(0.0)), (self.g, self.alpha)],
+            #[inline(always)]
+            |(g, alpha): (R, R)| {
+                let (one, g2) = (g.like(1.0), g * g);
+                let ahead = one - g;
+                let square = Float::max(ahead * ahead + g * 2.0 * apart, g.like(f32::MIN_POSITIVE));
+                let shape = (alpha * mu * mu + 1.0) / (alpha * (g2 * 2.0 + 1.0) / 3.0 + 1.0);
+                (one - g2) * (0.25 * FRAC_1_PI) / (square * Float::sqrt(square)) * shape
+            },
+        )
     }
 
     /// Whether the number that a sample is chosen with chooses Draine's lobe.
@@ -142,23 +146,24 @@ impl<R: Real> TwoLobes<R> {
         let (squares, of_square) = (one + g * g, alpha / (g * g * 4.0));
         let [cubic, linear, inverse] =
             [of_square * (1.0 / 3.0), of_square * squares * 2.0, one + of_square * squares * squares];
-        let integral = |s| cubic * s * s * s - linear * s - inverse / s;
-        let density = |s| {
-            let mu = (squares - s * s) / (g * 2.0);
-            (one + alpha * mu * mu) / (s * s)
-        };
         let size = Float::abs(g);
         let (mut low, mut high) = (one - size, one + size);
-        let (first, last) = (integral(low), integral(high));
+        let [first, last] = both(
+            [low, high],
+            #[inline(always)]
+            |s| cubic * s * s * s - linear * s - inverse / s,
+        );
         let wanted = first + (last - first) * u;
         // The root where α = 0: then the integral is linear in 1 / s.
         let mut s = low * high / (high + (low - high) * u);
         for _ in 0..STEPS {
-            let beyond = integral(s) - wanted;
+            let mu = (squares - s * s) / (g * 2.0);
+            let density = (one + alpha * mu * mu) / (s * s);
+            let beyond = cubic * s * s * s - linear * s - inverse / s - wanted;
             let is_above = beyond.gt(one.like(0.0));
             high = Float::select(is_above, s, high);
             low = Float::select(is_above, low, s);
-            let next = s / (one + beyond / (density(s) * s));
+            let next = s / (one + beyond / (density * s));
             // A root that has been found is at an end of the interval.
             let is_outside = next.lt(low) | next.gt(high);
             s = Float::select(is_outside, low * high * 2.0 / (low + high), next);

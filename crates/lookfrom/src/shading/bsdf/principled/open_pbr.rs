@@ -11,6 +11,7 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::layers::Coat;
 use super::{Model, Principled};
 use crate::core::elementary;
+use crate::core::lanes::both;
 use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -181,7 +182,8 @@ impl<R: Real> OpenPbr<R> {
         twice: R::Mask,
     ) -> Spectrum<R> {
         let one = self.coat_eta.like(1.0);
-        let [first, second] = cosines.map(
+        let [first, second] = both(
+            cosines,
             #[inline(always)]
             |cos| one / self.cosine_in_coat(cos),
         );

@@ -11,6 +11,7 @@ use super::layers::{Coat, Fibres};
 use super::rough_diffuse::{self, RoughDiffuse};
 use super::surface::{MEAN_COSINE, Surface};
 use super::{Model, Principled};
+use crate::core::lanes::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::albedo::{self, Split};
@@ -265,7 +266,8 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
         };
         let one = below.like(1.0);
         let through = is_below(wi);
-        let [of_wo, of_wi] = [coat.wo.z, coat.local(upward(wi)).z].map(
+        let [of_wo, of_wi] = both(
+            [coat.wo.z, coat.local(upward(wi)).z],
             #[inline(always)]
             |cos| Float::clamp(cos, 0.0, 1.0),
         );

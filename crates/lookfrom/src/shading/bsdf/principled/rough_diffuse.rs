@@ -9,6 +9,7 @@ use std::f32::consts::PI;
 use lookfrom_simd::{Float, Mask, Real};
 
 use crate::core::elementary::angle_in_turns;
+use crate::core::lanes::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
@@ -52,7 +53,8 @@ impl<R: Real> RoughDiffuse<R> {
         let back = R::select(s.gt(zero), s / Float::max(Float::max(wo.z, wi.z), s.like(1e-6)), s);
         let single = Float::max(self.norm * (one + self.roughness * back), zero);
         let mean = self.norm * (self.roughness * MEAN + 1.0);
-        let [lost_o, lost_i] = [wo.z, wi.z].map(
+        let [lost_o, lost_i] = both(
+            [wo.z, wi.z],
             #[inline(always)]
             |cos| Float::max(one - self.albedo(cos), zero),
         );

@@ -6,6 +6,7 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Real};
 
 use super::{NormalLimit, Relief, normalized_or};
+use crate::core::lanes::both;
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{PicturedFloat, TexturePoint};
@@ -49,7 +50,8 @@ impl<R: Real> Neighbours<R> {
     /// Of a point with u and v: half of a pixel's footprint away, or by a step where that is 0.
     #[inline(always)]
     pub(crate) fn new(uv: [R; 2], half: [R; 2], step: R) -> Self {
-        let moved = [0, 1].map(
+        let moved = both(
+            [0, 1],
             #[inline(always)]
             |k: usize| {
                 let wanted = R::select(half[k].gt(step.like(0.0)), half[k], step);
