@@ -5,6 +5,7 @@ use lookfrom_bvh::{Hit, NONE, Sphere};
 use super::World;
 use crate::core::points::StoredPlacement;
 use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
+use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{Material, MaterialKind};
 
 /// The class of all hits on a geometry.
@@ -45,10 +46,10 @@ pub(crate) struct BareSurface {
 /// The class of a hit that is shaded in lanes from the hit on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct HitClass {
-    /// Index of the material, whose BSDFs have a class.
+    /// That of the BSDFs; `None` of materials that are mixed of several with classes.
+    pub(crate) bsdf: Option<BsdfClass>,
+    /// Index of the material.
     pub(crate) material: u32,
-    /// Whether that is mixed of several.
-    pub(crate) is_mixture: bool,
     /// Whether it is on a sphere, and not on a mesh.
     pub(crate) is_sphere: bool,
     /// Index into the world's alphas, where the surface has one.
@@ -77,9 +78,9 @@ impl World {
         let hits_on = |binding: &MaterialBinding, is_sphere: bool| {
             let is_whole = binding.light.is_none() && !(self.has_open_fronts && binding.single_sided);
             let &MaterialBinding { material, alpha, .. } = binding;
-            let is_mixture = self.materials[material as usize].is_mixture();
+            let bsdf = self.materials[material as usize].class();
             let has_class = is_whole && Material::has_class(&self.materials, material);
-            has_class.then_some(HitClass { material, is_mixture, is_sphere, alpha })
+            has_class.then_some(HitClass { bsdf, material, is_sphere, alpha })
         };
         match primitives {
             Primitives::Mesh(mesh) => Class::Mesh {

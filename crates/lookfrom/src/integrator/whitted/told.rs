@@ -21,8 +21,9 @@ pub(super) struct Told {
 impl Told {
     /// The events of a group with these coefficients: none yet.
     pub(super) fn new<W: Width>(width: W, k: &WhittedCoefficients<W::Real>) -> Self {
-        let [ambient, diffuse, specular, mirror, transmission] =
-            [k.ambient, k.diffuse, k.specular, k.mirror, k.transmission].map(|k| width.spectra(k));
+        let (ambient, diffuse, specular) =
+            (width.spectra(k.ambient), width.spectra(k.diffuse), width.spectra(k.specular));
+        let (mirror, transmission) = (width.spectra(k.mirror), width.spectra(k.transmission));
         let (shininess, ior, fresnel) = (k.shininess.column(), k.ior.column(), width.bits(k.fresnel));
         let of = |lane: usize| WhittedCoefficients {
             ambient: ambient[lane],
@@ -46,7 +47,7 @@ impl Told {
         exists: Mask<W>,
         reflected: [Spectrum<W::Real>; 2],
     ) {
-        let [diffuse, specular] = reflected.map(|part| width.spectra(part));
+        let (diffuse, specular) = (width.spectra(reflected[0]), width.spectra(reflected[1]));
         let exists = width.bits(exists);
         for lane in LaneMask(width.bits(is_lit)) {
             self.events[lane].push(Event::LocalLight {

@@ -24,27 +24,21 @@ pub(super) struct Decided {
 
 impl PathTracer {
     /// The material of a hit, if it is known to be there whatever the textures are at the point: a random number decides about constants.
-    #[inline]
     pub(super) fn decided_at_once(batch: &HitBatch<'_>, class: HitClass, index: usize) -> Option<u32> {
-        let HitClass { alpha, material, is_mixture, .. } = class;
-        if alpha.is_none() && !is_mixture {
-            return Some(material);
-        }
         let (world, numbers) = (batch.world, || presence(batch, &batch.paths[index]));
         let constant = |number: FloatTexture| match number {
             FloatTexture::Constant(value) => Some(value),
             FloatTexture::Texture(_) => None,
         };
-        if let Some(alpha) = alpha {
-            let alpha = constant(world.alphas[alpha as usize].texture)?;
-            if !is_there(alpha, numbers) {
-                return None;
-            }
+        if let Some(alpha) = class.alpha
+            && !is_there(constant(world.alphas[alpha as usize].texture)?, numbers)
+        {
+            return None;
         }
-        match is_mixture {
-            true => Material::chosen(&world.materials, material, constant, || numbers()[1])
+        match class.bsdf {
+            Some(_) => Some(class.material),
+            None => Material::chosen(&world.materials, class.material, constant, || numbers()[1])
                 .map(|(chosen, _)| chosen),
-            false => Some(material),
         }
     }
 

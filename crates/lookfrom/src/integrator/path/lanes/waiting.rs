@@ -67,7 +67,7 @@ impl Waiting {
     }
 
     /// Adds a hit: it waits for others of its class, once chance has decided about it.
-    #[inline]
+    #[inline(always)]
     pub(in crate::integrator::path) fn push_hit<P: Probe>(
         &mut self,
         tracer: &PathTracer,
@@ -75,24 +75,27 @@ impl Waiting {
         (class, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        match PathTracer::decided_at_once(batch, class, index) {
-            Some(material) => {
-                self.push_decided(tracer, batch, (class.is_sphere, index as u32, material), output);
+        match class {
+            HitClass { bsdf: Some(bsdf), alpha: None, material, is_sphere } => {
+                self.push_decided(tracer, batch, (bsdf, is_sphere), (index as u32, material), output);
             }
-            None => self.push_undecided(tracer, batch, (class.is_sphere, index as u32), output),
+            _ => self.push_undecided(tracer, batch, (class, index), output),
         }
     }
 
-    /// Adds a hit about which chance decides, and does so for those where they fill the lanes.
+    /// Adds a hit about which chance decides: at once, or where such hits fill the lanes.
     #[inline(never)]
     fn push_undecided<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (is_sphere, index): (bool, u32),
+        (class, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        if fills_lanes(&mut self.undecided[usize::from(is_sphere)], index) {
+        let HitClass { is_sphere, .. } = class;
+        if let Some(material) = PathTracer::decided_at_once(batch, class, index) {
+            self.push_material(tracer, batch, (material, is_sphere, index as u32), output);
+        } else if fills_lanes(&mut self.undecided[usize::from(is_sphere)], index as u32) {
             self.decide(tracer, batch, is_sphere, output);
         }
     }
@@ -109,23 +112,37 @@ impl Waiting {
         if !hits.is_empty() {
             let Decided { there, materials } = tracer.decide(batch, &hits, &mut self.memory.points, output);
             for lane in LaneMask(there) {
-                self.push_decided(tracer, batch, (are_spheres, hits[lane], materials[lane]), output);
+                self.push_material(tracer, batch, (materials[lane], are_spheres, hits[lane]), output);
             }
             hits.clear();
         }
         self.undecided[usize::from(are_spheres)] = hits;
     }
 
-    /// Adds a hit on a surface that is there, of a material, and scatters the hits of its class where they fill the lanes.
-    #[inline]
+    /// Adds a hit on a surface that is there, of a material that is not mixed.
+    #[inline(never)]
+    fn push_material<P: Probe>(
+        &mut self,
+        tracer: &PathTracer,
+        batch: &HitBatch<'_>,
+        (material, is_sphere, index): (u32, bool, u32),
+        output: &mut StepOutput<'_, P>,
+    ) {
+        if let Some(bsdf) = batch.world.materials[material as usize].class() {
+            self.push_decided(tracer, batch, (bsdf, is_sphere), (index, material), output);
+        }
+    }
+
+    /// Adds a hit on a surface that is there, of a material that is not mixed, and scatters the hits of its class where they fill the lanes.
+    #[inline(always)]
     fn push_decided<P: Probe>(
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (is_sphere, index, material): (bool, u32, u32),
+        (bsdf, is_sphere): (BsdfClass, bool),
+        (index, material): (u32, u32),
         output: &mut StepOutput<'_, P>,
     ) {
-        let Some(bsdf) = batch.world.materials[material as usize].class() else { return };
         let memory = &mut self.memory;
         let first = if is_sphere { ON_SPHERES } else { 0 };
         self.bins.push(first + bsdf as usize, index, material, |eight| {

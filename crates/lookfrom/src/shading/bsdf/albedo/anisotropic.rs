@@ -9,6 +9,7 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Real};
 
 use super::{Split, integrated, place};
+use crate::core::lanes::both;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 
@@ -92,16 +93,23 @@ pub(super) fn mirror_mean<R: Real>(roughness: TrowbridgeReitz<R>) -> Split<R> {
             let (x, right) = place(Float::sqrt(roughness.alpha_x), ROUGHNESSES);
             let (y, down) = place(Float::sqrt(roughness.alpha_y), ROUGHNESSES);
             let at = (x * ROUGHNESSES as f32 + y).to_integer();
-            let mean = |distance: usize| {
-                Split::lookup(
-                    at,
-                    #[inline(always)]
-                    move |at| Reflectors::of(at + distance).mean,
-                )
-            };
-            let [here, next] = [0, ROUGHNESSES].map(|pair| mean(pair).mixed(mean(pair + 1), down));
+            let [here, next] = both(
+                [0, ROUGHNESSES],
+                #[inline(always)]
+                |row| mean_at(at, row).mixed(mean_at(at, row + 1), down),
+            );
             here.mixed(next, right)
         },
+    )
+}
+
+/// The means of the pairs that are a distance from others.
+#[inline(always)]
+fn mean_at<R: Real>(pairs: R::Bits, distance: usize) -> Split<R> {
+    Split::lookup(
+        pairs,
+        #[inline(always)]
+        move |at| Reflectors::of(at + distance).mean,
     )
 }
 
