@@ -194,9 +194,13 @@ impl<S: PathState> Path<S> {
 
     /// This path continued behind a surface that it passes ([`Path::goes_through`]), in the medium that it was in.
     pub fn passed(&self, surface: &SurfaceInteraction) -> Self {
-        let direction = Vec3::from_array(self.ray.direction);
-        let ray = Ray::new(surface.origin(direction), self.ray.direction);
-        let origin_primitive = surface.origin_primitive;
+        self.behind(surface.origin(Vec3::from_array(self.ray.direction)), surface.origin_primitive)
+    }
+
+    /// This path continued in its direction from an origin behind a primitive.
+    #[inline]
+    fn behind(&self, origin: [f32; 3], origin_primitive: OriginPrimitive) -> Self {
+        let ray = Ray::new(origin, self.ray.direction);
         Self { ray, address: self.address + 1, origin_primitive, ..*self }
     }
 

@@ -30,12 +30,6 @@ macro_rules! by_lane {
 
 pub(crate) use by_lane;
 
-/// Applies a closure that is always inlined to both; that of `array::map` may not be.
-#[inline(always)]
-pub(crate) fn both<T, U>([first, second]: [T; 2], f: impl Fn(T) -> U) -> [U; 2] {
-    [f(first), f(second)]
-}
-
 /// The first eight items; where there are fewer, the last fills the other lanes of `memory`.
 #[inline(always)]
 pub(crate) fn filled<'a, T: Copy>(items: &'a [T], memory: &'a mut Option<[T; LANES]>) -> &'a [T; LANES] {

@@ -78,6 +78,12 @@ pub(crate) fn chosen(probabilities: &[f32], u: f32) -> usize {
     probabilities.iter().rposition(|probability| *probability > 0.0).unwrap_or_default()
 }
 
+/// Applies a closure that is always inlined to both; that of `array::map` may not be, so that it is not compiled for a SIMD level.
+#[inline(always)]
+pub(crate) fn both<T, U>([first, second]: [T; 2], f: impl Fn(T) -> U) -> [U; 2] {
+    [f(first), f(second)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -235,42 +235,113 @@ fn steps_eight_at_once_are_steps_one_by_one() {
         "[[light]]\ntype = \"environment\"\nzenith = [0.3, 0.4, 0.9]\nhorizon = 0.5\nnadir = 0.1";
     for lights in [&[LAMP][..], &[POINT], &[SUN], &[SKY], &[BULB], &[LAMP, BULB, POINT, SUN, SKY]] {
         for settings in ["", "independent", "spectral"] {
-            let compiled = Compiled::new(room(lights, settings));
-            let renderer = compiled.renderer();
-            let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
-            let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
-            let (in_lanes, rays) = renderer.trace(&ids);
-            let tracer = PathTracer {
-                depth: 7,
-                regularize: false,
-                thin_passages_count: true,
-                light_sampling: LightSampling::MultipleImportance,
-            };
-            let scalar = renderer.clone().with_integrator(OneByOne(tracer));
-            let (one_by_one, same_rays) = scalar.trace(&ids);
-            assert_eq!(rays, same_rays);
-            let mut lit = 0;
-            for (a, b) in in_lanes.iter().zip(&one_by_one) {
-                assert_eq!(a.radiance, b.radiance, "{lights:?} {settings}");
-                lit += usize::from(!a.radiance.is_black());
-            }
-            // A watched sample takes the same steps and tells the same of each.
-            for id in ids.iter().step_by(97) {
-                let (mut events, mut expected) = (Vec::new(), Vec::new());
-                let (watched, _) = renderer.trace_events(&[*id], &mut events);
-                scalar.trace_events(&[*id], &mut expected);
-                assert_eq!(format!("{events:?}"), format!("{expected:?}"), "{lights:?} {settings} {id:?}");
-                let unwatched = &in_lanes[(id.pixel[1] * 48 + id.pixel[0]) as usize];
-                assert_eq!(watched[0].radiance, unwatched.radiance);
-            }
+            let lit = lit_as_one_by_one(room(lights, settings), &format!("{lights:?} {settings}"));
             assert!(lit > 600, "{lit} samples see light of {lights:?}");
         }
     }
 }
 
+/// Asserts that samples of a scene of [`room`] are those of steps one by one, and so is what they tell. Returns how many see light.
+fn lit_as_one_by_one(scene: Scene, of: &str) -> usize {
+    let compiled = Compiled::new(scene);
+    let renderer = compiled.renderer();
+    let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
+    let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
+    let (in_lanes, rays) = renderer.trace(&ids);
+    let tracer = PathTracer {
+        depth: 7,
+        regularize: false,
+        thin_passages_count: true,
+        light_sampling: LightSampling::MultipleImportance,
+    };
+    let scalar = renderer.clone().with_integrator(OneByOne(tracer));
+    let (one_by_one, same_rays) = scalar.trace(&ids);
+    assert_eq!(rays, same_rays);
+    for (a, b) in in_lanes.iter().zip(&one_by_one) {
+        assert_eq!(a.radiance, b.radiance, "{of}");
+    }
+    // A watched sample takes the same steps and tells the same of each.
+    for id in ids.iter().step_by(97) {
+        let (mut events, mut expected) = (Vec::new(), Vec::new());
+        let (watched, _) = renderer.trace_events(&[*id], &mut events);
+        scalar.trace_events(&[*id], &mut expected);
+        assert_eq!(format!("{events:?}"), format!("{expected:?}"), "{of} {id:?}");
+        let unwatched = &in_lanes[(id.pixel[1] * 48 + id.pixel[0]) as usize];
+        assert_eq!(watched[0].radiance, unwatched.radiance);
+    }
+    in_lanes.iter().filter(|sample| !sample.radiance.is_black()).count()
+}
+
+/// Alphas and mixed materials, by numbers and by textures, bumps, and media in which light diffuses.
+#[test]
+fn chance_decides_about_eight_hits_as_about_one() {
+    const BODIES: &str = r#"
+        [textures]
+        dots = { type = "dots", inside = 0.2, outside = 0.9, scale = [6, 4] }
+        holes = { type = "dots", inside = 0, outside = 1, scale = [9, 5] }
+        waves = { type = "dots", inside = 0, outside = 0.03, scale = [20, 10] }
+        [materials.speckled]
+        type = "mix"
+        materials = ["white", "red"]
+        amount = 0.3
+        [materials.patched]
+        type = "mix"
+        materials = ["speckled", "hammered"]
+        amount = "dots"
+        [materials.hammered]
+        type = "conductor"
+        metal = "gold"
+        roughness = 0.3
+        bump = "waves"
+        [materials.wax]
+        type = "subsurface"
+        reflectance = [0.3, 0.7, 0.4]
+        mean_free_path = 0.1
+        roughness = 0.2
+        [[sphere]]
+        material = "patched"
+        center = [-0.5, -0.5, 0]
+        radius = 0.35
+        [[sphere]]
+        material = "speckled"
+        center = [0.3, 0.3, -0.2]
+        radius = 0.3
+        alpha = 0.6
+        [[sphere]]
+        material = "wax"
+        center = [-0.4, 0.4, 0]
+        radius = 0.3
+        [[quad]]
+        material = "patched"
+        corner = [0.1, -0.8, 0.5]
+        edge_u = [0.7, 0, -0.2]
+        edge_v = [0, 0.7, 0.1]
+        alpha = "holes"
+        [[quad]]
+        material = "red"
+        corner = [-0.2, -0.2, 0.8]
+        edge_u = [0.4, 0, 0.1]
+        edge_v = [0, 0.4, 0]
+        alpha = "dots"
+        [[light]]
+        type = "environment"
+        color = 0.6
+        [[light]]
+        type = "point"
+        position = [0.2, 0.5, 0.9]
+        intensity = 0.5
+    "#;
+    for settings in ["", "independent", "spectral"] {
+        let lit = lit_as_one_by_one(room(&[BODIES], settings), settings);
+        assert!(lit > 1500, "{lit} samples see light");
+    }
+}
+
 #[test]
 fn layers_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
-    for name in ["materials.toml", "textures.toml", "instances.toml", "still-life.toml", "cutouts.toml"] {
+    const SUBSURFACE: &str = "../docs/guide/scenes/material-subsurface.toml";
+    let own = ["materials.toml", "textures.toml", "instances.toml", "still-life.toml", "cutouts.toml"];
+    for name in own.into_iter().chain([SUBSURFACE]) {
         let mut scene = small(name);
         scene.render.integrator = Integrator::Path;
         (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);

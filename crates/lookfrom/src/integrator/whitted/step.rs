@@ -8,9 +8,8 @@ use super::shaded::{BranchRays, FromLight, Shaded};
 use super::told::Told;
 use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::width::{One, Width};
-use crate::core::lanes::{
-    LANES, both, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together,
-};
+use crate::core::lanes::{LANES, by_lane, filled, gather_spectrum, load, load_spectrum, shade_together};
+use crate::core::math::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::times::Times;
 use crate::core::vector::Vector;

@@ -20,6 +20,7 @@ pub(super) struct Told {
 
 impl Told {
     /// The events of a group with these coefficients: none yet.
+    #[inline(always)]
     pub(super) fn new<W: Width>(width: W, k: &WhittedCoefficients<W::Real>) -> Self {
         let (ambient, diffuse, specular) =
             (width.spectra(k.ambient), width.spectra(k.diffuse), width.spectra(k.specular));
@@ -39,6 +40,7 @@ impl Told {
     }
 
     /// Adds a light, in the lanes of a mask: what arrives, in those of another, and what is reflected of it.
+    #[inline(always)]
     pub(super) fn add_light<W: Width>(
         &mut self,
         width: W,
@@ -61,6 +63,7 @@ impl Told {
     }
 
     /// Adds the branches, as they are before rays are kept on their sides of the surface.
+    #[inline(always)]
     pub(super) fn add_branches<W: Width>(
         &mut self,
         width: W,

@@ -42,8 +42,7 @@ use super::{
     BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, is_grazing,
 };
 use crate::core::elementary::exp;
-use crate::core::lanes::both;
-use crate::core::math::power_heuristic;
+use crate::core::math::{both, power_heuristic};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 pub use coat::{CoatInterior, CoatLayer, DiffuseInterior};

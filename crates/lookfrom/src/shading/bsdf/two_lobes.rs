@@ -15,7 +15,7 @@ use lookfrom_scene::medium::DraineLobe;
 use lookfrom_simd::{Float, Real};
 
 use crate::core::elementary::sin_cos_of_turns;
-use crate::core::lanes::both;
+use crate::core::math::both;
 use crate::core::vector::Vector;
 use crate::core::warp;
 

@@ -1,7 +1,7 @@
 //! Hits on meshes and spheres about which chance decides, eight at a time: paths go on behind surfaces that fail the alpha test, and one
 //! of mixed materials is chosen.
 
-use lookfrom_bvh::{OriginPrimitive, Ray};
+use lookfrom_bvh::OriginPrimitive;
 use lookfrom_simd::{Kernel, LaneMask, Simd};
 
 use super::class_hits::ClassHits;
@@ -66,12 +66,11 @@ impl PathTracer {
         if gaps != 0 {
             let paths = by_lane!(lane => hits[lane].path);
             let origins = origins_behind(&points.surfaces, &paths);
-            output.paths.extend(LaneMask(gaps).map(|lane| Path {
-                ray: Ray::new(row(&origins, lane), paths[lane].ray.direction),
-                address: paths[lane].address + 1,
-                origin_primitive: OriginPrimitive::of(hits[lane].hit),
-                ..*paths[lane]
-            }));
+            output
+                .paths
+                .extend(LaneMask(gaps).map(|lane| {
+                    paths[lane].behind(row(&origins, lane), OriginPrimitive::of(hits[lane].hit))
+                }));
         }
 
         Decided {

@@ -1,6 +1,6 @@
 //! Paths that wait until eight of them have met BSDFs of one class, in bins.
 
-use lookfrom_bvh::{Hit, OriginPrimitive, Ray};
+use lookfrom_bvh::{Hit, OriginPrimitive};
 use lookfrom_simd::LaneMask;
 
 use super::undecided::Decided;
@@ -276,13 +276,7 @@ impl Waiting {
         });
         for Behind { place, origin, interior } in behind {
             let (path, hit) = &at[place as usize];
-            output.paths.push(Path {
-                ray: Ray::new(origin, path.ray.direction),
-                address: path.address + 1,
-                origin_primitive: OriginPrimitive::of(hit),
-                interior,
-                ..*path
-            });
+            output.paths.push(Path { interior, ..path.behind(origin, OriginPrimitive::of(hit)) });
         }
     }
 

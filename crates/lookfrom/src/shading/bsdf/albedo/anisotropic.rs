@@ -9,7 +9,7 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Real};
 
 use super::{Split, integrated, place};
-use crate::core::lanes::both;
+use crate::core::math::both;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 

@@ -11,8 +11,7 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::layers::Coat;
 use super::{Model, Principled};
 use crate::core::elementary;
-use crate::core::lanes::both;
-use crate::core::math::schlick;
+use crate::core::math::{both, schlick};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 

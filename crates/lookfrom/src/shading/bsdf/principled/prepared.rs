@@ -11,7 +11,7 @@ use super::layers::{Coat, Fibres};
 use super::rough_diffuse::{self, RoughDiffuse};
 use super::surface::{MEAN_COSINE, Surface};
 use super::{Model, Principled};
-use crate::core::lanes::both;
+use crate::core::math::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::albedo::{self, Split};

@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 use lookfrom_simd::{Float, Mask, Real};
 
 use crate::core::elementary::angle_in_turns;
-use crate::core::lanes::both;
+use crate::core::math::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 

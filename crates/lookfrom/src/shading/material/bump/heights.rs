@@ -6,7 +6,7 @@ use glam::Vec3;
 use lookfrom_simd::{Float, Real};
 
 use super::{NormalLimit, Relief, normalized_or};
-use crate::core::lanes::both;
+use crate::core::math::both;
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{PicturedFloat, TexturePoint};
