@@ -82,25 +82,13 @@ impl<R: Real> LaneBsdf<R> for Diffuse<R> {
 
     #[inline(always)]
     fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
-        let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
-        R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
+        cosine_pdf(wo, wi)
     }
 
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
         let wi = cosine_direction(u, wo.z);
-        let is_valid = !is_grazing(wo);
-        let no = is_valid.like(false);
-        DirectionSample {
-            wi,
-            f: self.reflectance * wo.z.like(FRAC_1_PI),
-            pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
-            eta: wo.z.like(1.0),
-            is_specular: no,
-            is_diffuse: !no,
-            is_transmission: no,
-            is_valid,
-        }
+        cosine_sample(wo, wi, self.reflectance * wo.z.like(FRAC_1_PI))
     }
 
     #[inline(always)]
@@ -111,6 +99,30 @@ impl<R: Real> LaneBsdf<R> for Diffuse<R> {
     #[inline(always)]
     fn diffuse_share(&self, wo: &Vector<R>, _: Vector<R>, _: Spectrum<R>) -> Spectrum<R> {
         Spectrum::splat(wo.z.like(1.0))
+    }
+}
+
+/// The density of [`cosine_direction`] on the side of `wo`.
+#[inline(always)]
+pub(super) fn cosine_pdf<R: Real>(wo: Vector<R>, wi: Vector<R>) -> R {
+    let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
+    R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
+}
+
+/// A sample of diffuse reflection: a [`cosine_direction`] on the side of `wo`, and the value of the BSDF for it.
+#[inline(always)]
+pub(super) fn cosine_sample<R: Real>(wo: Vector<R>, wi: Vector<R>, f: Spectrum<R>) -> DirectionSample<R> {
+    let is_valid = !is_grazing(wo);
+    let no = is_valid.like(false);
+    DirectionSample {
+        wi,
+        f,
+        pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
+        eta: wo.z.like(1.0),
+        is_specular: no,
+        is_diffuse: !no,
+        is_transmission: no,
+        is_valid,
     }
 }
 

@@ -7,18 +7,15 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
+use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
-use super::diffuse::cosine_direction;
+use super::diffuse::{cosine_direction, cosine_pdf, cosine_sample};
 use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
 use super::lobes::Lobes;
-use super::{
-    BsdfSample, Description, DirectionSample, Mode, ScatteringFunction, fresnel, is_grazing, same_side,
-};
+use super::{BsdfSample, Description, DirectionSample, Mode, ScatteringFunction, fresnel, same_side};
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::core::warp;
 use crate::shading::bssrdf::fresnel_moment;
 
 /// Light that leaves a medium in which it has diffused.
@@ -53,18 +50,7 @@ impl<R: Real> NormalizedFresnel<R> {
     #[inline(always)]
     fn sampled(&self, wo: Vector<R>, u: [R; 2], mode: Mode) -> DirectionSample<R> {
         let wi = cosine_direction(u, wo.z);
-        let is_valid = !is_grazing(wo);
-        let no = is_valid.like(false);
-        DirectionSample {
-            wi,
-            f: self.value(wo, wi, mode),
-            pdf: warp::cosine_hemisphere_pdf(Float::abs(wi.z)),
-            eta: wo.z.like(1.0),
-            is_specular: no,
-            is_diffuse: !no,
-            is_transmission: no,
-            is_valid,
-        }
+        cosine_sample(wo, wi, self.value(wo, wi, mode))
     }
 }
 
@@ -74,7 +60,7 @@ impl ScatteringFunction for NormalizedFresnel {
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        LaneBsdf::pdf(self, &wo.into(), wi.into())
+        cosine_pdf(wo.into(), wi.into())
     }
 
     fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
@@ -118,8 +104,7 @@ impl<R: Real> LaneBsdf<R> for NormalizedFresnel<R> {
 
     #[inline(always)]
     fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
-        let pdf = warp::cosine_hemisphere_pdf(Float::abs(wi.z));
-        R::select(same_side(wo, wi), pdf, wo.z.like(0.0))
+        cosine_pdf(wo, wi)
     }
 
     #[inline(always)]

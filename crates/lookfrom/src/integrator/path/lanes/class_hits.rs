@@ -76,7 +76,7 @@ pub(super) struct ClassHits<'a> {
     pub(super) shapes: Shapes<'a>,
     /// Whether any material varies, or any surface has an alpha.
     pub(super) vary: bool,
-    /// Lanes of camera rays whose surfaces AOVs need: of mixed materials these are others than what chance has chosen.
+    /// Lanes of camera rays whose surfaces AOVs need; without mixed materials, of which AOVs show the mean and not the chosen one.
     pub(super) are_first: u32,
     /// The pixels of the camera, if any material depends on their footprint.
     pub(super) pixels: Option<&'a PixelFootprint>,
