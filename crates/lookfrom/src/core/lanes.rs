@@ -3,7 +3,7 @@
 pub(crate) mod width;
 
 use lookfrom_bvh::Ray;
-use lookfrom_simd::{Kernel, Simd, dispatch_wide, f32x4, f32x8, f64x8, is_wide, level, prelude::*};
+use lookfrom_simd::{Kernel, LaneMask, Simd, dispatch_wide, f32x4, f32x8, f64x8, is_wide, level, prelude::*};
 
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -29,6 +29,12 @@ macro_rules! by_lane {
 }
 
 pub(crate) use by_lane;
+
+/// The lanes of a mask of which something is true, as a mask.
+#[inline(always)]
+pub(crate) fn lanes_where(mask: u32, is: impl Fn(usize) -> bool) -> u32 {
+    LaneMask(mask).fold(0, |lanes, lane| lanes | u32::from(is(lane)) << lane)
+}
 
 /// The first eight items; where there are fewer, the last fills the other lanes of `memory`.
 #[inline(always)]

@@ -32,7 +32,7 @@ use crate::shading::texture::{FloatTexture, PictureSet, TexturePoint};
 pub use albedo::albedo;
 pub(crate) use albedo::of_coefficients as albedo_of_coefficients;
 pub use bump::Relief;
-pub(crate) use bump::{Bending, Guard, LocalNormal, Neighbours, NormalLimit, frame_about};
+pub(crate) use bump::{Bending, Guard, LocalNormal, Neighbours, NormalLimit, displaced_normal, frame_about};
 pub(crate) use compile::Compiler;
 pub use disney::DisneyMaterial;
 pub(crate) use evaluator::Evaluator;
@@ -97,16 +97,17 @@ impl Material {
         materials: &[Self],
         mut index: u32,
         share: impl Fn(FloatTexture) -> Option<f32>,
-        number: impl FnOnce() -> f32,
+        number: impl Fn() -> f32,
     ) -> Option<(u32, f32)> {
-        let mut u = number();
+        let mut rest = None;
         while let MaterialKind::Mix { materials: [first, second], amount } = &materials[index as usize].kind {
             let amount = share(*amount)?.clamp(0.0, 1.0);
+            let u = rest.unwrap_or_else(&number);
             let takes_second = u < amount;
             index = if takes_second { *second } else { *first };
-            u = if takes_second { u / amount } else { (u - amount) / (1.0 - amount) };
+            rest = Some(if takes_second { u / amount } else { (u - amount) / (1.0 - amount) });
         }
-        Some((index, u))
+        Some((index, rest.unwrap_or_else(number)))
     }
 
     /// True if it is layered, or may be replaced by a material that is.

@@ -15,7 +15,7 @@ use lookfrom_scene::texture::{TexelFilter, Wrap};
 use lookfrom_simd::{Float, Mask, Real};
 
 pub(crate) use guard::Guard;
-pub(crate) use heights::Neighbours;
+pub(crate) use heights::{Neighbours, displaced_normal};
 
 use super::{BumpMapping, Frame, NormalTexture};
 use crate::core::vector::Vector;

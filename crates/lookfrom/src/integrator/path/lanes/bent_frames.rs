@@ -8,7 +8,9 @@ use super::vertices::VertexColumns;
 use crate::core::lanes::{Columns, LANES, bitmask, by_lane, load, row, set_row, shade_together};
 use crate::core::vector::Vector;
 use crate::shading::interaction::ShadingGeometry;
-use crate::shading::material::{Bending, Guard, LocalNormal, Material, Neighbours, NormalLimit, frame_about};
+use crate::shading::material::{
+    Bending, Guard, LocalNormal, Material, Neighbours, NormalLimit, displaced_normal, frame_about,
+};
 use crate::shading::texture::{TexturePoint, Textures};
 use crate::world::World;
 
@@ -235,11 +237,10 @@ impl Kernel for BendKernel<'_> {
         }
         if bumped != 0 {
             let load_f32 = |values: &[f32; LANES]| f32x8::load_array(simd, *values);
-            let Bumps { uv, steps, heights } = &frames.bumps;
-            let uv = [load_f32(&uv[0]), load_f32(&uv[1])];
-            let neighbours = Neighbours { uv, steps: [load_f32(&steps[0]), load_f32(&steps[1])] };
+            let Bumps { steps, heights, .. } = &frames.bumps;
+            let steps = [load_f32(&steps[0]), load_f32(&steps[1])];
             let heights = [load_f32(&heights[0]), load_f32(&heights[1]), load_f32(&heights[2])];
-            let n = neighbours.normal(ns, frames.derivatives_of_heights(simd), heights);
+            let n = displaced_normal(ns, frames.derivatives_of_heights(simd), steps, heights);
             bent = Vector::select(is_in(bumped), n, bent);
         }
         let n = bending.limited(bent, is_in(valid), is_in(turning));

@@ -10,7 +10,7 @@ use super::by_class::MaterialHits;
 use super::class_points::{ClassPoints, PointsKernel};
 use super::vertices::VertexColumns;
 use crate::aov::FirstSurfaceColumns;
-use crate::core::lanes::{LANES, bitmask, by_lane, row, set_row};
+use crate::core::lanes::{LANES, bitmask, by_lane, lanes_where, row, set_row};
 use crate::core::points::StoredPlacement;
 use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput};
 use crate::integrator::wavefront::{Boundary, Eight};
@@ -222,15 +222,17 @@ impl<'a> ClassHits<'a> {
     #[inline(always)]
     fn are_black(&self, surfaces: &VertexColumns) -> u32 {
         let black = bitmask(&by_lane!(lane => self.hits[lane].material.back_face == BackFace::Black));
-        let is_behind = |lane: &usize| {
-            let [wo, ns] = [surfaces.wo(*lane), surfaces.ns(*lane)].map(Vec3::from);
+        lanes_where(black, |lane| {
+            let [wo, ns] = [surfaces.wo(lane), surfaces.ns(lane)].map(Vec3::from);
             wo.dot(ns) <= 0.0
-        };
-        LaneMask(black).filter(is_behind).fold(0, |lanes, lane| lanes | 1 << lane)
+        })
     }
 
     /// The alphas; 1 where there are none.
     pub(super) fn alphas(&self, world: &World, points: &ClassPoints) -> [f32; LANES] {
+        if self.hits.iter().all(|hit| hit.binding.alpha.is_none()) {
+            return [1.0; LANES];
+        }
         let alphas =
             by_lane!(lane => self.hits[lane].binding.alpha.map(|alpha| &world.alphas[alpha as usize]));
         let mut at = self.points_alone(world, points);
@@ -241,9 +243,6 @@ impl<'a> ClassHits<'a> {
 
     /// The lanes that show nothing of what is behind.
     fn are_opaque(&self, world: &World, points: &ClassPoints) -> u32 {
-        if self.hits.iter().all(|hit| hit.binding.alpha.is_none()) {
-            return u32::MAX;
-        }
         let alphas = self.alphas(world, points);
         bitmask(&by_lane!(lane => alphas[lane] >= 1.0))
     }

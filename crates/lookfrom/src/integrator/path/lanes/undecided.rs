@@ -7,7 +7,7 @@ use lookfrom_simd::{Kernel, LaneMask, Simd};
 use super::class_hits::ClassHits;
 use super::class_points::{ClassPoints, PointsKernel};
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, LANES, by_lane, gather, row, shade_together, store};
+use crate::core::lanes::{Columns, LANES, by_lane, gather, lanes_where, row, shade_together, store};
 use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, Path, PathTracer, StepOutput, dimension};
 use crate::shading::material::Material;
@@ -60,8 +60,7 @@ impl PathTracer {
 
         // Test the alphas, and go on behind surfaces that are not there.
         let alphas = class_hits.alphas(world, points);
-        let is_there = |lane: &usize| is_there(alphas[*lane], || presence(batch, hits[*lane].path));
-        let there = LaneMask(active).filter(is_there).fold(0, |lanes, lane| lanes | 1 << lane);
+        let there = lanes_where(active, |lane| is_there(alphas[lane], || presence(batch, hits[lane].path)));
         let gaps = active & !there;
         if gaps != 0 {
             let paths = by_lane!(lane => hits[lane].path);
@@ -102,8 +101,7 @@ impl ClassHits<'_> {
         number: impl Fn(usize) -> f32,
     ) -> [u32; LANES] {
         let mut materials = by_lane!(lane => self.hits[lane].binding.material);
-        let is_mixed = |lane: &usize| world.materials[materials[*lane] as usize].is_mixture();
-        let mixed = LaneMask(lanes).filter(is_mixed).fold(0, |mixed, lane| mixed | 1 << lane);
+        let mixed = lanes_where(lanes, |lane| world.materials[materials[lane] as usize].is_mixture());
         if mixed != 0 {
             let at = self.points_alone(world, points);
             for lane in LaneMask(mixed) {

@@ -61,23 +61,22 @@ impl<R: Real> Neighbours<R> {
         // As far as u or v moves in single precision.
         Self { uv: moved, steps: [moved[0] - uv[0], moved[1] - uv[1]] }
     }
+}
 
-    /// The normal of the surface displaced along its shading normal, by ∂p/∂u and ∂p/∂v and the heights at the point and at these; of unit
-    /// length.
-    #[inline(always)]
-    pub(crate) fn normal(
-        &self,
-        n: Vector<R>,
-        derivatives: [Vector<R>; 2],
-        [here, further_along_u, further_along_v]: [R; 3],
-    ) -> Vector<R> {
-        let [along_u, along_v] = derivatives;
-        // In the tangent plane of the shading normal, and up from there.
-        let dpdu = along_u - n * n.dot(along_u) + n * ((further_along_u - here) / self.steps[0]);
-        let dpdv = along_v - n * n.dot(along_v) + n * ((further_along_v - here) / self.steps[1]);
-        let is_mirrored = along_u.cross(along_v).dot(n).lt(here.like(0.0));
-        normalized_or(dpdu.cross(dpdv).negate_where(is_mirrored), n)
-    }
+/// The normal of the surface displaced along its shading normal, by ∂p/∂u and ∂p/∂v, the steps to [`Neighbours`], and the heights at the point
+/// and there; of unit length.
+#[inline(always)]
+pub(crate) fn displaced_normal<R: Real>(
+    n: Vector<R>,
+    [along_u, along_v]: [Vector<R>; 2],
+    steps: [R; 2],
+    [here, further_along_u, further_along_v]: [R; 3],
+) -> Vector<R> {
+    // In the tangent plane of the shading normal, and up from there.
+    let dpdu = along_u - n * n.dot(along_u) + n * ((further_along_u - here) / steps[0]);
+    let dpdv = along_v - n * n.dot(along_v) + n * ((further_along_v - here) / steps[1]);
+    let is_mirrored = along_u.cross(along_v).dot(n).lt(here.like(0.0));
+    normalized_or(dpdu.cross(dpdv).negate_where(is_mirrored), n)
 }
 
 impl Neighbours<f32> {
@@ -115,5 +114,6 @@ pub(super) fn displaced(
     let neighbours = Neighbours::new(at.uv.into(), half, limit.step(relief.step));
     let height = |at: &TexturePoint<'_>| relief.textures.float(heights.texture, at);
     let further = |axis: usize| height(&neighbours.texture_point(axis, at, along[axis]));
-    neighbours.normal(surface.ns.into(), derivatives, [height(at), further(0), further(1)])
+    let heights = [height(at), further(0), further(1)];
+    displaced_normal(surface.ns.into(), derivatives, neighbours.steps, heights)
 }

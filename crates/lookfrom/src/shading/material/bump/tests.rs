@@ -152,8 +152,8 @@ fn bumps<R: Real>(numbers: [R; 14], n: Vector<R>) -> [R; 7] {
     let [u, v, half_u, half_v, step, ux, uy, uz, vx, vy, vz, here, along_u, along_v] = numbers;
     let neighbours = Neighbours::new([u, v], [half_u, half_v], step);
     let derivatives = [Vector { x: ux, y: uy, z: uz }, Vector { x: vx, y: vy, z: vz }];
-    let n = neighbours.normal(n, derivatives, [here, along_u, along_v]);
     let Neighbours { uv, steps } = neighbours;
+    let n = displaced_normal(n, derivatives, steps, [here, along_u, along_v]);
     [uv[0], uv[1], steps[0], steps[1], n.x, n.y, n.z]
 }
 
