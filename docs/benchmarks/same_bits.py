@@ -4,11 +4,11 @@ on with, and after `lookfrom convert`.
 
 Needs: pip package numpy, and mitsuba for its scenes; a release build of lookfrom.
 
-    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba pbrt] [--files FILE …] [--seeds 0 40] [--options]
+    same_bits.py --lookfrom target/release/lookfrom [--kind gltf mitsuba pbrt toml] [--files FILE …] [--seeds 0 40] [--options]
                  [--folder DIR]
 
 Files are those of gltf_random.py (of every second seed the animations are blurred, of every fifth the integrator is Whitted's),
-of mitsuba_random.py and of pbrt_random.py (of every second seed in spectra); --files adds others. With --options each is rendered
+of mitsuba_random.py, pbrt_random.py and toml_random.py (of every second seed in spectra); --files adds others. With --options each is rendered
 with random options: integrators, layers, samplers, lights, filters. A level that the machine does not have is the next lower one.
 """
 
@@ -91,7 +91,18 @@ def pbrt(folder, seeds):
         yield path, [], ["--color", ["spectral", "rgb"][seed % 2]]
 
 
-KINDS = {"gltf": gltf, "mitsuba": mitsuba, "pbrt": pbrt}
+def toml(folder, seeds):
+    """Scenes, and options of `convert` and `render` for them."""
+    from toml_random import Grammar, write_inputs
+
+    write_inputs(folder)
+    for seed in seeds:
+        path = folder / f"{seed}.toml"
+        path.write_text(Grammar(seed, folder).scene())
+        yield path, [], ["--color", ["spectral", "rgb"][seed % 2]]
+
+
+KINDS = {"gltf": gltf, "mitsuba": mitsuba, "pbrt": pbrt, "toml": toml}
 
 
 class Lookfrom:

@@ -3,7 +3,7 @@
 //! Sums of floating-point numbers depend on their order, sums of integers do not. So each pixel holds three fixed-point
 //! sums of 128 bits, 64 of them behind the binary point, and as many of squares, for the variance; any division of the
 //! work among threads, tiles, passes or machines ends in the same bytes *by construction*. AOVs, for layers and
-//! denoiser, are in [`crate::aov`]; what the sums tell of a pixel, in `means`; noise estimates in `noise`; firefly suppression in
+//! denoiser, are in [`crate::aov`]; what the sums tell of a pixel, in `means` and `weighted`; noise estimates in `noise`; firefly suppression in
 //! `fireflies`; blocks to which threads add, in `detached`; which sums it has, in `layout`, which samples, in `ledger`; its numbers as
 //! channels of a file, in `stored`. Conversion for display is in [`crate::post::develop`].
 //!
@@ -28,6 +28,7 @@ mod plane;
 mod stored;
 mod sums;
 mod tile;
+mod weighted;
 
 use self::buckets::BucketSums;
 pub use self::fireflies::Firefly;
@@ -43,6 +44,7 @@ pub(crate) use self::stored::StoredRows;
 use self::stored::{Sums, for_each_plane};
 pub(crate) use self::sums::SampleSums;
 pub use self::tile::FilmTile;
+use self::weighted::WeightSums;
 
 use std::ops::Range;
 
@@ -79,6 +81,11 @@ pub struct Film {
     alphas: Plane<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸.
     alpha_squares: Plane<u128>,
+    /// Of filter weights, where these differ.
+    weights: Plane<WeightSums>,
+    /// As alphas and light, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
+    unsigned_alphas: Plane<i128>,
+    unsigned_light: Vec<Plane<LightPathSums>>,
     dropped: u64,
     first_dropped: Option<SampleId>,
     ledger: SampleLedger,
@@ -129,6 +136,9 @@ impl Film {
             buckets: (0..layout.buckets).map(|_| plane(true, size)).collect::<Result<_>>()?,
             alphas: plane(layout.alpha, size)?,
             alpha_squares: plane(layout.alpha_squares(), size)?,
+            weights: plane(layout.weights, size)?,
+            unsigned_alphas: plane(layout.unsigned_alphas(), size)?,
+            unsigned_light: (0..layout.unsigned_light()).map(|_| plane(true, size)).collect::<Result<_>>()?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),

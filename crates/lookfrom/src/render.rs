@@ -59,7 +59,7 @@ pub use traced::{Rays, Traced};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 23;
+pub const SAMPLING_VERSION: u32 = 24;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.
@@ -426,15 +426,15 @@ impl Renderer {
             if tile.is_of_light() {
                 let mut light = std::mem::take(&mut batch.light);
                 self.light(batch, &mut light);
-                tile.add_samples(&ids, &light, &mut batch.sums);
+                tile.add_samples(&ids, &light, batch.start.filter_weights(), &mut batch.sums);
                 batch.light = light;
             } else {
                 for (slot, (id, traced)) in ids.iter().zip(self.traced(batch)).enumerate() {
                     let [x, y] = id.pixel;
-                    tile.add_with_alpha(x, y, id.sample, traced.rgb, traced.alpha * traced.filter_weight);
+                    tile.add_weighted(x, y, id.sample, traced.rgb, traced.alpha, traced.filter_weight);
                     if tile.has_light_paths() {
                         let layers = self.light_by_paths(batch, slot, &traced);
-                        tile.add_light_paths(x, y, traced.rgb, layers);
+                        tile.add_light_paths(x, y, traced.rgb, traced.filter_weight, layers);
                     }
                     if tile.has_buckets() {
                         tile.add_spectrum(x, y, traced.rgb, self.light_by_buckets(batch, slot, &traced));

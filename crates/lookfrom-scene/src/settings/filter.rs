@@ -55,6 +55,11 @@ impl FilterShape {
         }
     }
 
+    /// Whether it has negative lobes with some parameters, so that samples may have different weights.
+    pub fn has_negative_lobes(self) -> bool {
+        matches!(self, Self::Mitchell { .. } | Self::Sinc { .. })
+    }
+
     /// The names and values of its parameters.
     pub fn parameters(self) -> Vec<(&'static str, f32)> {
         match self {

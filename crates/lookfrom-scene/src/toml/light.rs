@@ -284,8 +284,8 @@ fn rectangle(table: &Table<'_>) -> Result<Geometry> {
         let keys: &[&str] = &["center", "target", "width", "height", "radiance", "power", "two_sided"];
         table.allow(&[COMMON, keys]);
         let center = table.or("center", DVec3::ZERO, Value::vector);
-        let width = table.need("width", "1", 1.0, Value::positive);
-        let height = table.need("height", "1", 1.0, Value::positive);
+        let width = table.or("width", 1.0, Value::positive);
+        let height = table.or("height", 1.0, Value::positive);
         let target = table.need("target", "[0, 0, 0]", None, |value| value.vector().map(|_| Some(value)));
         table.sound(&["center", "target"])?;
         let Some(target) = target else { return Err(Error::untold()) };

@@ -16,8 +16,9 @@
 
 use lookfrom_scene::settings::PixelBounds;
 
+use super::Film;
 use super::noise::SHARE_OF_MEAN;
-use super::{Film, Pixel};
+use super::weighted::WeightedPixel;
 use crate::core::parallel;
 
 /// The number of times that a pixel's samples may be doubled after the pilot.
@@ -72,8 +73,8 @@ impl Film {
         let mean = self.mean_luminance();
         let mut pixels = Vec::new();
         for y in y0..y1 {
-            self.pixels.row(y, x0, x1, |pixel| {
-                let count = pixel.samples as u32;
+            self.row(y, x0, x1, |pixel| {
+                let count = pixel.pixel.samples as u32;
                 pixels.push((count, pixel.relative_error(mean) * f64::from(count).sqrt()));
             });
         }
@@ -108,7 +109,7 @@ impl Film {
         let (width, height) = ((area.x1 - area.x0) as usize, (area.y1 - area.y0) as usize);
         let own = parallel::collect(height, |row| {
             let mut of_row = Vec::with_capacity(width);
-            self.pixels.row(area.y0 + row as u32, area.x0, area.x1, |pixel| {
+            self.row(area.y0 + row as u32, area.x0, area.x1, |pixel| {
                 of_row.push(pixel.variance_and_luminance());
             });
             of_row
@@ -132,7 +133,7 @@ impl Film {
     }
 }
 
-impl Pixel {
+impl WeightedPixel {
     /// The variance of one sample's luminance, 0 where it is unknown, and the luminance, or 0 below that.
     fn variance_and_luminance(&self) -> [f64; 2] {
         let [_, variance, _] = self.variance();

@@ -123,7 +123,7 @@ impl Film {
         };
         let mut pixels = Vec::with_capacity((area.x1 - area.x0) as usize * (area.y1 - area.y0) as usize);
         for y in area.y0..area.y1 {
-            self.pixels.row(y, x0, x1, |pixel| pixels.push([pixel.luminance(), pixel.standard_error()]));
+            self.row(y, x0, x1, |pixel| pixels.push([pixel.luminance(), pixel.standard_error()]));
         }
         let known = Known { area, pixels };
         let places = rows.flat_map(|y| (x0..x1).map(move |x| [x, y]));

@@ -9,12 +9,15 @@ use super::light_paths::LightPathSums;
 use super::motion::MotionSums;
 use super::pixel::Pixel;
 use super::stored::{Stored, Sums, channels_of};
+use super::weighted::WeightSums;
 use crate::aov::{AovSums, LayerSums};
 
 /// The kinds of sums that a film or tile has besides light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Layout {
     pub(super) alpha: bool,
+    /// Filter weights, of a filter with negative lobes.
+    pub(super) weights: bool,
     pub(super) aovs: bool,
     /// Motion vectors.
     pub(super) motion: bool,
@@ -30,10 +33,16 @@ pub(crate) struct Layout {
 
 /// Prefixes of the names of channels.
 const ALPHA: &str = "film.alpha";
+const WEIGHTS: &str = "film.weight";
+const UNSIGNED_ALPHA: &str = "film.unsigned_alpha";
 const AOVS: &str = "film.aov";
 const SENSOR: &str = "film.sensor";
 const FEATURES: &str = "film.feature";
 const MOTION: &str = "film.motion";
+
+fn unsigned_light(index: usize) -> String {
+    format!("film.unsigned_light.{index}")
+}
 
 fn light_path(index: usize) -> String {
     format!("film.light_path.{index}")
@@ -57,6 +66,7 @@ impl Layout {
         Self {
             motion: image.layers == Layers::Motion,
             alpha: image.background != Background::Environment,
+            weights: image.filter.shape.has_negative_lobes(),
             aovs,
             sensor: aovs && !image.sensor.measures_xyz(),
             features: image.denoise,
@@ -72,6 +82,7 @@ impl Layout {
         };
         Self {
             alpha: has(ALPHA),
+            weights: has(WEIGHTS),
             aovs: has(AOVS),
             sensor: has(SENSOR),
             features: has(FEATURES),
@@ -86,12 +97,26 @@ impl Layout {
         self.alpha && self.features
     }
 
+    /// Whether there are sums of alpha with the magnitudes of weights.
+    pub(super) fn unsigned_alphas(self) -> bool {
+        self.weights && self.alpha
+    }
+
+    /// The number of sums of light with the magnitudes of weights.
+    pub(super) fn unsigned_light(self) -> usize {
+        if self.weights { 1 + self.light_paths } else { 0 }
+    }
+
     /// The names of the channels of a file, in the order of its sums.
     pub(crate) fn channels(self) -> Vec<String> {
         let mut names = Pixel::channels("film");
         let mut add = |has: bool, channels: Vec<String>| names.extend(channels.into_iter().filter(|_| has));
         add(self.alpha, i128::channels(ALPHA));
         add(self.alpha_squares(), u128::channels(ALPHA));
+        add(self.weights, WeightSums::channels(WEIGHTS));
+        add(self.unsigned_alphas(), i128::channels(UNSIGNED_ALPHA));
+        (0..self.unsigned_light())
+            .for_each(|index| add(true, LightPathSums::channels(&unsigned_light(index))));
         add(self.sensor, sensor_channels());
         add(self.aovs, LayerSums::channels(AOVS));
         add(self.features, AovSums::channels(FEATURES));
@@ -110,6 +135,7 @@ impl Layout {
         const FEATURES: u64 = 65;
         const DENOISER: u64 = 10;
         const ALPHA: u64 = 20;
+        const WEIGHT: u64 = 45;
         const MOTION: u64 = 25;
         const LIGHT_PATHS: u64 = 30;
         const BUCKET: u64 = 12;
@@ -120,6 +146,7 @@ impl Layout {
             + u64::from(self.aovs) * AOVS
             + u64::from(self.features) * (FEATURES + DENOISER)
             + u64::from(self.alpha) * ALPHA
+            + self.unsigned_light() as u64 * WEIGHT
             + u64::from(self.motion) * MOTION
             + self.light_paths as u64 * LIGHT_PATHS
             + self.buckets as u64 * BUCKET;
@@ -135,6 +162,7 @@ impl fmt::Display for Layout {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kinds = [
             ("alpha", self.alpha),
+            ("filter weights", self.weights),
             ("AOVs", self.aovs),
             ("variances in the sensor's channels", self.sensor),
             ("denoiser features", self.features),
@@ -163,17 +191,18 @@ mod tests {
 
     #[test]
     fn channels_tell_the_layout() {
-        for bits in 0..192 {
+        for bits in 0..384 {
             let has = |bit: u32| bits >> bit & 1 != 0;
-            let [alpha, aovs, sensor, features, motion] = [0, 1, 2, 3, 4].map(has);
+            let [alpha, aovs, sensor, features, motion, weights] = [0, 1, 2, 3, 4, 5].map(has);
             let layout = Layout {
                 alpha,
+                weights,
                 aovs,
                 motion,
                 sensor,
                 features,
-                light_paths: bits as usize / 32 % 3,
-                buckets: bits as usize / 96 * 12,
+                light_paths: bits as usize / 64 % 3,
+                buckets: bits as usize / 192 * 12,
             };
             let channels = layout.channels();
             let mut names: Vec<&str> = channels.iter().map(String::as_str).collect();

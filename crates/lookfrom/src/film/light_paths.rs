@@ -3,15 +3,16 @@
 //! Fixed-point numbers as those of all light ([`super::Pixel`]): a layer that has every way is the picture. A pixel takes
 //! 48 bytes for each layer.
 
-use super::pixel::{mean, merge_sums};
+use super::pixel::merge_sums;
 use super::stored::{Stored, Sums, channels_of, store_fields};
+use super::weighted::{Weights, weighted};
 use crate::core::fixed_point::fixed_point;
 
 /// The sums of a layer over the samples of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightPathSums {
     /// Multiples of 2⁻⁶⁴. Additions wrap.
-    sums: [i128; 3],
+    pub(super) sums: [i128; 3],
 }
 
 store_fields!(LightPathSums { sums: [i128; 3] = ["sum.R", "sum.G", "sum.B"] });
@@ -28,8 +29,8 @@ impl LightPathSums {
         merge_sums(&mut self.sums, &add.sums);
     }
 
-    /// The mean over a number of samples, black where there are none.
-    pub(super) fn mean(&self, samples: u64) -> [f32; 3] {
-        mean(&self.sums, samples)
+    /// The estimate by the weights of samples, black where there are none.
+    pub(super) fn mean(&self, unsigned: Option<Self>, weights: Weights) -> [f32; 3] {
+        weighted(self.sums, unsigned).map(|sums| weights.mean(sums) as f32)
     }
 }

@@ -3,18 +3,17 @@
 use lookfrom_scene::settings::PixelBounds;
 
 use super::picture::{Picture, composited};
-use super::pixel::{Pixel, unbiased_variance};
 use super::plane::Plane;
 use super::stored::Sums;
+use super::weighted::{Weighted, WeightedPixel, Weights};
 use super::{Film, common};
 use crate::aov::{Aovs, DenoiserFeatures};
-use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64};
 use crate::core::hash;
 use crate::core::parallel;
 
 impl Film {
-    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32.
-    /// Black where there are none, and outside of [`Film::area`].
+    /// The mean of a pixel's samples: exact up to one rounding to f64 for the sum, one for the quotient and one to f32. Where their filter
+    /// weights differ, an estimate with less noise. Black where there are none, and outside of [`Film::area`].
     pub fn mean(&self, x: u32, y: u32) -> [f32; 3] {
         self.pixel(x, y).map_or([0.0; 3], |pixel| pixel.mean())
     }
@@ -37,8 +36,9 @@ impl Film {
     /// where the film has no memory for it (no AOVs, or a sensor that measures X, Y and Z), and outside of
     /// [`Film::area`].
     pub fn channel_variance(&self, x: u32, y: u32) -> Option<[f32; 3]> {
-        self.sums_of(&self.channels, x, y)
-            .map(|sums| sums.variance_of(|mean| mean).map(|variance| variance as f32))
+        let pixel = self.sums_of(&self.channels, x, y)?;
+        let sums = WeightedPixel { pixel, weights: Weights::new(pixel.samples, None), unsigned: None };
+        Some(sums.variance_of(|mean| mean).map(|variance| variance as f32))
     }
 
     /// The mean AOVs of a pixel: the albedo over all samples (a miss is black), all others over the samples with a hit.
@@ -49,10 +49,12 @@ impl Film {
 
     /// The mean light of a pixel in each layer of light-path expressions; black outside of [`Film::area`].
     pub fn light_paths(&self, x: u32, y: u32) -> impl Iterator<Item = [f32; 3]> {
-        let samples = self.samples(x, y);
-        self.light_paths
-            .iter()
-            .map(move |layer| self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(samples)))
+        let weights = self.weights(x, y);
+        let unsigned = self.unsigned_light.iter().skip(1).map(Some).chain(std::iter::repeat(None));
+        self.light_paths.iter().zip(unsigned).map(move |(layer, unsigned)| {
+            let unsigned = unsigned.and_then(|unsigned| self.sums_of(unsigned, x, y));
+            self.sums_of(layer, x, y).map_or([0.0; 3], |sums| sums.mean(unsigned, weights))
+        })
     }
 
     /// The motion vector of a pixel, from the opening to the closing of the shutter, in pixels to the right and upwards: the mean over the
@@ -70,19 +72,13 @@ impl Film {
     /// The variance of the alpha of *one* sample of a pixel, estimated like [`Film::variance`]. 0 where the film has no
     /// alpha or is not made for the denoiser, and outside of [`Film::area`].
     pub fn alpha_variance(&self, x: u32, y: u32) -> f32 {
-        let sums = self.sums_of(&self.alphas, x, y).zip(self.sums_of(&self.alpha_squares, x, y));
-        let Some((sum, squares)) = sums else { return 0.0 };
-        let samples = self.samples(x, y);
-        if samples < 2 {
-            return f32::INFINITY;
-        }
-        let n = samples as f64;
-        unbiased_variance(n, sum as f64 / (n * TWO_TO_64), squares as f64 / (n * TWO_TO_48)) as f32
+        let sums = self.alpha_sums(x, y).zip(self.sums_of(&self.alpha_squares, x, y));
+        sums.map_or(0.0, |(sums, squares)| self.weights(x, y).variance_of(sums, squares) as f32)
     }
 
     /// Number of samples of a pixel, without those that were dropped.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
-        self.pixel(x, y).map_or(0, |pixel| pixel.samples)
+        self.sums_of(&self.pixels, x, y).map_or(0, |pixel| pixel.samples)
     }
 
     /// The means of all pixels, black outside of [`Film::area`].
@@ -106,7 +102,7 @@ impl Film {
                 let y = part.y0 + row as u32;
                 if (y0..y1).contains(&y) {
                     let mut means = pixels[(x0 - part.x0) as usize..].iter_mut();
-                    self.pixels.row(y, x0, x1, |pixel| {
+                    self.row(y, x0, x1, |pixel| {
                         if let Some(mean) = means.next() {
                             *mean = pixel.mean();
                         }
@@ -130,16 +126,13 @@ impl Film {
 
     /// The mean alpha of a pixel, 0 without samples; `None` if the film has no alpha.
     pub(crate) fn alpha(&self, x: u32, y: u32) -> Option<f32> {
-        let mean = match (self.samples(x, y), self.sums_of(&self.alphas, x, y)) {
-            (0, _) | (_, None) => 0.0,
-            (samples, Some(sum)) => (sum as f64 / (samples as f64 * TWO_TO_64)) as f32,
-        };
+        let mean = self.alpha_sums(x, y).map_or(0.0, |sums| self.weights(x, y).mean(sums) as f32);
         (!self.alphas.is_empty()).then_some(mean)
     }
 
-    /// The sums of a pixel; `None` outside of [`Film::area`].
-    pub(super) fn pixel(&self, x: u32, y: u32) -> Option<Pixel> {
-        self.sums_of(&self.pixels, x, y)
+    fn alpha_sums(&self, x: u32, y: u32) -> Option<Weighted> {
+        let signed = self.sums_of(&self.alphas, x, y)?;
+        Some(Weighted { signed, unsigned: self.sums_of(&self.unsigned_alphas, x, y) })
     }
 
     /// Sums of a kind of a pixel; `None` where there are none, and outside of [`Film::area`].

@@ -4,7 +4,8 @@
 //! mean: dark parts of the picture need not be as clean relative to themselves. An area's error is the mean over its
 //! pixels. The standard error is estimated as if the samples were independent (stratified ones have less noise).
 
-use super::{Film, Pixel, xyz};
+use super::weighted::WeightedPixel;
+use super::{Film, xyz};
 use lookfrom_scene::settings::PixelBounds;
 
 /// The fraction of the picture's mean luminance that is added to a pixel's luminance where its noise is compared with it.
@@ -16,7 +17,7 @@ impl Film {
         let PixelBounds { x0, y0, x1, y1 } = self.area;
         let mut sum = 0.0;
         for y in y0..y1 {
-            self.pixels.row(y, x0, x1, |pixel| sum += pixel.luminance());
+            self.row(y, x0, x1, |pixel| sum += pixel.luminance());
         }
         let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
         if pixels == 0 { 0.0 } else { sum / pixels as f64 }
@@ -29,7 +30,7 @@ impl Film {
         let PixelBounds { x0, y0, x1, y1 } = super::common(self.area, area);
         let mut sum = 0.0;
         for y in y0..y1 {
-            self.pixels.row(y, x0, x1, |pixel| {
+            self.row(y, x0, x1, |pixel| {
                 sum += pixel.relative_error(mean);
             });
         }
@@ -38,7 +39,7 @@ impl Film {
     }
 }
 
-impl Pixel {
+impl WeightedPixel {
     /// Luminance of the mean.
     pub(super) fn luminance(&self) -> f64 {
         xyz(self.mean().map(f64::from))[1]
@@ -52,6 +53,6 @@ impl Pixel {
 
     /// Standard error of the mean's luminance.
     pub(super) fn standard_error(&self) -> f64 {
-        (self.variance()[1] / self.samples.max(1) as f64).sqrt()
+        (self.variance()[1] / self.pixel.samples.max(1) as f64).sqrt()
     }
 }

@@ -1,7 +1,7 @@
 //! The sums of a pixel in fixed point: of light, or of what a sensor measures.
 
-use super::{BRIGHTEST, xyz};
-use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64, fixed_point, fixed_point_square};
+use super::BRIGHTEST;
+use crate::core::fixed_point::{fixed_point, fixed_point_square};
 
 /// Sums of three numbers over the samples of a pixel, and of the squares of these numbers or of three others that they give.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,48 +33,11 @@ impl Pixel {
         }
         self.samples = self.samples.saturating_add(add.samples);
     }
-
-    pub(super) fn mean(&self) -> [f32; 3] {
-        mean(&self.sums, self.samples)
-    }
-
-    /// The variance of one sample of light, in X, Y and Z.
-    pub(super) fn variance(&self) -> [f64; 3] {
-        self.variance_of(xyz)
-    }
-
-    /// The variance of one sample in the numbers that were squared: the mean of the squares less the square of the mean, times n / (n −
-    /// 1). Infinite with fewer than two.
-    pub(super) fn variance_of(&self, squared: impl FnOnce([f64; 3]) -> [f64; 3]) -> [f64; 3] {
-        if self.samples < 2 {
-            return [f64::INFINITY; 3];
-        }
-        let n = self.samples as f64;
-        let mean = squared(self.sums.map(|sum| sum as f64 / (n * TWO_TO_64)));
-        std::array::from_fn(|channel| {
-            unbiased_variance(n, mean[channel], self.squares[channel] as f64 / (n * TWO_TO_48))
-        })
-    }
 }
 
 /// Adds sums to others; they wrap.
 pub(super) fn merge_sums(sums: &mut [i128; 3], add: &[i128; 3]) {
     sums.iter_mut().zip(add).for_each(|(sum, add)| *sum = sum.wrapping_add(*add));
-}
-
-/// The mean over a number of samples of sums in multiples of 2⁻⁶⁴, black where there are none.
-pub(super) fn mean(sums: &[i128; 3], samples: u64) -> [f32; 3] {
-    if samples == 0 {
-        return [0.0; 3];
-    }
-    let scale = samples as f64 * TWO_TO_64;
-    sums.map(|sum| (sum as f64 / scale) as f32)
-}
-
-/// The unbiased variance of one of `n` > 1 samples, by their mean and that of their squares.
-pub(super) fn unbiased_variance(n: f64, mean: f64, mean_of_squares: f64) -> f64 {
-    // For equal samples rounding leaves a small value of either sign.
-    (mean_of_squares - mean * mean).max(0.0) * (n / (n - 1.0))
 }
 
 /// Any pixel, of numbers of any magnitude and with any number of zeros at their ends.

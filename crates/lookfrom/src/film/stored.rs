@@ -178,6 +178,12 @@ macro_rules! for_each_plane {
         { $(let $plane = $($borrow)+ $film.pixels;)+ $body }
         { $(let $plane = $($borrow)+ $film.alphas;)+ $body }
         { $(let $plane = $($borrow)+ $film.alpha_squares;)+ $body }
+        { $(let $plane = $($borrow)+ $film.weights;)+ $body }
+        { $(let $plane = $($borrow)+ $film.unsigned_alphas;)+ $body }
+        for index in 0..[$($film.unsigned_light.len()),+].into_iter().min().unwrap_or(0) {
+            $(let $plane = $($borrow)+ $film.unsigned_light[index];)+
+            $body
+        }
         { $(let $plane = $($borrow)+ $film.channels;)+ $body }
         { $(let $plane = $($borrow)+ $film.layers;)+ $body }
         { $(let $plane = $($borrow)+ $film.features;)+ $body }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::core::hash::mix;
-use lookfrom_scene::settings::{Background, Layers};
+use lookfrom_scene::settings::{Background, FilterShape, Layers};
 use proptest::prelude::*;
 
 const SIZE: u32 = 4;
@@ -163,7 +163,7 @@ proptest! {
             }
         }
         let expected = Pixel { sums: [sum, 0, -sum], squares, samples: count };
-        prop_assert_eq!(film.pixel(0, 0).unwrap(), expected);
+        prop_assert_eq!(film.pixel(0, 0).unwrap().pixel, expected);
         prop_assert_eq!(film.dropped() + count, lights.len() as u64);
         if count > 0 {
             prop_assert_eq!(film.mean(0, 0)[0], (sum as f64 / 2_f64.powi(64) / count as f64) as f32);
@@ -298,7 +298,7 @@ fn the_variance_of_little_and_of_much() {
     for sample in 0..100 {
         film.add(1, 0, sample, [BRIGHTEST, 1.0, -BRIGHTEST]);
     }
-    assert_eq!(film.pixel(1, 0).unwrap().squares, [u128::MAX; 3]);
+    assert_eq!(film.pixel(1, 0).unwrap().pixel.squares, [u128::MAX; 3]);
     assert!(film.variance(1, 0).iter().all(|variance| variance.is_finite()));
 }
 
@@ -508,4 +508,52 @@ fn channels_have_their_variance() {
         let image = ImageSettings { layers, sensor, ..ImageSettings::default() };
         assert_eq!(Film::for_image(&image).unwrap().channel_variance(0, 0), None);
     }
+}
+
+/// A film of one pixel, with alpha, for a filter with negative lobes: of samples with light and weights.
+fn film_of_weights(samples: impl IntoIterator<Item = ([f32; 3], f32)>) -> Film {
+    let image = ImageSettings {
+        width: 1,
+        height: 1,
+        filter: FilterShape::Sinc { tau: 3.0 }.of_radius(4.0),
+        background: Background::Transparent,
+        ..ImageSettings::default()
+    };
+    let mut film = Film::for_image(&image).unwrap();
+    let mut tile = film.tile(film.area()).unwrap();
+    for (sample, (light, weight)) in (0..).zip(samples) {
+        tile.add_weighted(0, 0, sample, light.map(|light| light * weight), 0.5, weight);
+    }
+    film.add_tile(&tile).unwrap();
+    film
+}
+
+#[test]
+fn light_that_is_the_same_all_over_a_filter_has_no_noise() {
+    let light = [0.5, 0.25, 3.0];
+    for signs in [&[1.0][..], &[-1.0], &[1.0, -1.0], &[1.0, 1.0, -1.0, 1.0, 1.0], &[-1.0, -1.0, -1.0]] {
+        let film = film_of_weights(signs.iter().map(|sign| (light, 1.75 * sign)));
+        assert_eq!((film.mean(0, 0), film.alpha(0, 0)), (light, Some(0.5)), "{signs:?}");
+        assert_eq!((film.picture().pixels[0], film.picture().alpha[0]), (light, 0.5));
+        assert!(signs.len() < 2 || film.variance(0, 0)[1] < 1e-6);
+    }
+}
+
+/// The mean of the estimates over all signs of the weights, by their probabilities, is that of the light.
+#[test]
+fn estimates_by_weights_are_right_in_the_mean() {
+    let light: [f32; 4] = [0.25, 7.0, 0.0, 1.5];
+    // Positive with the probability 3/4, so that the mean of the weights is 1.
+    let (mut expected, mut of_variance) = (0.0, 0.0);
+    for signs in 0..1_u32 << light.len() {
+        let is_negative = |k: usize| signs >> k & 1 != 0;
+        let weight = |k: usize| if is_negative(k) { -2.0 } else { 2.0 };
+        let probability: f64 = (0..light.len()).map(|k| if is_negative(k) { 0.25 } else { 0.75 }).product();
+        let film = film_of_weights(light.iter().enumerate().map(|(k, light)| ([*light; 3], weight(k))));
+        expected += probability * f64::from(film.mean(0, 0)[1]);
+        of_variance += probability * f64::from(film.variance(0, 0)[1]);
+    }
+    assert!((expected - 8.75 / 4.0).abs() < 1e-6, "{expected}");
+    // That of w (L − m) is c² times that of the light, less what the mean of w (L − m) has: half of the light here, or more.
+    assert!((0.5..4.0).contains(&(of_variance / 10.6)), "{of_variance}");
 }

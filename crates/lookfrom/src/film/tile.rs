@@ -11,6 +11,7 @@ use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
 use super::motion::MotionSums;
 use super::pixel::Pixel;
+use super::weighted::WeightSums;
 use super::{BRIGHTEST, FEATURE_SAMPLES, MOST_PIXELS, SampleId, too_large, twice, xyz};
 use crate::aov::{AovSums, Aovs, LayerSums};
 use crate::core::fixed_point::{fixed_point, fixed_point_square};
@@ -37,6 +38,11 @@ pub struct FilmTile {
     pub(super) alphas: Vec<i128>,
     /// Sums of their squares, in multiples of 2⁻⁴⁸: one per pixel, or none.
     pub(super) alpha_squares: Vec<u128>,
+    /// Of filter weights: one per pixel, or none.
+    pub(super) weights: Vec<WeightSums>,
+    /// As alphas and light, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
+    pub(super) unsigned_alphas: Vec<i128>,
+    pub(super) unsigned_light: Vec<Vec<LightPathSums>>,
     pub(super) dropped: u64,
     pub(super) first_dropped: Option<SampleId>,
     /// The samples that were [recorded](FilmTile::record).
@@ -78,6 +84,9 @@ impl FilmTile {
             buckets: (0..layout.buckets).map(|_| empty(count)).collect::<Result<_>>()?,
             alphas: empty(of(layout.alpha))?,
             alpha_squares: empty(of(layout.alpha_squares()))?,
+            weights: empty(of(layout.weights))?,
+            unsigned_alphas: empty(of(layout.unsigned_alphas()))?,
+            unsigned_light: (0..layout.unsigned_light()).map(|_| empty(count)).collect::<Result<_>>()?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),
@@ -99,15 +108,26 @@ impl FilmTile {
         !self.light_paths.is_empty()
     }
 
-    /// Adds the light of one sample to the layers of light-path expressions, in their order, unless the sample is dropped:
-    /// unless its whole light, `rgb`, is not finite.
+    /// Adds the light of one sample, which has been multiplied by a filter weight, to the layers of light-path expressions, in their
+    /// order, unless the sample is dropped: unless its whole light, `rgb`, is not finite.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
-    pub fn add_light_paths(&mut self, x: u32, y: u32, rgb: [f32; 3], layers: impl Iterator<Item = [f32; 3]>) {
+    pub fn add_light_paths(
+        &mut self,
+        x: u32,
+        y: u32,
+        rgb: [f32; 3],
+        weight: f32,
+        layers: impl Iterator<Item = [f32; 3]>,
+    ) {
         let index = self.index_inside(x, y);
         if rgb.iter().all(|light| light.is_finite()) {
-            self.light_paths.iter_mut().zip(layers).for_each(|(layer, light)| layer[index].add(light));
+            for (number, light) in layers.enumerate() {
+                self.light_paths[number][index].add(light);
+                let layer = self.unsigned_light.get_mut(number + 1);
+                layer.into_iter().for_each(|layer| layer[index].add(unsigned(light, weight)));
+            }
         }
     }
 
@@ -155,23 +175,31 @@ impl FilmTile {
     /// # Panics
     /// If the pixel is outside of the tile.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3]) {
-        self.add_with_alpha(x, y, sample, rgb, 1.0);
+        self.add_weighted(x, y, sample, rgb, 1.0, 1.0);
     }
 
-    /// As [`FilmTile::add`], and adds the sample's alpha, if the tile has alpha: a sample whose alpha is not finite is
-    /// dropped as well.
+    /// As [`FilmTile::add`], of light that has been multiplied by a filter weight, and adds the weight and the sample's alpha times
+    /// it, if the tile has them: a sample whose alpha is not finite is dropped as well.
     ///
     /// # Panics
     /// If the pixel is outside of the tile.
-    pub fn add_with_alpha(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3], alpha: f32) {
+    pub fn add_weighted(&mut self, x: u32, y: u32, sample: u32, rgb: [f32; 3], alpha: f32, weight: f32) {
         let index = self.index_inside(x, y);
+        let alpha = alpha * weight;
         if !alpha.is_finite() || !rgb.iter().all(|light| light.is_finite()) {
             self.drop_samples(1, Some(SampleId { pixel: [x, y], sample }));
             return;
         }
         self.pixels[index].add(rgb, xyz);
+        if let Some(light) = self.unsigned_light.first_mut() {
+            self.weights[index].add(weight);
+            light[index].add(unsigned(rgb, weight));
+        }
         if let Some(sum) = self.alphas.get_mut(index) {
             *sum = sum.wrapping_add(fixed_point(alpha));
+            if let Some(sum) = self.unsigned_alphas.get_mut(index) {
+                *sum = sum.wrapping_add(fixed_point(if weight < 0.0 { -alpha } else { alpha }));
+            }
             if let Some(squares) = self.alpha_squares.get_mut(index) {
                 let square = fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST)));
                 *squares = squares.saturating_add(square);
@@ -260,6 +288,11 @@ impl FilmTile {
         let start = (y - y0) as usize * (x1 - x0) as usize;
         start + (from - x0) as usize..start + (to - x0) as usize
     }
+}
+
+/// Light as with the magnitude of its weight.
+fn unsigned(rgb: [f32; 3], weight: f32) -> [f32; 3] {
+    if weight < 0.0 { rgb.map(|light| -light) } else { rgb }
 }
 
 /// `count` zeros; an error if there is no memory for them.

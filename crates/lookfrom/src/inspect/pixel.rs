@@ -153,7 +153,7 @@ impl SampleSummary {
 /// Adds a sample to the film of one pixel.
 fn add(tile: &mut FilmTile, inspection: &Inspection) {
     let &Inspection { sample, film, alpha, filter_weight, .. } = inspection;
-    tile.add_with_alpha(0, 0, sample, film, alpha * filter_weight);
+    tile.add_weighted(0, 0, sample, film, alpha, filter_weight);
 }
 
 /// The picture of one pixel, and its bytes.

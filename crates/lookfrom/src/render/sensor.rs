@@ -16,7 +16,7 @@ impl Renderer {
         samples.map(|(slot, ((&radiance, &alpha), &weight))| {
             let mode = modes[slot];
             let (rgb, alpha) = self.with_alpha(radiance, weight, &mode, alpha);
-            Traced { rgb, radiance, mode, weight, filter_weight: start.filter_weight(slot), alpha }
+            Traced { rgb, radiance, mode, weight, filter_weight: start.filter_weights()[slot], alpha }
         })
     }
 

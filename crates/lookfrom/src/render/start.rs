@@ -72,9 +72,9 @@ impl Start {
         self.weights[slot] == 0.0
     }
 
-    /// The filter's weight of a slot.
-    pub(super) fn filter_weight(&self, slot: usize) -> f32 {
-        *self.filter_weights.get(slot).unwrap_or(&self.weights[slot])
+    /// The filter's weights, one for each slot.
+    pub(super) fn filter_weights(&self) -> &[f32] {
+        if self.filter_weights.is_empty() { &self.weights } else { &self.filter_weights }
     }
 }
 

@@ -34,7 +34,7 @@ fn film(
     for (y, x) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y, x))) {
         for sample in 0..samples {
             let (rgb, alpha, aovs) = of(x, y, sample);
-            tile.add_with_alpha(x, y, sample, rgb, alpha);
+            tile.add_weighted(x, y, sample, rgb, alpha, 1.0);
             tile.add_first_hit(x, y, sample, aovs.as_ref());
         }
     }
