@@ -8,8 +8,9 @@ Needs: pip package numpy, and mitsuba for its scenes; a release build of lookfro
                  [--folder DIR]
 
 Files are those of gltf_random.py (of every second seed the animations are blurred, of every fifth the integrator is Whitted's),
-of mitsuba_random.py, pbrt_random.py and toml_random.py (of every second seed in spectra); --files adds others. With --options each is rendered
-with random options: integrators, layers, samplers, lights, filters. A level that the machine does not have is the next lower one.
+of mitsuba_random.py, pbrt_random.py and toml_random.py (of every second seed in spectra); --files adds others. With --options
+each is rendered with random options: integrators, layers, samplers, lights, filters. A level that the machine does not have is
+the next lower one.
 """
 
 import argparse

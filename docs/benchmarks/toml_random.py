@@ -10,7 +10,20 @@ METALS = ["silver", "aluminium", "gold", "copper", "brass", "MgO", "TiO2"]
 GLASSES = ["BK7", "BAF10", "SF11", 1.33, 1.5, 2.1]
 TONEMAPS = ["clamp", "reinhard", "filmic", "pbr_neutral", "aces", "agx"]
 CUBE = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-CUBE_TRIANGLES = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+CUBE_TRIANGLES = [
+    [0, 1, 3],
+    [0, 3, 2],
+    [4, 6, 7],
+    [4, 7, 5],
+    [0, 4, 5],
+    [0, 5, 1],
+    [2, 3, 7],
+    [2, 7, 6],
+    [0, 2, 6],
+    [0, 6, 4],
+    [1, 5, 7],
+    [1, 7, 3],
+]
 
 
 def toml(value):
@@ -77,6 +90,7 @@ class Grammar:
 
     def texture(self, low=0.0, high=1.0, depth=0):
         """A texture: in its place, or by a name."""
+
         def color():
             return self.texture(low, high, depth + 1) if depth < 2 and self.maybe(0.2) else self.numbers(low, high)
 
@@ -177,7 +191,13 @@ class Grammar:
         solid = {"solid": True, **self.some(0.5, absorption=lambda: self.numbers(0, 2), dispersion=lambda: self.number(0, 5))}
         return {
             **self.some(0.4, base_color=color, metallic=value, roughness=value, specular=value, specular_color=color),
-            **self.some(0.25, transmission=value, diffuse_transmission=value, diffuse_transmission_color=color, ior=lambda: self.number(1, 2.2)),
+            **self.some(
+                0.25,
+                transmission=value,
+                diffuse_transmission=value,
+                diffuse_transmission_color=color,
+                ior=lambda: self.number(1, 2.2),
+            ),
             **self.some(0.25, clearcoat=value, clearcoat_roughness=value, sheen_color=color, sheen_roughness=value),
             **self.some(0.25, iridescence=value, iridescence_thickness=lambda: value(100, 800)),
             **self.some(0.2, anisotropy=self.number, anisotropy_rotation=lambda: self.number(0, 180)),
@@ -196,7 +216,10 @@ class Grammar:
     def whitted(self):
         glass = {"diffuse": 0.05, "mirror": 1, "transmission": 1, "fresnel": True, "ior": self.number(1.1, 2)}
         mirror = {"diffuse": self.color(0.3), "mirror": self.color(0.8)}
-        plain = {"diffuse": self.color(), **self.some(0.5, specular=self.color, shininess=lambda: self.number(1, 200), ambient=self.color)}
+        plain = {
+            "diffuse": self.color(),
+            **self.some(0.5, specular=self.color, shininess=lambda: self.number(1, 200), ambient=self.color),
+        }
         return self.choice(plain, plain, mirror, {**glass, **self.some(0.4, absorption=lambda: self.numbers(0, 1))})
 
     def material(self, inner=True):
@@ -224,7 +247,9 @@ class Grammar:
             "coated_conductor": lambda: {**self.metal(), "base_roughness": self.roughness(), **coat},
             "plastic": lambda: {
                 "reflectance": color(),
-                **self.some(0.3, nonlinear=False, ior=lambda: number(1.2, 2), roughness=lambda: number(0.1, 0.8), specular_reflectance=color),
+                **self.some(
+                    0.3, nonlinear=False, ior=lambda: number(1.2, 2), roughness=lambda: number(0.1, 0.8), specular_reflectance=color
+                ),
                 **self.facets(),
             },
             "subsurface": lambda: {
@@ -239,7 +264,9 @@ class Grammar:
                 **self.choice(
                     {"eumelanin": value(0, 3), "pheomelanin": number(0, 1)}, {"melanin": number()}, {"reflectance": color(0.9)}
                 ),
-                **self.some(0.3, roughness=lambda: value(0.1, 1), radial_roughness=lambda: value(0.1, 1), offset=lambda: number(-5, 5)),
+                **self.some(
+                    0.3, roughness=lambda: value(0.1, 1), radial_roughness=lambda: value(0.1, 1), offset=lambda: number(-5, 5)
+                ),
             },
             "measured": lambda: {"file": self.part(self.choice("pearl", "reflector", "velvet") + ".binary")},
             "principled": self.principled,
@@ -280,7 +307,9 @@ class Grammar:
             {"extinction": self.spectrum(thin), "albedo": self.spectrum()},
             {"scattering": self.number(0, thin)},
         )
-        phase = self.choice({}, {"g": self.number(-0.8, 0.9)}, {"droplets": self.number(0.5, 20)}, {"draine": {"g": 0.2, "share": 0.5}})
+        phase = self.choice(
+            {}, {"g": self.number(-0.8, 0.9)}, {"droplets": self.number(0.5, 20)}, {"draine": {"g": 0.2, "share": 0.5}}
+        )
         medium.update(phase)
         if density is not None and not is_fog:
             medium["density"] = density
@@ -298,11 +327,30 @@ class Grammar:
             "sphere": lambda: {"radius": number(0.4, 0.8), **cut},
             "triangle": lambda: {"vertices": [[-0.8, -0.5, 0], [0.8, -0.5, number(-0.5, 0.5)], [0, 0.8, 0]]},
             "quad": lambda: {"corner": [-0.6, -0.6, 0], "edge_u": [1.2, 0, number(-0.3, 0.3)], "edge_v": [0, 1.2, 0]},
-            "disk": lambda: {"center": [0, 0, 0], "normal": self.numbers(-1, 1), "radius": 0.8, **self.some(0.3, inner_radius=0.3, phi_max=lambda: number(90, 360))},
-            "cylinder": lambda: {"from": [0, -0.6, 0], "to": numbers(-0.2, 0.6), "radius": number(0.02, 0.5), **self.some(0.3, phi_max=200)},
-            "cone": lambda: {"from": [0, -0.6, 0], "to": [0, 0.6, 0], "radius": 0.6, **self.some(0.3, tip_radius=0.2, closed=False)},
+            "disk": lambda: {
+                "center": [0, 0, 0],
+                "normal": self.numbers(-1, 1),
+                "radius": 0.8,
+                **self.some(0.3, inner_radius=0.3, phi_max=lambda: number(90, 360)),
+            },
+            "cylinder": lambda: {
+                "from": [0, -0.6, 0],
+                "to": numbers(-0.2, 0.6),
+                "radius": number(0.02, 0.5),
+                **self.some(0.3, phi_max=200),
+            },
+            "cone": lambda: {
+                "from": [0, -0.6, 0],
+                "to": [0, 0.6, 0],
+                "radius": 0.6,
+                **self.some(0.3, tip_radius=0.2, closed=False),
+            },
             "torus": lambda: {"radius": 0.6, "tube": number(0.05, 0.3), "segments": 24},
-            "lathe": lambda: {"profile": [[0, -0.5], [0.5, -0.4], [0.6, 0.1], [0.2, 0.5]], "segments": 24, **self.some(0.3, smooth=False)},
+            "lathe": lambda: {
+                "profile": [[0, -0.5], [0.5, -0.4], [0.6, 0.1], [0.2, 0.5]],
+                "segments": 24,
+                **self.some(0.3, smooth=False),
+            },
             "box": lambda: {"min": [-0.5, -0.4, -0.5], "max": [0.5, 0.5, 0.4]},
             "text": lambda: {"text": "lo", "font": self.part("letters.ttf"), "align": "center", "size": 1.2},
             "heightfield": lambda: {"file": "picture.png", "size": [1.5, 1.5], "height": 0.5},
@@ -323,7 +371,9 @@ class Grammar:
                 **self.some(0.15, displacement=lambda: number(0, 0.2)),
                 **self.some(0.15, subdivision=2),
             },
-            "patch": lambda: {"corners": [[-0.7, number(-0.5, 0.5), 0.7], [0.7, 0.2, 0.7], [-0.7, 0.1, -0.7], [0.7, number(-0.5, 0.5), -0.7]]},
+            "patch": lambda: {
+                "corners": [[-0.7, number(-0.5, 0.5), 0.7], [0.7, 0.2, 0.7], [-0.7, 0.1, -0.7], [0.7, number(-0.5, 0.5), -0.7]]
+            },
             "curve": lambda: {
                 "points": [[-0.9, 0, 0], [-0.3, number(0, 0.9), 0], [0.3, number(-0.9, 0), 0.4], [0.9, 0, 0]],
                 "width": numbers(0.02, 0.3, 2),
@@ -351,7 +401,9 @@ class Grammar:
 
     def placed(self):
         shape = {**self.shape(), **self.placing()}
-        if self.maybe(0.12) and (shape["type"] in self.CLOSED or shape["type"] == "sphere" and not {"z_min", "z_max", "phi_max"} & set(shape)):
+        if self.maybe(0.12) and (
+            shape["type"] in self.CLOSED or shape["type"] == "sphere" and not {"z_min", "z_max", "phi_max"} & set(shape)
+        ):
             return {**shape, "medium": self.medium(False), **self.some(0.3, material=self.material)}
         return {
             **shape,
@@ -373,16 +425,49 @@ class Grammar:
             lambda: {"type": "ambient", "color": numbers(0, 0.3)},
             lambda: {"type": "point", "position": at, **brightness, **self.some(0.2, falloff=self.choice("none", "linear"))},
             lambda: {"type": "distant", "direction": [number(-1, 1), -1, number(-1, 1)], "intensity": numbers(0.3, 2)},
-            lambda: {"type": "spot", "position": at, "target": [0, 0, 0], **brightness, "cone_angle": number(15, 50), **self.some(0.3, edge="linear")},
-            lambda: {"type": "projection", "position": at, "target": [0, 0, 0], "image": "picture.png", "intensity": number(5, 30), **self.some(0.3, filter="bilinear")},
-            lambda: {"type": "goniometric", "position": at, "image": self.choice("sphere.pfm", self.part("downlight.ies")), **brightness},
-            lambda: {"type": "rectangle", "center": at, "target": [0, 0, 0], "width": number(0.3, 2), "height": 0.6, **radiance, **self.some(0.2, two_sided=True)},
+            lambda: {
+                "type": "spot",
+                "position": at,
+                "target": [0, 0, 0],
+                **brightness,
+                "cone_angle": number(15, 50),
+                **self.some(0.3, edge="linear"),
+            },
+            lambda: {
+                "type": "projection",
+                "position": at,
+                "target": [0, 0, 0],
+                "image": "picture.png",
+                "intensity": number(5, 30),
+                **self.some(0.3, filter="bilinear"),
+            },
+            lambda: {
+                "type": "goniometric",
+                "position": at,
+                "image": self.choice("sphere.pfm", self.part("downlight.ies")),
+                **brightness,
+            },
+            lambda: {
+                "type": "rectangle",
+                "center": at,
+                "target": [0, 0, 0],
+                "width": number(0.3, 2),
+                "height": 0.6,
+                **radiance,
+                **self.some(0.2, two_sided=True),
+            },
             lambda: {"type": "disk", "center": at, "target": [0, 0, 0], "radius": number(0.2, 1), **radiance},
             lambda: {"type": "sphere", "center": at, "radius": number(0.1, 0.6), **radiance},
             lambda: {**sky, "color": color},
             lambda: {**sky, "zenith": numbers(0, 1), "horizon": numbers(0, 1)},
             lambda: {**sky, "image": "sky.pfm", **self.some(0.3, rotate=lambda: number(0, 360), layout="octahedral")},
-            lambda: {"type": "sun_and_sky", "elevation": number(5, 80), "azimuth": number(0, 360), "turbidity": number(1.5, 8), "illuminance": number(1, 4)},
+            lambda: {
+                "type": "sun_and_sky",
+                "elevation": number(5, 80),
+                "azimuth": number(0, 360),
+                "turbidity": number(1.5, 8),
+                "illuminance": number(1, 4),
+            },
         ]
         return self.rng.choice(kinds)()
 
@@ -394,12 +479,20 @@ class Grammar:
             {"fov": 40, "aperture": self.number(0.02, 0.2), **self.some(0.5, focus=[0, 0, 0.5])},
             {"projection": "orthographic", "height": self.number(3, 5)},
             {"projection": self.choice("equirectangular", "equirectangular_pbrt", "octahedral")},
-            {"lens": self.part(self.choice("double-gauss.dat", "fisheye.dat")), **self.some(0.5, aperture=0.01, aperture_shape=self.choice("star", "pentagon"))},
+            {
+                "lens": self.part(self.choice("double-gauss.dat", "fisheye.dat")),
+                **self.some(0.5, aperture=0.01, aperture_shape=self.choice("star", "pentagon")),
+            },
         ]
         camera.update(self.rng.choice(kinds))
         if self.maybe(0.15):
             camera["medium"] = self.medium(True)
-        if self.maybe(0.1) and "lens" not in camera and "equi" not in camera.get("projection", "") and camera.get("projection") != "octahedral":
+        if (
+            self.maybe(0.1)
+            and "lens" not in camera
+            and "equi" not in camera.get("projection", "")
+            and camera.get("projection") != "octahedral"
+        ):
             camera["clip"] = [self.number(0.5, 5), self.number(7, 12)]
         return {**camera, **self.some(0.5, shutter=self.number(0.2, 1))}
 
@@ -410,19 +503,34 @@ class Grammar:
         if self.maybe(0.3):
             file["objects"] = {"thing": {"shape": [{**self.shape(), "material": self.material()} for _ in range(2)]}}
             file["instance"] = [
-                {"object": "thing", **self.placing(), **self.some(0.2, material=self.material)} for _ in range(self.rng.randint(1, 4))
+                {"object": "thing", **self.placing(), **self.some(0.2, material=self.material)}
+                for _ in range(self.rng.randint(1, 4))
             ]
         file["image"] = {
             "width": 48,
             "height": 36,
             "filter": self.choice("box", "gaussian", "mitchell", "blackman_harris", "triangle", {"type": "sinc", "radius": [4, 2]}),
-            **self.some(0.15, tonemap=self.choice(*TONEMAPS), exposure=lambda: self.number(-2, 2), background=lambda: self.numbers(0, 1), max_component=5),
+            **self.some(
+                0.15,
+                tonemap=self.choice(*TONEMAPS),
+                exposure=lambda: self.number(-2, 2),
+                background=lambda: self.numbers(0, 1),
+                max_component=5,
+            ),
             **self.some(0.1, white_balance=lambda: self.number(3000, 9000), sensor="canon_eos_5d", imaging_ratio=0.7),
         }
         file["render"] = {
             "integrator": "path",
             "depth": self.choice(1, 4, 12),
-            **self.some(0.15, regularize=True, hide_lights=True, thin_passages_count=False, portals="auto", vertex_normals="as_given"),
+            **self.some(
+                0.15,
+                regularize=True,
+                hide_lights=True,
+                thin_passages_count=False,
+                portals="auto",
+                vertex_normals="as_given",
+                endless_media=True,
+            ),
         }
         tables = {"materials": self.materials, "textures": self.textures, "media": self.media}
         lines = [f"{key} = {toml(value)}" for key, value in file.items()]

@@ -81,6 +81,7 @@ pub(crate) fn from_bytes(bytes: &[u8], path: &Path, context: &mut LoadContext<'_
     };
     reader.root(&root)?;
     root.warn_unused(reader.context);
+    reader.scene.render.endless_media = !reader.scene.media.is_empty();
     Ok(reader.scene)
 }
 

@@ -217,6 +217,7 @@ impl Reader<'_, '_> {
     fn finish(&mut self, path: &Path) -> Result<()> {
         let result = self.finish_without_models(path);
         self.read_models().and(result)?;
+        self.scene.render.endless_media = !self.scene.media.is_empty();
         self.tessellate_displaced()
     }
 

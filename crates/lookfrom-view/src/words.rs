@@ -141,6 +141,7 @@ fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
         ("regularize", settings.regularize, "true".to_owned()),
         ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
         ("thin_passages_count", !settings.thin_passages_count, "false".to_owned()),
+        ("endless_media", settings.endless_media, "true".to_owned()),
         ("open_fronts", settings.open_fronts, "true".to_owned()),
         ("hide_lights", settings.hide_lights, "true".to_owned()),
         (

@@ -261,7 +261,7 @@ export interface Flight {
     extinction: Factor;
     /** The index of the lane that was chosen. */
     lane: number;
-    /** The distance of what the ray hits; infinite where it hits nothing. */
+    /** The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none. */
     limit: number;
     /** The point where it is scattered, in the world; null where it arrives. */
     scattered_at: Vector | null;
@@ -917,7 +917,7 @@ export type ThreeVectors = [Vector, Vector, Vector];
 export interface Tracking {
     /** Its collisions, in order: all are null, but for the last where the medium scatters it. */
     collisions: Collision[];
-    /** The distance of what the ray hits; infinite where it hits nothing. */
+    /** The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none. */
     limit: number;
     /** The medium along the whole way, whether the ray goes on to there or not; null where it does not meet it. */
     profile: Profile | null;

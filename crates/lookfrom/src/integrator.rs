@@ -168,28 +168,24 @@ impl<S: PathState> Path<S> {
         is_back || is_hidden || !world.passes_alpha_test(surface, u)
     }
 
-    /// This path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed,
-    /// to infinity.
+    /// This path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to where that ends.
     #[inline]
     fn absorbed(&self, world: &World, hit: &Hit, mode: &SpectralMode) -> Self {
         if self.interior.is_empty() {
             return *self;
         }
-        let transmittance = world.transmittance(self.interior, (&self.ray, self.length_to(hit)), mode);
+        let transmittance = world.transmittance(self.interior, (&self.ray, self.length_to(world, hit)), mode);
         Self { beta: self.beta * transmittance, ..*self }
     }
 
     /// The way to `hit`.
-    fn way_to(&self, hit: &Hit) -> Way {
-        Way::new(&self.ray, self.length_to(hit))
+    fn way_to(&self, world: &World, hit: &Hit) -> Way {
+        Way::new(&self.ray, self.length_to(world, hit))
     }
 
-    /// The length of the way to `hit`; infinite for a miss.
-    fn length_to(&self, hit: &Hit) -> f32 {
-        match hit.is_hit() {
-            true => Vec3::from_array(self.ray.direction).length() * hit.t,
-            false => f32::INFINITY,
-        }
+    /// The length of the way to `hit`, see [`World::length`].
+    fn length_to(&self, world: &World, hit: &Hit) -> f32 {
+        world.length(self.interior, &self.ray, hit)
     }
 
     /// This path continued behind a surface that it passes ([`Path::goes_through`]), in the medium that it was in.
@@ -328,7 +324,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         self.queues.modes[path.slot as usize]
     }
 
-    /// A path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to infinity.
+    /// A path with its throughput attenuated by the medium that it is in, on the way to `hit` or, if it missed, to where that ends.
     #[inline]
     pub fn absorbed(&mut self, world: &World, path: &Path<S>, hit: &Hit) -> Path<S> {
         if path.interior.is_empty() && self.light_paths.is_none() {
@@ -337,7 +333,7 @@ impl<P: Probe, S: PathState> StepOutput<'_, P, S> {
         let mode = self.mode(path);
         let absorbed = path.absorbed(world, hit, &mode);
         self.set_transmittance(world, path, absorbed.beta);
-        let length = || path.length_to(hit);
+        let length = || path.length_to(world, hit);
         self.probe.notice_some(|| {
             world.medium(path.interior).is_some().then(|| Event::Absorbed {
                 address: path.address,

@@ -28,6 +28,7 @@ pub(crate) use compile::Kept;
 pub(crate) use instance::Instance;
 pub use instance::PlacedInstance;
 pub(crate) use measured::MeasuredSurface;
+use medium::EndOfSpace;
 
 use std::sync::Arc;
 
@@ -77,6 +78,9 @@ pub struct World {
     pub(crate) has_media: bool,
     /// Half the diagonal of the bounding box of all primitives.
     pub(crate) radius: f32,
+    /// The end of media that fill space; `None` if they have none
+    /// ([`RenderSettings::endless_media`](lookfrom_scene::settings::RenderSettings::endless_media)).
+    pub(crate) end_of_space: Option<EndOfSpace>,
     /// Media on the two sides of surfaces, see
     /// [`MaterialBinding::medium_interface`](crate::primitive::MaterialBinding::medium_interface).
     pub(crate) medium_interfaces: Vec<MediumInterface>,

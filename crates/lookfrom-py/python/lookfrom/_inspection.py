@@ -426,7 +426,8 @@ class Flight:
     scattering: σ_s: the scattering coefficient.
     choice: P: the probability of each lane, β / Σ β.
     lane: The index of the lane that was chosen.
-    limit: The distance of what the ray hits; infinite where it hits nothing.
+    limit: The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills
+        space; infinite where that has none.
     distance: The distance that was sampled, `−ln(1 − u) / σ_t`: the ray is scattered where it is less than
         `limit`.
     scattered_at: The point where it is scattered, in the world; null where it arrives.
@@ -1146,7 +1147,8 @@ class Tracking:
     """The way of a ray through a medium that varies, by collisions whose density is a majorant of the
     extinction.
 
-    limit: The distance of what the ray hits; infinite where it hits nothing.
+    limit: The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills
+        space; infinite where that has none.
     collisions: Its collisions, in order: all are null, but for the last where the medium scatters it.
     profile: The medium along the whole way, whether the ray goes on to there or not; null where it does not
         meet it.

@@ -35,6 +35,10 @@ pub struct RenderSettings {
     /// Otherwise interfaces block shadow rays, but no others, as in pbrt's integrators without media. Absorption inside
     /// materials is always rendered.
     pub media: bool,
+    /// Whether media that fill space have no end where a ray meets nothing, as in pbrt and Mitsuba: only the light that lights infinitely far
+    /// away send to a point comes from twice the radius of the scene. Otherwise the way of any ray that meets nothing, and of that light, ends
+    /// after the distance of its origin from the middle of the scene and twice its radius.
+    pub endless_media: bool,
     /// Whether passing straight through a thin dielectric counts for the depth of a path, as in pbrt; in Mitsuba's integrators of media it
     /// does not.
     pub thin_passages_count: bool,
@@ -147,6 +151,7 @@ impl Default for RenderSettings {
             regularize: false,
             occlusion_distance: f32::INFINITY,
             media: true,
+            endless_media: false,
             thin_passages_count: true,
             open_fronts: false,
             hide_lights: false,

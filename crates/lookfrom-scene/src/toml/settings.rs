@@ -55,6 +55,7 @@ pub(super) const RENDER: &[&str] = &[
     "open_fronts",
     "hide_lights",
     "media",
+    "endless_media",
     "vertex_normals",
     "add_light",
 ];
@@ -259,6 +260,7 @@ pub(super) fn render(table: &Table<'_>) -> RenderSettings {
         occlusion_distance: table.or("occlusion_distance", default.occlusion_distance, above_zero),
         thin_passages_count: table.or("thin_passages_count", default.thin_passages_count, Value::boolean),
         media: table.or("media", default.media, Value::boolean),
+        endless_media: table.or("endless_media", default.endless_media, Value::boolean),
         open_fronts: table.or("open_fronts", default.open_fronts, Value::boolean),
         hide_lights: table.or("hide_lights", default.hide_lights, Value::boolean),
     }

@@ -49,7 +49,7 @@ pub struct Tracking {
     pub after: Spectrum,
     /// The light that the medium emits on the way, in its mean, times the throughput.
     pub emitted: Spectrum,
-    /// The distance of what the ray hits; infinite where it hits nothing.
+    /// The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none.
     pub limit: f32,
     /// The distance at which the path is scattered, if it is.
     pub scattered_at: Option<f32>,

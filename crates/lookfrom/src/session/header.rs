@@ -39,6 +39,9 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
     if render.portals != Portals::default() {
         texts.push(("portals", render.portals.word().to_owned()));
     }
+    if render.endless_media {
+        texts.push(("endless_media", render.endless_media.to_string()));
+    }
     if render.hide_lights {
         texts.push(("hide_lights", render.hide_lights.to_string()));
     }

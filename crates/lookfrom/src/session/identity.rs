@@ -103,9 +103,11 @@ impl Identity {
     pub(super) fn provenance(&self, session: &Session) -> Provenance {
         let settings =
             RenderSettings { samples: 0, allocation: Allocation::Uniform, ..session.settings().clone() };
-        // Named portals and lights that are seen need no words: films that are older know of no others.
-        let settings =
-            format!("{settings:?}").replace("portals: Named, ", "").replace(", hide_lights: false", "");
+        // Named portals, lights that are seen and media with an end need no words: films that are older know of no others.
+        let settings = format!("{settings:?}");
+        let settings = ["portals: Named, ", "endless_media: false, ", ", hide_lights: false"]
+            .into_iter()
+            .fold(settings, |settings, words| settings.replace(words, ""));
         let camera = Camera { at: lookfrom_scene::Location::default(), ..session.camera.clone() };
         let turn = session.turntable.as_ref().map(|turning| turning.degrees);
         let mut digest = Digest::default();

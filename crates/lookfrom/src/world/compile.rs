@@ -13,6 +13,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result, Warning};
 use super::ignored;
 use super::instancing::Instancing;
 use super::lights::Lights;
+use super::medium::EndOfSpace;
 use super::place::{Compiler, Group, Labels};
 use super::quality::quality;
 use super::{Instance, Medium, Names, World, origin, reflectance};
@@ -114,6 +115,8 @@ impl World {
         let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
         let bounds = scene.bounds();
         let (radius, around) = (bounds.radius() as f32, (bounds.center(), 2.0 * bounds.radius()));
+        let end_of_space = (!scene.render.endless_media)
+            .then(|| EndOfSpace { center: (bounds.center() - origin).as_vec3(), reach: 2.0 * radius });
         let Lights { lights, names: light_names, brightness, ambient, .. } = lights;
         let light_choice = LightChoice::new(scene.render.light_sampler, &lights, brightness, radius);
         ignored::warn(&scene, &camera, warnings);
@@ -165,6 +168,7 @@ impl World {
             has_open_fronts: false,
             has_media,
             radius,
+            end_of_space,
             catcher_irradiance: None,
             materials: materials.into(),
             alphas: alphas.into_iter().map(|alpha| textures.pictured(alpha)).collect(),

@@ -10,6 +10,23 @@ use crate::medium::{Cover, Medium, Way};
 use crate::shading::interior_stack::InteriorStack;
 use crate::shading::texture::SpectralMode;
 
+/// The end of media that fill space, for rays that meet nothing. It depends on their origins alone, so that light is the same by whatever way it
+/// is found, and a camera far away sees as much of the medium as there is before the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EndOfSpace {
+    /// The middle of the scene, in render space.
+    pub(super) center: Vec3,
+    /// Twice its radius.
+    pub(super) reach: f32,
+}
+
+impl EndOfSpace {
+    /// The length of the way of a ray.
+    fn length(self, ray: &Ray) -> f32 {
+        (Vec3::from_array(ray.origin) - self.center).length() + self.reach
+    }
+}
+
 impl World {
     /// Transmittance of the medium that a ray is in over a length; in a medium that varies, an estimate of it. Over an infinite
     /// distance it is 0 in a homogeneous medium that fills space, and 1 in a body, which must end somewhere although the ray did not hit its surface.
@@ -53,14 +70,28 @@ impl World {
         (absorption + scattering, medium.scale)
     }
 
-    /// The way of a ray to what it hits, or without an end, and what of it a medium that scatters or emits light covers; `None` where there is
-    /// none.
+    /// The length of the way of a ray to what it hits. Where it hits nothing, to the end of a medium that fills space, and infinite in others.
+    pub(crate) fn length(&self, media: InteriorStack, ray: &Ray, hit: &Hit) -> f32 {
+        match (hit.is_hit(), media.space(), self.end_of_space) {
+            (true, ..) => Vec3::from_array(ray.direction).length() * hit.t,
+            (false, Some(_), Some(end)) => end.length(ray),
+            (false, ..) => f32::INFINITY,
+        }
+    }
+
+    /// The length of the way of a ray to a light infinitely far away, in a medium that fills space: twice the scene's radius, as in pbrt, where
+    /// that has no end.
+    pub(crate) fn length_to_sky(&self, ray: &Ray) -> f32 {
+        self.end_of_space.map_or(2.0 * self.radius, |end| end.length(ray))
+    }
+
+    /// The way of a ray to what it hits, or to the end of a medium that fills space, and what of it a medium that scatters or emits light covers;
+    /// `None` where there is none.
     pub(crate) fn cover(&self, media: InteriorStack, ray: &Ray, hit: &Hit) -> Option<(Way, Cover)> {
-        let length = match hit.is_hit() {
-            true => Vec3::from_array(ray.direction).length() * hit.t,
-            false => media.space().map(|_| f32::INFINITY)?,
-        };
-        let way = Way::new(ray, length);
+        if !hit.is_hit() && media.space().is_none() {
+            return None;
+        }
+        let way = Way::new(ray, self.length(media, ray, hit));
         Some((way, self.medium(media)?.cover(&self.textures, &way)?))
     }
 

@@ -252,3 +252,55 @@ fn pictures_of_fog_have_the_same_bits_for_any_number_of_threads() {
     assert_eq!(one, two);
     assert!(one.iter().any(|pixel| pixel[0] > 0.0));
 }
+
+/// Fog that fills all space under a sky of radiance 1, over a black ball out of sight or without any shape.
+fn under_a_sky(medium: &str, shape: &str, integrator: Integrator) -> Scene {
+    let text = format!(
+        r#"
+        camera = {{ lookfrom = [0, 0, 6], lookat = [0, 0, 0], fov = 1, medium = "fog" }}
+        light = [{{ type = "environment", color = 1 }}]
+        {shape}
+        [image]
+        width = 2
+        height = 2
+        filter = "box"
+        [render]
+        depth = 10000
+        samples = 16384
+        sampler = "independent"
+        [materials.black]
+        type = "diffuse"
+        reflectance = 0
+        [media.fog]
+        {medium}
+        "#
+    );
+    let name = PathBuf::from("a.toml");
+    let files = Memory([(name.clone(), text.into_bytes())].into());
+    let mut context = LoadContext::new(&files);
+    let mut scene = load::scene(Path::new(&name), &mut context).unwrap_or_else(|error| panic!("{error}"));
+    scene.render.integrator = integrator;
+    scene
+}
+
+/// A sky is seen through fog that fills space, which ends after the distance from the middle of the scene and twice its radius; of fog that
+/// scatters all light nothing is seen.
+#[test]
+fn a_sky_is_seen_through_fog_that_fills_space() {
+    let ball = r#"sphere = [{ center = [0, -9, 0], radius = 1, material = "black" }]"#;
+    let length = (36.0_f64 + 81.0).sqrt() + 2.0 * 3_f64.sqrt();
+    let absorbing = "absorption = [0.1, 0.05, 0.2]";
+    let attenuated = [0.1, 0.05, 0.2].map(|sigma: f64| (-sigma * length).exp());
+    for integrator in [Integrator::Path, Integrator::SimplePath, Integrator::RandomWalk, Integrator::Whitted]
+    {
+        let seen = mean(under_a_sky(absorbing, ball, integrator));
+        assert_near(seen, attenuated, 1e-4, &format!("{integrator:?}"));
+    }
+    let mut endless = under_a_sky(absorbing, ball, Integrator::Path);
+    endless.render.endless_media = true;
+    assert_eq!(mean(endless), [0.0; 3]);
+    for integrator in [Integrator::Path, Integrator::SimplePath, Integrator::RandomWalk] {
+        let seen = mean(under_a_sky("scattering = 0.05\ng = 0.5", "", integrator));
+        assert_near(seen, [1.0; 3], 0.01, &format!("{integrator:?}"));
+    }
+}

@@ -97,6 +97,7 @@ impl Writer<'_> {
             regularize,
             occlusion_distance,
             media,
+            endless_media,
             thin_passages_count,
             open_fronts,
             hide_lights,
@@ -130,6 +131,7 @@ impl Writer<'_> {
         fields.put_unless("regularize", *regularize, usual.regularize);
         fields.put_unless("occlusion_distance", *occlusion_distance, usual.occlusion_distance);
         fields.put_unless("media", *media, usual.media);
+        fields.put_unless("endless_media", *endless_media, usual.endless_media);
         fields.put_unless("thin_passages_count", *thin_passages_count, usual.thin_passages_count);
         fields.put_unless("open_fronts", *open_fronts, usual.open_fronts);
         fields.put_unless("hide_lights", *hide_lights, usual.hide_lights);

@@ -15,7 +15,7 @@ pub struct FlightReport {
     pub choice: Factor,
     /// The index of the lane that was chosen.
     pub lane: u32,
-    /// The distance of what the ray hits; infinite where it hits nothing.
+    /// The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none.
     pub limit: f32,
     /// The distance that was sampled, `−ln(1 − u) / σ_t`: the ray is scattered where it is less than `limit`.
     pub distance: f32,
@@ -69,7 +69,7 @@ pub struct PhaseLobeReport {
 /// The way of a ray through a medium that varies, by collisions whose density is a majorant of the extinction.
 #[derive(Clone, Debug, Serialize)]
 pub struct TrackingReport {
-    /// The distance of what the ray hits; infinite where it hits nothing.
+    /// The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none.
     pub limit: f32,
     /// Its collisions, in order: all are null, but for the last where the medium scatters it.
     pub collisions: Vec<CollisionReport>,

@@ -28,7 +28,7 @@ pub struct Flight<R: Real = f32> {
     pub choice: Spectrum<R>,
     /// The lane that was chosen.
     pub lane: R::Bits,
-    /// The distance of what the ray hits; infinite where it hits nothing.
+    /// The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none.
     pub limit: R,
     /// The distance that was sampled.
     pub distance: R,
@@ -109,7 +109,7 @@ pub(super) struct Flying {
     pub(super) coefficients: Coefficients,
     /// Not black.
     pub(super) throughput: Spectrum,
-    /// The distance of what the ray hits; infinite where it hits nothing.
+    /// The distance of what the ray hits or, where it hits nothing, of the end of a medium that fills space; infinite where that has none.
     pub(super) limit: f32,
 }
 

@@ -47,7 +47,7 @@ impl PathTracer {
             return Traveled::Arrived(output.absorbed(world, path, hit));
         };
         let mode = output.mode(path);
-        let ray = tracked_ray(stream, (path, hit), &mode);
+        let ray = tracked_ray(world, stream, (path, hit), &mode);
         match medium.track(&world.textures, Estimate::Flight, &[ray], P::LISTENS) {
             Some(mut tracked) => {
                 let tracking = tracked.pop().unwrap_or_default();
@@ -75,13 +75,13 @@ impl PathTracer {
             let modes = &output.queues.modes;
             let ray = |&index: &u32| {
                 let (path, hit) = path_and_hit(index);
-                tracked_ray(&streams.of(path), (path, hit), &modes[path.slot as usize])
+                tracked_ray(world, &streams.of(path), (path, hit), &modes[path.slot as usize])
             };
             let rays: Vec<TrackedRay<'_>> = indices.iter().map(ray).collect();
             let tracked = medium.track(&world.textures, Estimate::Flight, &rays, P::LISTENS);
             for (&index, tracking) in indices.iter().zip(tracked.into_iter().flatten()) {
                 let (path, hit) = path_and_hit(index);
-                let way = path.way_to(hit);
+                let way = path.way_to(world, hit);
                 let traveled = self.tracked(world, &streams.of(path), path, (medium, &way), tracking, output);
                 go_on(index as usize, traveled, output);
             }
@@ -90,14 +90,14 @@ impl PathTracer {
         let flying = |&index: &u32| {
             let (path, hit) = path_and_hit(index);
             let mode = &output.queues.modes[path.slot as usize];
-            flying(world, &streams.of(path), path, (medium, &path.way_to(hit)), mode)
+            flying(world, &streams.of(path), path, (medium, &path.way_to(world, hit)), mode)
         };
         let flying: Vec<Flying> = indices.iter().map(flying).collect();
         let flights = medium.phase.map(|_| Flying::fly_all(&flying));
         for (place, (&index, flying)) in indices.iter().zip(&flying).enumerate() {
             let (path, hit) = path_and_hit(index);
             let flight = flights.as_ref().map(|flights| flights[place]);
-            let way = path.way_to(hit);
+            let way = path.way_to(world, hit);
             let traveled = self.flown(world, (path, hit), (medium, &way), (flying, flight), output);
             go_on(index as usize, traveled, output);
         }
@@ -150,15 +150,16 @@ impl PathTracer {
     }
 }
 
-/// The ray of a path, as far as its hit, to be tracked.
+/// The ray of a path, as far as its hit or the end of the medium, to be tracked.
 fn tracked_ray<'a>(
+    world: &World,
     stream: &SampleStream,
     (path, hit): (&Path, &Hit),
     mode: &'a SpectralMode,
 ) -> TrackedRay<'a> {
     let [u, seed] = stream.two(dimension::FLIGHT);
     let seed = hash::pair(u64::from(u.to_bits()), u64::from(seed.to_bits()));
-    TrackedRay { way: path.way_to(hit), throughput: path.beta, u, seed, mode }
+    TrackedRay { way: path.way_to(world, hit), throughput: path.beta, u, seed, mode }
 }
 
 /// A path that is to fly through a homogeneous medium.

@@ -83,10 +83,9 @@ impl Shadow {
     }
 }
 
-/// The length of a shadow ray as far as `t`. Lights infinitely far emit light from twice the scene's radius away, as far as media are
-/// concerned, as in pbrt.
+/// The length of a shadow ray as far as `t`; to a light infinitely far away that in a medium.
 pub(super) fn length(world: &World, ray: &Ray, t: f32, interior: InteriorStack) -> f32 {
     let length = Vec3::from_array(ray.direction).length() * t;
     let is_far = length.is_infinite() && interior.space().is_some();
-    if is_far { 2.0 * world.radius } else { length }
+    if is_far { world.length_to_sky(ray) } else { length }
 }

@@ -66,6 +66,7 @@ pub(super) fn settings() -> Vec<(String, Scene)> {
             regularize: true,
             occlusion_distance: 1.5,
             media: false,
+            endless_media: true,
             thin_passages_count: false,
             open_fronts: true,
             hide_lights: true,
