@@ -172,7 +172,7 @@ impl Bounds {
 
     /// The centre.
     pub fn center(self) -> DVec3 {
-        if self.is_empty() { DVec3::ZERO } else { 0.5 * (self.min + self.max) }
+        0.5 * (self.min + self.max)
     }
 
     /// Half the diagonal: the radius of the bounding sphere.

@@ -114,9 +114,10 @@ impl World {
         }
         let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
         let bounds = scene.bounds();
-        let (radius, around) = (bounds.radius() as f32, (bounds.center(), 2.0 * bounds.radius()));
+        let center = if bounds.is_empty() { origin } else { bounds.center() };
+        let (radius, around) = (bounds.radius() as f32, (center, 2.0 * bounds.radius()));
         let end_of_space = (!scene.render.endless_media)
-            .then(|| EndOfSpace { center: (bounds.center() - origin).as_vec3(), reach: 2.0 * radius });
+            .then(|| EndOfSpace { center: (center - origin).as_vec3(), reach: 2.0 * radius });
         let Lights { lights, names: light_names, brightness, ambient, .. } = lights;
         let light_choice = LightChoice::new(scene.render.light_sampler, &lights, brightness, radius);
         ignored::warn(&scene, &camera, warnings);
