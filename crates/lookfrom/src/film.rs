@@ -83,9 +83,10 @@ pub struct Film {
     alpha_squares: Plane<u128>,
     /// Of filter weights, where these differ.
     weights: Plane<WeightSums>,
-    /// As alphas and light, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
+    /// As alphas, light and buckets, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
     unsigned_alphas: Plane<i128>,
     unsigned_light: Vec<Plane<LightPathSums>>,
+    unsigned_buckets: Vec<Plane<i128>>,
     dropped: u64,
     first_dropped: Option<SampleId>,
     ledger: SampleLedger,
@@ -139,6 +140,9 @@ impl Film {
             weights: plane(layout.weights, size)?,
             unsigned_alphas: plane(layout.unsigned_alphas(), size)?,
             unsigned_light: (0..layout.unsigned_light()).map(|_| plane(true, size)).collect::<Result<_>>()?,
+            unsigned_buckets: (0..layout.unsigned_buckets())
+                .map(|_| plane(true, size))
+                .collect::<Result<_>>()?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),

@@ -437,7 +437,8 @@ impl Renderer {
                         tile.add_light_paths(x, y, traced.rgb, traced.filter_weight, layers);
                     }
                     if tile.has_buckets() {
-                        tile.add_spectrum(x, y, traced.rgb, self.light_by_buckets(batch, slot, &traced));
+                        let buckets = self.light_by_buckets(batch, slot, &traced);
+                        tile.add_spectrum(x, y, traced.rgb, traced.filter_weight, buckets);
                     }
                     if tile.has_channels() {
                         tile.add_channels(x, y, self.sensor.channels(traced.rgb));

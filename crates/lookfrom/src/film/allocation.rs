@@ -74,7 +74,7 @@ impl Film {
         let mut pixels = Vec::new();
         for y in y0..y1 {
             self.row(y, x0, x1, |pixel| {
-                let count = pixel.pixel.samples as u32;
+                let count = pixel.samples() as u32;
                 pixels.push((count, pixel.relative_error(mean) * f64::from(count).sqrt()));
             });
         }

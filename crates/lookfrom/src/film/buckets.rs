@@ -6,6 +6,7 @@
 
 use super::Film;
 use super::stored::{Stored, Sums, channels_of, store_fields};
+use super::weighted::{Weighted, Weights};
 use crate::core::fixed_point::{TWO_TO_64, fixed_point};
 
 /// The sums of a bucket over the samples of a pixel.
@@ -22,8 +23,7 @@ store_fields!(BucketSums { sum: i128 = ["sum"], wavelengths: u64 = ["wavelengths
 impl BucketSums {
     /// Adds the radiance at one wavelength that counts for `count`; a number that is not finite counts as 0.
     pub(super) fn add(&mut self, radiance: f32, count: u32) {
-        let radiance = if radiance.is_finite() { fixed_point(radiance) } else { 0 };
-        self.sum = self.sum.wrapping_add(radiance.wrapping_mul(count.into()));
+        self.sum = self.sum.wrapping_add(counted(radiance, count));
         self.wavelengths = self.wavelengths.saturating_add(count.into());
     }
 
@@ -32,13 +32,20 @@ impl BucketSums {
         self.wavelengths = self.wavelengths.saturating_add(add.wavelengths);
     }
 
-    /// The mean, 0 where there are no wavelengths.
-    pub(super) fn mean(&self) -> f32 {
-        match self.wavelengths {
-            0 => 0.0,
-            count => (self.sum as f64 / (count as f64 * TWO_TO_64)) as f32,
-        }
+    /// The mean, 0 where there are no wavelengths; where filter weights differ, by the estimate of the sum of the samples.
+    fn mean(&self, unsigned: Option<i128>, weights: Weights) -> f32 {
+        let sum = match unsigned {
+            None => self.sum as f64 / TWO_TO_64,
+            Some(_) => weights.mean(Weighted { signed: self.sum, unsigned }) * weights.samples,
+        };
+        if self.wavelengths == 0 { 0.0 } else { (sum / self.wavelengths as f64) as f32 }
     }
+}
+
+/// The radiance at one wavelength that counts for `count`, in multiples of 2⁻⁶⁴; 0 where it is not finite.
+pub(super) fn counted(radiance: f32, count: u32) -> i128 {
+    let radiance = if radiance.is_finite() { fixed_point(radiance) } else { 0 };
+    radiance.wrapping_mul(count.into())
 }
 
 impl Film {
@@ -46,7 +53,11 @@ impl Film {
     /// in the bucket, 0 where there were none and outside of [`Film::area`]. The light of D65 of luminance 1 has the mean 1 over all
     /// wavelengths, weighted by the luminous efficiency.
     pub fn spectrum(&self, x: u32, y: u32) -> impl Iterator<Item = f32> {
-        self.buckets.iter().map(move |bucket| self.sums_of(bucket, x, y).map_or(0.0, |sums| sums.mean()))
+        let weights = self.weights(x, y);
+        self.buckets.iter().enumerate().map(move |(index, bucket)| {
+            let unsigned = self.unsigned_buckets.get(index).and_then(|plane| self.sums_of(plane, x, y));
+            self.sums_of(bucket, x, y).map_or(0.0, |sums| sums.mean(unsigned, weights))
+        })
     }
 
     /// The number of buckets of a spectral film; 0 of another one.

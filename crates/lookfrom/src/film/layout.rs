@@ -44,6 +44,10 @@ fn unsigned_light(index: usize) -> String {
     format!("film.unsigned_light.{index}")
 }
 
+fn unsigned_bucket(index: usize) -> String {
+    format!("film.unsigned_bucket.{index}")
+}
+
 fn light_path(index: usize) -> String {
     format!("film.light_path.{index}")
 }
@@ -107,6 +111,11 @@ impl Layout {
         if self.weights { 1 + self.light_paths } else { 0 }
     }
 
+    /// The number of sums of buckets with the magnitudes of weights.
+    pub(super) fn unsigned_buckets(self) -> usize {
+        if self.weights { self.buckets } else { 0 }
+    }
+
     /// The names of the channels of a file, in the order of its sums.
     pub(crate) fn channels(self) -> Vec<String> {
         let mut names = Pixel::channels("film");
@@ -117,6 +126,7 @@ impl Layout {
         add(self.unsigned_alphas(), i128::channels(UNSIGNED_ALPHA));
         (0..self.unsigned_light())
             .for_each(|index| add(true, LightPathSums::channels(&unsigned_light(index))));
+        (0..self.unsigned_buckets()).for_each(|index| add(true, i128::channels(&unsigned_bucket(index))));
         add(self.sensor, sensor_channels());
         add(self.aovs, LayerSums::channels(AOVS));
         add(self.features, AovSums::channels(FEATURES));
@@ -149,7 +159,7 @@ impl Layout {
             + self.unsigned_light() as u64 * WEIGHT
             + u64::from(self.motion) * MOTION
             + self.light_paths as u64 * LIGHT_PATHS
-            + self.buckets as u64 * BUCKET;
+            + (self.buckets + self.unsigned_buckets()) as u64 * BUCKET;
         let developed = DEVELOPED + u64::from(self.alpha) * OPACITY;
         let PixelBounds { x0, y0, x1, y1 } = area;
         let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));

@@ -53,6 +53,6 @@ impl WeightedPixel {
 
     /// Standard error of the mean's luminance.
     pub(super) fn standard_error(&self) -> f64 {
-        (self.variance()[1] / self.pixel.samples.max(1) as f64).sqrt()
+        (self.variance()[1] / self.samples().max(1) as f64).sqrt()
     }
 }

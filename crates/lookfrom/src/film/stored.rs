@@ -184,6 +184,10 @@ macro_rules! for_each_plane {
             $(let $plane = $($borrow)+ $film.unsigned_light[index];)+
             $body
         }
+        for index in 0..[$($film.unsigned_buckets.len()),+].into_iter().min().unwrap_or(0) {
+            $(let $plane = $($borrow)+ $film.unsigned_buckets[index];)+
+            $body
+        }
         { $(let $plane = $($borrow)+ $film.channels;)+ $body }
         { $(let $plane = $($borrow)+ $film.layers;)+ $body }
         { $(let $plane = $($borrow)+ $film.features;)+ $body }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use lookfrom_scene::Result;
 use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 
-use super::buckets::BucketSums;
+use super::buckets::{BucketSums, counted};
 use super::layout::Layout;
 use super::ledger::SampleLedger;
 use super::light_paths::LightPathSums;
@@ -40,9 +40,10 @@ pub struct FilmTile {
     pub(super) alpha_squares: Vec<u128>,
     /// Of filter weights: one per pixel, or none.
     pub(super) weights: Vec<WeightSums>,
-    /// As alphas and light, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
+    /// As alphas, light and buckets, with the magnitudes of the weights: of all light, then for each layer of light-path expressions.
     pub(super) unsigned_alphas: Vec<i128>,
     pub(super) unsigned_light: Vec<Vec<LightPathSums>>,
+    pub(super) unsigned_buckets: Vec<Vec<i128>>,
     pub(super) dropped: u64,
     pub(super) first_dropped: Option<SampleId>,
     /// The samples that were [recorded](FilmTile::record).
@@ -87,6 +88,7 @@ impl FilmTile {
             weights: empty(of(layout.weights))?,
             unsigned_alphas: empty(of(layout.unsigned_alphas()))?,
             unsigned_light: (0..layout.unsigned_light()).map(|_| empty(count)).collect::<Result<_>>()?,
+            unsigned_buckets: (0..layout.unsigned_buckets()).map(|_| empty(count)).collect::<Result<_>>()?,
             dropped: 0,
             first_dropped: None,
             ledger: SampleLedger::default(),
@@ -136,7 +138,7 @@ impl FilmTile {
         !self.buckets.is_empty()
     }
 
-    /// Adds the light of one sample to the buckets of a spectral film, unless the sample is dropped, as in
+    /// Adds the light of one sample, multiplied by its filter weight, to the buckets of a spectral film, unless the sample is dropped, as in
     /// [`FilmTile::add_light_paths`]: for each of its wavelengths the number of its bucket, the radiance, and for how many wavelengths of
     /// uniform density it counts.
     ///
@@ -147,12 +149,18 @@ impl FilmTile {
         x: u32,
         y: u32,
         rgb: [f32; 3],
+        weight: f32,
         wavelengths: impl Iterator<Item = (usize, f32, u32)>,
     ) {
         let index = self.index_inside(x, y);
         if rgb.iter().all(|light| light.is_finite()) {
-            wavelengths
-                .for_each(|(bucket, radiance, count)| self.buckets[bucket][index].add(radiance, count));
+            for (bucket, radiance, count) in wavelengths {
+                self.buckets[bucket][index].add(radiance, count);
+                if let Some(sums) = self.unsigned_buckets.get_mut(bucket) {
+                    let unsigned = if weight < 0.0 { -radiance } else { radiance };
+                    sums[index] = sums[index].wrapping_add(counted(unsigned, count));
+                }
+            }
         }
     }
 

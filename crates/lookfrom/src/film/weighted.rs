@@ -35,7 +35,8 @@ impl WeightSums {
 /// The filter weights of a pixel's samples.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
-    samples: f64,
+    /// Number of samples.
+    pub(super) samples: f64,
     /// Their mean, and that of their magnitudes; `None` where all are 1.
     means: Option<[f64; 2]>,
 }
@@ -113,6 +114,11 @@ pub(super) struct WeightedPixel {
 }
 
 impl WeightedPixel {
+    /// Number of samples.
+    pub(super) fn samples(&self) -> u64 {
+        self.pixel.samples
+    }
+
     /// The estimate of the light.
     pub(super) fn mean(&self) -> [f32; 3] {
         weighted(self.pixel.sums, self.unsigned).map(|sums| self.weights.mean(sums) as f32)
