@@ -174,32 +174,30 @@ store_fields!(LayerSums {
 /// Evaluates an expression for each kind of sums that films or tiles may have: with all of that kind, of each of these films,
 /// borrowed by `&` or `&mut`.
 macro_rules! for_each_plane {
-    ($([$($borrow:tt)+] $film:expr => $plane:ident),+; $body:expr) => {{
-        { $(let $plane = $($borrow)+ $film.pixels;)+ $body }
-        { $(let $plane = $($borrow)+ $film.alphas;)+ $body }
-        { $(let $plane = $($borrow)+ $film.alpha_squares;)+ $body }
-        { $(let $plane = $($borrow)+ $film.weights;)+ $body }
-        { $(let $plane = $($borrow)+ $film.unsigned_alphas;)+ $body }
-        for index in 0..[$($film.unsigned_light.len()),+].into_iter().min().unwrap_or(0) {
-            $(let $plane = $($borrow)+ $film.unsigned_light[index];)+
+    (@one $plane_of:ident; $([$($borrow:tt)+] $film:expr => $plane:ident),+; $body:expr) => {{
+        $(let $plane = $($borrow)+ $film.$plane_of;)+
+        $body
+    }};
+    (@list $planes_of:ident; $([$($borrow:tt)+] $film:expr => $plane:ident),+; $body:expr) => {
+        for index in 0..[$($film.$planes_of.len()),+].into_iter().min().unwrap_or(0) {
+            $(let $plane = $($borrow)+ $film.$planes_of[index];)+
             $body
         }
-        for index in 0..[$($film.unsigned_buckets.len()),+].into_iter().min().unwrap_or(0) {
-            $(let $plane = $($borrow)+ $film.unsigned_buckets[index];)+
-            $body
-        }
-        { $(let $plane = $($borrow)+ $film.channels;)+ $body }
-        { $(let $plane = $($borrow)+ $film.layers;)+ $body }
-        { $(let $plane = $($borrow)+ $film.features;)+ $body }
-        { $(let $plane = $($borrow)+ $film.motions;)+ $body }
-        for index in 0..[$($film.light_paths.len()),+].into_iter().min().unwrap_or(0) {
-            $(let $plane = $($borrow)+ $film.light_paths[index];)+
-            $body
-        }
-        for index in 0..[$($film.buckets.len()),+].into_iter().min().unwrap_or(0) {
-            $(let $plane = $($borrow)+ $film.buckets[index];)+
-            $body
-        }
+    };
+    ([$($borrow:tt)+] $($rest:tt)+) => {{
+        for_each_plane!(@one pixels; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one alphas; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one alpha_squares; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one weights; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one unsigned_alphas; [$($borrow)+] $($rest)+);
+        for_each_plane!(@list unsigned_light; [$($borrow)+] $($rest)+);
+        for_each_plane!(@list unsigned_buckets; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one channels; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one layers; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one features; [$($borrow)+] $($rest)+);
+        for_each_plane!(@one motions; [$($borrow)+] $($rest)+);
+        for_each_plane!(@list light_paths; [$($borrow)+] $($rest)+);
+        for_each_plane!(@list buckets; [$($borrow)+] $($rest)+);
     }};
 }
 

@@ -128,7 +128,9 @@ impl FilmTile {
             for (number, light) in layers.enumerate() {
                 self.light_paths[number][index].add(light);
                 let layer = self.unsigned_light.get_mut(number + 1);
-                layer.into_iter().for_each(|layer| layer[index].add(unsigned(light, weight)));
+                layer
+                    .into_iter()
+                    .for_each(|layer| layer[index].add(light.map(|light| unsigned(light, weight))));
             }
         }
     }
@@ -157,8 +159,7 @@ impl FilmTile {
             for (bucket, radiance, count) in wavelengths {
                 self.buckets[bucket][index].add(radiance, count);
                 if let Some(sums) = self.unsigned_buckets.get_mut(bucket) {
-                    let unsigned = if weight < 0.0 { -radiance } else { radiance };
-                    sums[index] = sums[index].wrapping_add(counted(unsigned, count));
+                    sums[index] = sums[index].wrapping_add(counted(unsigned(radiance, weight), count));
                 }
             }
         }
@@ -201,12 +202,12 @@ impl FilmTile {
         self.pixels[index].add(rgb, xyz);
         if let Some(light) = self.unsigned_light.first_mut() {
             self.weights[index].add(weight);
-            light[index].add(unsigned(rgb, weight));
+            light[index].add(rgb.map(|light| unsigned(light, weight)));
         }
         if let Some(sum) = self.alphas.get_mut(index) {
             *sum = sum.wrapping_add(fixed_point(alpha));
             if let Some(sum) = self.unsigned_alphas.get_mut(index) {
-                *sum = sum.wrapping_add(fixed_point(if weight < 0.0 { -alpha } else { alpha }));
+                *sum = sum.wrapping_add(fixed_point(unsigned(alpha, weight)));
             }
             if let Some(squares) = self.alpha_squares.get_mut(index) {
                 let square = fixed_point_square(f64::from(alpha.clamp(-BRIGHTEST, BRIGHTEST)));
@@ -298,9 +299,9 @@ impl FilmTile {
     }
 }
 
-/// Light as with the magnitude of its weight.
-fn unsigned(rgb: [f32; 3], weight: f32) -> [f32; 3] {
-    if weight < 0.0 { rgb.map(|light| -light) } else { rgb }
+/// A number that was multiplied by a weight, as multiplied by the weight's magnitude.
+fn unsigned(number: f32, weight: f32) -> f32 {
+    if weight < 0.0 { -number } else { number }
 }
 
 /// `count` zeros; an error if there is no memory for them.
