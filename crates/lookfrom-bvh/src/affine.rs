@@ -39,6 +39,7 @@ impl Affine {
     /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
     /// assert_eq!(up.point([0.0; 3]), [0.0, 0.0, 1.0]);
     /// ```
+    #[inline]
     pub fn point(&self, p: [f64; 3]) -> [f64; 3] {
         let moved = self.vector(p);
         [moved[0] + self.translation[0], moved[1] + self.translation[1], moved[2] + self.translation[2]]
@@ -51,6 +52,7 @@ impl Affine {
     /// let up = Affine { translation: [0.0, 0.0, 1.0], ..Affine::IDENTITY };
     /// assert_eq!(up.vector([0.0, 2.0, 0.0]), [0.0, 2.0, 0.0]);
     /// ```
+    #[inline]
     pub fn vector(&self, v: [f64; 3]) -> [f64; 3] {
         self.matrix.map(|row| dot(row, v))
     }
@@ -64,6 +66,7 @@ impl Affine {
     /// let object_from_world = world_from_object.inverse().unwrap();
     /// assert_eq!(object_from_world.normal_back([1.0, 1.0, 0.0]), [0.5, 1.0, 0.0]);
     /// ```
+    #[inline]
     pub fn normal_back(&self, n: [f64; 3]) -> [f64; 3] {
         let m = &self.matrix;
         [0, 1, 2].map(|i| m[0][i] * n[0] + m[1][i] * n[1] + m[2][i] * n[2])

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec2};
 use lookfrom_bvh::{Affine, Hit, Point};
-use lookfrom_simd::{Float, Real};
+use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
 pub use curve::{Curves, SEGMENTS};
 pub use disk::{Disk, Disks};
@@ -31,6 +31,7 @@ pub(crate) use quadric::{QuadricFrames, gather_frames};
 pub(crate) use sphere::points_on_spheres;
 pub use sphere::{SphereBinding, Spheres};
 
+use crate::core::lanes::{LANES, by_lane, gather_f64};
 use crate::core::points::{Placement, Points};
 use crate::core::vector::Vector;
 
@@ -157,6 +158,30 @@ pub(crate) struct SurfacePoints<R: Real> {
     pub(crate) lift: Vector<R::Double>,
 }
 
+impl<S: Simd> SurfacePoints<f32x8<S>> {
+    /// A point in each lane.
+    #[inline(always)]
+    pub(crate) fn gather(simd: S, points: &[&SurfacePoint; LANES]) -> Self {
+        Self {
+            points: Points {
+                position: gather_f64(simd, &by_lane!(lane => points[lane].point.position)),
+                error: gather_f64(simd, &by_lane!(lane => points[lane].point.error)),
+            },
+            ng: gather_f64(simd, &by_lane!(lane => points[lane].ng.to_array())),
+            ns: gather_f64(simd, &by_lane!(lane => points[lane].ns.to_array())),
+            uv: [
+                f32x8::load_array(simd, by_lane!(lane => points[lane].uv.x)),
+                f32x8::load_array(simd, by_lane!(lane => points[lane].uv.y)),
+            ],
+            dpdu: gather_f64(simd, &by_lane!(lane => points[lane].dpdu.to_array())),
+            dpdv: gather_f64(simd, &by_lane!(lane => points[lane].dpdv.to_array())),
+            shading_dpdu: gather_f64(simd, &by_lane!(lane => points[lane].shading_dpdu.to_array())),
+            shading_dpdv: gather_f64(simd, &by_lane!(lane => points[lane].shading_dpdv.to_array())),
+            lift: gather_f64(simd, &by_lane!(lane => points[lane].lift.to_array())),
+        }
+    }
+}
+
 impl<R: Real> SurfacePoints<R> {
     /// These points in instances, where the mask is set.
     #[inline(always)]
@@ -180,26 +205,35 @@ impl<R: Real> SurfacePoints<R> {
 }
 
 impl Primitives {
-    /// The attributes of a primitive, where they are quickly told: of meshes and spheres.
+    /// The attributes of a primitive.
     #[inline]
-    pub(crate) fn binding(&self, index: usize) -> Option<&MaterialBinding> {
+    pub(crate) fn binding(&self, index: usize) -> &MaterialBinding {
         match self {
-            Self::Mesh(mesh) => Some(&mesh.binding),
-            Self::Spheres(spheres) => Some(&spheres.bindings[spheres.binding_of[index] as usize].binding),
-            _ => None,
+            Self::Mesh(mesh) => &mesh.binding,
+            Self::Spheres(spheres) => &spheres.get(index).1.binding,
+            Self::Disks(disks) => &disks.bindings[index],
+            Self::Quadrics(quadrics) => &quadrics.bindings[index],
+            Self::Patches(patches) => &patches.binding,
+            Self::Curves(curves) => &curves.binding,
         }
     }
 
     /// The point of `hit` on a ray from `origin` in `direction` (the one that was traced, in this primitive's space) at a time of
-    /// the shutter (0 … 1).
-    pub fn point(&self, hit: &Hit, [origin, direction]: [DVec3; 2], time: f32) -> SurfacePoint {
+    /// the shutter (0 … 1). Texture coordinates may be 0 where they are not wanted.
+    pub(crate) fn point(
+        &self,
+        hit: &Hit,
+        [origin, direction]: [DVec3; 2],
+        time: f32,
+        wants_uv: bool,
+    ) -> SurfacePoint {
         let index = hit.primitive as usize;
         let near = origin + f64::from(hit.t) * direction;
         match self {
             Self::Mesh(mesh) => mesh.point_at(index, [hit.u, hit.v], time),
             Self::Spheres(spheres) => spheres.point(index, near),
             Self::Disks(disks) => disks.point(index, near),
-            Self::Quadrics(quadrics) => quadrics.point(index, near),
+            Self::Quadrics(quadrics) => quadrics.point(index, near, wants_uv),
             Self::Patches(patches) => patches.point(index, hit.u, hit.v),
             Self::Curves(curves) => curves.point(index, [hit.u, hit.v], near, direction),
         }

@@ -23,7 +23,7 @@ mod reflectance;
 mod sides;
 
 use class::Class;
-pub(crate) use class::HitClass;
+pub(crate) use class::{HitClass, ShapeClass};
 pub(crate) use compile::Kept;
 pub(crate) use instance::Instance;
 pub use instance::PlacedInstance;
@@ -159,14 +159,20 @@ impl World {
         &self.light_choice
     }
 
+    /// The primitives that a hit belongs to.
+    #[inline]
+    pub(crate) fn primitives_of(&self, hit: &Hit) -> &Primitives {
+        match hit.instance {
+            NONE => &self.primitives[hit.geometry as usize],
+            id => &self.objects[self.instances[id as usize].object as usize][hit.geometry as usize],
+        }
+    }
+
     /// The primitives that a hit belongs to and the instance, if it is in one, at a time of the shutter (0 … 1).
     #[inline]
     pub fn primitives(&self, hit: &Hit, time: f32) -> (&Primitives, Option<PlacedInstance<'_>>) {
-        if hit.instance == NONE {
-            return (&self.primitives[hit.geometry as usize], None);
-        }
-        let placed = self.instance(hit.instance, time);
-        (&self.objects[placed.instance.object as usize][hit.geometry as usize], Some(placed))
+        let instance = (hit.instance != NONE).then(|| self.instance(hit.instance, time));
+        (self.primitives_of(hit), instance)
     }
 
     /// The surface interaction of `ray` at `hit`; of what moves when the shutter opens.
@@ -174,19 +180,24 @@ impl World {
         self.surface_at(ray, hit, 0.0)
     }
 
-    /// The surface interaction of `ray` at `hit` at a time of the shutter (0 … 1), at which the ray was traced.
-    pub fn surface_at(&self, ray: &Ray, hit: &Hit, time: f32) -> SurfaceInteraction {
+    /// The point where `ray` met `hit` at a time of the shutter (0 … 1), in render space. Texture coordinates may be 0 where they are
+    /// not wanted.
+    pub(crate) fn surface_point(&self, ray: &Ray, hit: &Hit, time: f32, wants_uv: bool) -> SurfacePoint {
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let at_primitive = match self.primitives(hit, time) {
-            (primitives, None) => primitives.point(hit, [origin, direction], time),
+        match self.primitives(hit, time) {
+            (primitives, None) => primitives.point(hit, [origin, direction], time, wants_uv),
             (primitives, Some(instance)) => {
                 let (origin, direction) = instance.in_object(origin, direction);
-                instance.place(primitives.point(hit, [origin, direction], time))
+                instance.place(primitives.point(hit, [origin, direction], time, wants_uv))
             }
-        };
-        let wo = -direction.normalize();
+        }
+    }
+
+    /// The surface interaction of `ray` at `hit` at a time of the shutter (0 … 1), at which the ray was traced.
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit, time: f32) -> SurfaceInteraction {
         let SurfacePoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift, color, binding } =
-            at_primitive;
+            self.surface_point(ray, hit, time, true);
+        let wo = -Vec3::from_array(ray.direction).as_dvec3().normalize();
         SurfaceInteraction {
             point,
             ng,
@@ -226,7 +237,7 @@ impl World {
             let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
             let (origin, direction) =
                 instance.map_or((origin, direction), |instance| instance.in_object(origin, direction));
-            DVec3::from_array(primitives.point(hit, [origin, direction], time).point.position)
+            DVec3::from_array(primitives.point(hit, [origin, direction], time, false).point.position)
         };
         let in_object = match primitives {
             Primitives::Mesh(mesh) => {

@@ -135,9 +135,7 @@ impl ShadowTransparency {
         if !hit.is_hit() || hit.instance != NONE {
             return false;
         }
-        let Some(binding) = world.primitives[hit.geometry as usize].binding(hit.primitive as usize) else {
-            return false;
-        };
+        let binding = world.primitives[hit.geometry as usize].binding(hit.primitive as usize);
         let material = &world.materials[binding.material as usize];
         let stops_light = match self {
             Self::AlphaTested => true,

@@ -310,25 +310,44 @@ impl Quadric {
 
     /// The point of the surface that is `on_surface` in object space.
     pub fn point(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
-        let p = self.refined(on_surface);
-        let (uv, derivatives) = self.coordinates(p);
-        let (points, ng) = self.place(p);
-        let point = Point { position: points.position.into(), error: points.error.into() };
-        SurfacePoint::plain(point, ng.into(), uv, derivatives.map(|d| self.vector_in_render(d)), binding)
+        let at = self.point_without_uv(on_surface, binding);
+        SurfacePoint { uv: self.uv(self.refined(on_surface)), ..at }
     }
 
-    /// The texture coordinates of a point of the surface, and the derivatives by them, in object space.
-    pub(crate) fn coordinates(&self, p: DVec3) -> (Vec2, [DVec3; 2]) {
-        let phi = angle(p);
-        let u = if self.phi_max > 0.0 { phi / self.phi_max } else { 0.0 };
-        let (v, derivatives) = match self.kind {
+    /// As [`Self::point`], with texture coordinates of 0.
+    fn point_without_uv(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
+        let p = self.refined(on_surface);
+        let derivatives = self.derivatives(p).map(|d| self.vector_in_render(d));
+        let (points, ng) = self.place(p);
+        let point = Point { position: points.position.into(), error: points.error.into() };
+        SurfacePoint::plain(point, ng.into(), Vec2::ZERO, derivatives, binding)
+    }
+
+    /// The texture coordinates of a point of the surface, in object space.
+    pub(crate) fn uv(&self, p: DVec3) -> Vec2 {
+        let u = if self.phi_max > 0.0 { angle(p) / self.phi_max } else { 0.0 };
+        let v = match self.kind {
             QuadricKind::Sphere { radius, z } => {
                 let [from, to] = z.map(|z| polar(z, radius));
-                let v = (polar(p.z, radius) - from) / (to - from);
-                (v, sphere_derivatives(p.into(), radius, [to - from, self.phi_max]).map(DVec3::from))
+                (polar(p.z, radius) - from) / (to - from)
+            }
+            QuadricKind::Cylinder { z: [low, high], .. } => (p.z - low) / (high - low),
+            QuadricKind::Disk { radius, inner_radius, .. } => {
+                (radius - p.truncate().length()) / (radius - inner_radius)
+            }
+        };
+        Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
+    /// The derivatives of a point of the surface by its texture coordinates, in object space.
+    fn derivatives(&self, p: DVec3) -> [DVec3; 2] {
+        match self.kind {
+            QuadricKind::Sphere { radius, z } => {
+                let [from, to] = z.map(|z| polar(z, radius));
+                sphere_derivatives(p.into(), radius, [to - from, self.phi_max]).map(DVec3::from)
             }
             QuadricKind::Cylinder { z: [low, high], .. } => {
-                ((p.z - low) / (high - low), [turning(p, self.phi_max), DVec3::new(0.0, 0.0, high - low)])
+                [turning(p, self.phi_max), DVec3::new(0.0, 0.0, high - low)]
             }
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 let ring = p.truncate().length();
@@ -336,10 +355,9 @@ impl Quadric {
                 // At the very centre, take the derivative of a point close by.
                 let turned = ring.max(1e-5 * radius) * DVec3::new(x, y, 0.0);
                 let dpdv = (inner_radius - radius) * DVec3::new(x, y, 0.0);
-                ((radius - ring) / (radius - inner_radius), [turning(turned, self.phi_max), dpdv])
+                [turning(turned, self.phi_max), dpdv]
             }
-        };
-        (Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE), derivatives)
+        }
     }
 
     /// The point of render space and the outward unit normal there, by the point of the surface in object space.
@@ -361,10 +379,14 @@ impl Quadric {
 }
 
 impl Quadrics {
-    /// The point of a quadric nearest to one that is on it up to errors.
-    pub(super) fn point(&self, index: usize, near: DVec3) -> SurfacePoint {
-        let quadric = &self.quadrics[index];
-        quadric.point(quadric.point_in_object(near), self.bindings[index])
+    /// The point of a quadric nearest to one that is on it up to errors. Texture coordinates are 0 where they are not wanted.
+    pub(super) fn point(&self, index: usize, near: DVec3, wants_uv: bool) -> SurfacePoint {
+        let (quadric, binding) = (&self.quadrics[index], self.bindings[index]);
+        let in_object = quadric.point_in_object(near);
+        match wants_uv {
+            true => quadric.point(in_object, binding),
+            false => quadric.point_without_uv(in_object, binding),
+        }
     }
 }
 

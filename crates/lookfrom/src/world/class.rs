@@ -8,29 +8,24 @@ use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{Material, MaterialKind};
 
-/// The class of all hits on a geometry.
+/// The classes of the surfaces of a geometry.
 #[derive(Clone, Debug)]
 pub(crate) enum Class {
-    /// A mesh.
-    Mesh {
-        /// That of hits which are shaded in lanes: where its material has a class of BSDFs, and it has no emission.
-        hits: Option<HitClass>,
-        /// Its material, where it is bare.
-        bare: Option<u32>,
-        /// Whether it is an interface of media and nothing else.
-        is_interface: bool,
-    },
-    /// Spheres.
-    Spheres {
-        /// The material of each one that is bare.
-        bare: Vec<Option<u32>>,
-        /// The class of hits on each one, as for meshes.
-        hits: Vec<Option<HitClass>>,
-        /// Whether each is an interface of media and nothing else.
-        are_interfaces: Vec<bool>,
-    },
-    /// Anything else.
-    General,
+    /// All are of one shape.
+    One(SurfaceClass),
+    /// By primitive.
+    Each(Vec<SurfaceClass>),
+}
+
+/// The ways in which a surface can be shaded in lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SurfaceClass {
+    /// That of hits which are shaded in lanes: where its material has a class of BSDFs, and it has no emission.
+    hits: Option<HitClass>,
+    /// Where it is bare.
+    bare: Option<BareSurface>,
+    /// Where it is on a triangle or sphere and an interface of media, and nothing else: whether it is a sphere.
+    interface: Option<bool>,
 }
 
 /// A bare surface: a triangle or sphere outside of instances that is nothing but its material. It emits no light, has no alpha,
@@ -50,10 +45,36 @@ pub(crate) struct HitClass {
     pub(crate) bsdf: Option<BsdfClass>,
     /// Index of the material.
     pub(crate) material: u32,
-    /// Whether it is on a sphere, and not on a mesh.
-    pub(crate) is_sphere: bool,
+    /// The kind of shape that was hit.
+    pub(crate) shape: ShapeClass,
     /// Index into the world's alphas, where the surface has one.
     pub(crate) alpha: Option<u32>,
+}
+
+/// The kinds of shapes, by the way in which the points of hits on them are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShapeClass {
+    /// Triangles that stand still, in instances or not: in lanes.
+    Mesh,
+    /// Spheres outside of instances: in lanes.
+    Sphere,
+    /// All others: one by one.
+    Other,
+}
+
+impl ShapeClass {
+    /// All of them.
+    pub(crate) const ALL: [Self; 3] = [Self::Mesh, Self::Sphere, Self::Other];
+}
+
+impl Class {
+    #[inline(always)]
+    fn of(&self, primitive: u32) -> &SurfaceClass {
+        match self {
+            Self::One(surface) => surface,
+            Self::Each(surfaces) => &surfaces[primitive as usize],
+        }
+    }
 }
 
 impl World {
@@ -66,37 +87,39 @@ impl World {
     }
 
     fn class(&self, primitives: &Primitives) -> Class {
-        let bare = |binding: &MaterialBinding| {
-            let kind = &self.materials[binding.material as usize].kind;
-            let is_bare = binding.is_bare() && !matches!(kind, MaterialKind::Unlit { .. });
-            is_bare.then_some(binding.material)
+        let shape = match primitives {
+            Primitives::Mesh(_) => ShapeClass::Mesh,
+            Primitives::Spheres(_) => ShapeClass::Sphere,
+            _ => ShapeClass::Other,
         };
-        let is_interface = |binding: &MaterialBinding| {
-            let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
-            is_alone && matches!(self.materials[binding.material as usize].kind, MaterialKind::Interface)
-        };
-        let hits_on = |binding: &MaterialBinding, is_sphere: bool| {
-            let is_whole = binding.light.is_none() && !(self.has_open_fronts && binding.single_sided);
-            let &MaterialBinding { material, alpha, .. } = binding;
-            let bsdf = self.materials[material as usize].class();
-            let has_class = is_whole && Material::has_class(&self.materials, material);
-            has_class.then_some(HitClass { bsdf, material, is_sphere, alpha })
-        };
+        let surface = |binding: &MaterialBinding| self.surface_class(binding, shape);
         match primitives {
-            Primitives::Mesh(mesh) => Class::Mesh {
-                hits: hits_on(&mesh.binding, false),
-                bare: bare(&mesh.binding),
-                is_interface: is_interface(&mesh.binding),
-            },
-            Primitives::Spheres(spheres) => {
-                let bindings = || spheres.binding_of.iter().map(|&of| &spheres.bindings[of as usize].binding);
-                Class::Spheres {
-                    bare: bindings().map(bare).collect(),
-                    hits: bindings().map(|binding| hits_on(binding, true)).collect(),
-                    are_interfaces: bindings().map(is_interface).collect(),
-                }
+            Primitives::Mesh(_) | Primitives::Patches(_) | Primitives::Curves(_) => {
+                Class::One(surface(primitives.binding(0)))
             }
-            _ => Class::General,
+            Primitives::Spheres(spheres) => {
+                let bindings = spheres.binding_of.iter().map(|&of| &spheres.bindings[of as usize].binding);
+                Class::Each(bindings.map(surface).collect())
+            }
+            Primitives::Disks(disks) => Class::Each(disks.bindings.iter().map(surface).collect()),
+            Primitives::Quadrics(quadrics) => Class::Each(quadrics.bindings.iter().map(surface).collect()),
+        }
+    }
+
+    fn surface_class(&self, binding: &MaterialBinding, shape: ShapeClass) -> SurfaceClass {
+        let &MaterialBinding { material, alpha, light, single_sided, .. } = binding;
+        let Material { kind, .. } = &self.materials[material as usize];
+        let (is_sphere, is_other) = (shape == ShapeClass::Sphere, shape == ShapeClass::Other);
+        let is_whole = light.is_none() && !(self.has_open_fronts && single_sided);
+        let bsdf = self.materials[material as usize].class();
+        let has_class = is_whole && Material::has_class(&self.materials, material);
+        let is_bare = !is_other && binding.is_bare() && !matches!(kind, MaterialKind::Unlit { .. });
+        let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
+        let is_interface = !is_other && is_alone && matches!(kind, MaterialKind::Interface);
+        SurfaceClass {
+            hits: has_class.then_some(HitClass { bsdf, material, shape, alpha }),
+            bare: is_bare.then_some(BareSurface { material, is_sphere }),
+            interface: is_interface.then_some(is_sphere),
         }
     }
 
@@ -106,12 +129,7 @@ impl World {
         if !hit.is_hit() || hit.instance != NONE {
             return None;
         }
-        let (material, is_sphere) = match &self.classes[hit.geometry as usize] {
-            Class::Mesh { bare, .. } => (*bare, false),
-            Class::Spheres { bare, .. } => (bare[hit.primitive as usize], true),
-            Class::General => return None,
-        };
-        material.map(|material| BareSurface { material, is_sphere })
+        self.classes[hit.geometry as usize].of(hit.primitive).bare
     }
 
     /// Whether a hit is on a triangle or sphere outside of instances that is an interface of media, without alpha or vertex data; then
@@ -121,45 +139,30 @@ impl World {
         if !self.has_media || !hit.is_hit() || hit.instance != NONE {
             return None;
         }
-        match &self.classes[hit.geometry as usize] {
-            Class::Mesh { is_interface, .. } => is_interface.then_some(false),
-            Class::Spheres { are_interfaces, .. } => are_interfaces[hit.primitive as usize].then_some(true),
-            Class::General => None,
-        }
+        self.classes[hit.geometry as usize].of(hit.primitive).interface
     }
 
-    /// The class of a hit on a mesh, or a sphere outside of instances, that has one; `None` for instances with a material of their own,
-    /// or that move.
+    /// The class of a hit, if it has one; `None` in instances with a material of their own.
     #[inline]
     pub(crate) fn hit_class(&self, hit: &Hit) -> Option<HitClass> {
-        let class = match hit.instance {
-            NONE => &self.classes[hit.geometry as usize],
-            instance => {
-                let instance = &self.instances[instance as usize];
-                if instance.material.is_some() || instance.moves {
-                    return None;
-                }
-                &self.object_classes[instance.object as usize][hit.geometry as usize]
-            }
-        };
-        match class {
-            Class::Mesh { hits, .. } => *hits,
-            Class::Spheres { hits, .. } if hit.instance == NONE => hits[hit.primitive as usize],
-            Class::Spheres { .. } | Class::General => None,
+        if hit.instance == NONE {
+            return self.classes[hit.geometry as usize].of(hit.primitive).hits;
         }
+        let instance = &self.instances[hit.instance as usize];
+        if instance.material.is_some() {
+            return None;
+        }
+        let class =
+            self.object_classes[instance.object as usize][hit.geometry as usize].of(hit.primitive).hits?;
+        let is_on_mesh = class.shape == ShapeClass::Mesh && !instance.moves;
+        Some(if is_on_mesh { class } else { HitClass { shape: ShapeClass::Other, ..class } })
     }
 
     /// The mesh of a hit on what stands still, and the placement of the instance that it is in; `None` for other geometries.
     #[inline(always)]
     pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, Option<StoredPlacement<'_>>)> {
-        let (primitives, placement) = match hit.instance {
-            NONE => (&self.primitives[hit.geometry as usize], None),
-            id => {
-                let object = self.instances[id as usize].object as usize;
-                (&self.objects[object][hit.geometry as usize], Some(self.standing_placement(id)))
-            }
-        };
-        if let Primitives::Mesh(mesh) = primitives { Some((mesh, placement)) } else { None }
+        let placement = (hit.instance != NONE).then(|| self.standing_placement(hit.instance));
+        if let Primitives::Mesh(mesh) = self.primitives_of(hit) { Some((mesh, placement)) } else { None }
     }
 
     /// The sphere of a hit outside of instances; `None` for other geometries.

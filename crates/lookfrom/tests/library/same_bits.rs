@@ -337,6 +337,80 @@ fn chance_decides_about_eight_hits_as_about_one() {
     }
 }
 
+/// Shapes that are neither triangles nor spheres, what is in instances, and what moves.
+#[test]
+fn points_of_any_shape_are_shaded_eight_at_once_as_one_by_one() {
+    const BODIES: &str = r#"
+        [textures]
+        dots = { type = "dots", inside = 0.2, outside = 0.9, scale = [6, 4] }
+        holes = { type = "dots", inside = 0, outside = 1, scale = [9, 5] }
+        waves = { type = "dots", inside = 0, outside = 0.03, scale = [20, 10] }
+        [materials.dotted]
+        type = "diffuse"
+        reflectance = "dots"
+        [materials.hammered]
+        type = "conductor"
+        metal = "gold"
+        roughness = [0.1, 0.4]
+        bump = "waves"
+        [materials.glass]
+        type = "dielectric"
+        [materials.fibre]
+        type = "hair"
+        eumelanin = 0.3
+        [[sphere]]
+        material = "hammered"
+        radius = 0.3
+        scale = [1, 0.5, 0.8]
+        translate = [-0.5, -0.6, 0.3]
+        [[disk]]
+        material = "dotted"
+        center = [0, 0.5, -0.5]
+        normal = [0.3, 0, 1]
+        radius = 0.4
+        alpha = "holes"
+        [[disk]]
+        material = "red"
+        center = [0.4, 0, 0.7]
+        normal = [0, 0, -1]
+        radius = 0.2
+        single_sided = true
+        [[patch]]
+        material = "dotted"
+        corners = [[0.1, -0.8, 0.5], [0.8, -0.8, 0.3], [0.2, -0.1, 0.4], [0.8, -0.2, 0.8]]
+        [[curve]]
+        material = "fibre"
+        points = [[-0.7, -0.9, 0.6], [-0.9, 0, 0.2], [-0.3, 0.2, 0], [-0.2, 0.9, 0.3]]
+        width = [0.2, 0.05]
+        profile = "cylinder"
+        [[objects.things.sphere]]
+        material = "glass"
+        radius = 0.25
+        [[objects.things.quad]]
+        material = "dotted"
+        corner = [0.2, -0.2, 0]
+        edge_u = [0.4, 0, 0.1]
+        edge_v = [0, 0.4, 0]
+        [[instance]]
+        object = "things"
+        translate = [-0.1, 0.1, 0.5]
+        [[instance]]
+        object = "things"
+        motion = [[1, 0, 0, 0.2, 0, 1, 0, -0.6, 0, 0, 1, 0, 0, 0, 0, 1], [1, 0, 0, 0.2, 0, 1, 0, -0.3, 0, 0, 1, 0.2, 0, 0, 0, 1]]
+        [[light]]
+        type = "environment"
+        color = 0.6
+        [[light]]
+        type = "point"
+        position = [0.2, 0.5, 0.9]
+        intensity = 0.5
+    "#;
+    for settings in ["", "independent", "spectral"] {
+        let lit = lit_as_one_by_one(room(&[BODIES], settings), settings);
+        assert!(lit > 1500, "{lit} samples see light");
+    }
+}
+
 #[test]
 fn layers_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
     const SUBSURFACE: &str = "../docs/guide/scenes/material-subsurface.toml";

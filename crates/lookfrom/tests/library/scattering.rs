@@ -304,3 +304,21 @@ fn a_sky_is_seen_through_fog_that_fills_space() {
         assert_near(seen, [1.0; 3], 0.01, &format!("{integrator:?}"));
     }
 }
+
+/// Haze absorbs once where a path passes the back of a single-sided surface in it.
+#[test]
+fn backs_are_passed_in_haze_as_if_they_were_not_there() {
+    for shape in [
+        r#"type = "quad", corner = [-1, -1, 0], edge_u = [0, 2, 0], edge_v = [2, 0, 0]"#,
+        r#"type = "disk", center = [0, 0, 0], normal = [0, 0, -1], radius = 1"#,
+        r#"type = "sphere", center = [0, 0, 6], radius = 1"#,
+    ] {
+        let [passed, absent] =
+            [r#"single_sided = true, material = "black""#, r#"material = "none""#].map(|look| {
+                let shape = format!("shape = [{{ {shape}, {look} }}]\nmaterials.none.type = \"interface\"");
+                mean(under_a_sky("absorption = [0.1, 0.05, 0.2]", &shape, Integrator::Path))
+            });
+        assert!(absent[2] > 0.01, "{shape}");
+        assert_near(passed, absent, 1e-5, shape);
+    }
+}

@@ -66,7 +66,7 @@ impl QuadricLight {
     }
 
     pub(super) fn sample(&self, from: DVec3, u: [f32; 2]) -> Option<LightPoint> {
-        let uv = |on_quadric| self.quadric.coordinates(on_quadric).0;
+        let uv = |on_quadric| self.quadric.uv(on_quadric);
         match &self.whole {
             Some(Whole::Sphere(sphere)) => {
                 let (samples, in_object) = sphere.sample(from.into(), u);

@@ -1,4 +1,4 @@
-//! Hits on triangle meshes and spheres, shaded in lanes from the hit on: most of most pictures.
+//! Hits shaded in lanes from the hit on, or from its point on.
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, OriginPrimitive, Sphere};
@@ -14,13 +14,13 @@ use crate::core::lanes::{LANES, bitmask, by_lane, lanes_where, row, set_row};
 use crate::core::points::StoredPlacement;
 use crate::integrator::path::{Departure, HitBatch, Path, PathTracer, StepOutput};
 use crate::integrator::wavefront::{Boundary, Eight};
-use crate::integrator::{Event, Integrator, Probe};
-use crate::primitive::{MaterialBinding, Mesh, SphereBinding};
+use crate::integrator::{Event, Probe};
+use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
 use crate::shading::bsdf::{Bsdf, BsdfClass};
 use crate::shading::footprint::PixelFootprint;
 use crate::shading::material::{self, Material, Shading};
 use crate::shading::texture::{LookUps, TexturePoint};
-use crate::world::{HitClass, World};
+use crate::world::{HitClass, ShapeClass, World};
 
 impl<'a> HitBatch<'a> {
     /// Whether a path travels in no medium and comes from no shadow catcher.
@@ -31,7 +31,7 @@ impl<'a> HitBatch<'a> {
     }
 }
 
-/// A path that met a mesh or a sphere.
+/// A path that met a surface whose material has BSDFs of a class.
 #[derive(Clone, Copy)]
 pub(super) struct ClassHit<'a> {
     pub(super) path: &'a Path,
@@ -68,9 +68,11 @@ pub(super) enum Shapes<'a> {
     /// Meshes, and the placements of the instances that they are in.
     Meshes([(&'a Mesh, Option<StoredPlacement<'a>>); LANES]),
     Spheres([(&'a Sphere, &'a SphereBinding); LANES]),
+    /// Others, and the times at which they were hit.
+    Others([(&'a Primitives, f32); LANES]),
 }
 
-/// Eight hits on meshes or on spheres of one class, and the points there. Unused lanes repeat the last hit.
+/// Eight hits on shapes of one kind. Unused lanes repeat the last hit.
 pub(super) struct ClassHits<'a> {
     pub(super) hits: [ClassHit<'a>; LANES],
     pub(super) shapes: Shapes<'a>,
@@ -83,7 +85,7 @@ pub(super) struct ClassHits<'a> {
 }
 
 impl PathTracer {
-    /// The class of a path that met a mesh or a sphere whose material has BSDFs of a class, and is to go on from there.
+    /// The class of a path that met a surface whose material has BSDFs of a class, and is to go on from there.
     #[inline]
     pub(in crate::integrator::path) fn hit_class(
         &self,
@@ -94,10 +96,10 @@ impl PathTracer {
         if path.depth < self.depth { world.hit_class(hit) } else { None }
     }
 
-    /// Scatters up to eight paths of a batch that met meshes, or spheres, of one class.
+    /// Scatters up to eight paths of a batch that met shapes of one kind, of one class of BSDFs.
     pub(super) fn scatter_hits<P: Probe>(
         &self,
-        class: BsdfClass,
+        (shape, class): (ShapeClass, BsdfClass),
         batch: &HitBatch<'_>,
         eight: &Eight<'_>,
         memory: &mut Memory,
@@ -107,14 +109,16 @@ impl PathTracer {
         let Memory { points, scattered } = memory;
         let first_surfaces = &output.queues.first_surfaces;
         let is_first = |path: &Path| path.is_root() && first_surfaces.are_left_in(path.interior);
-        let Some(class_hits) = ClassHits::of(batch, (eight.paths, Some(eight.materials)), is_first) else {
+        let indices = (eight.paths, Some(eight.materials));
+        let Some(class_hits) = ClassHits::of(batch, shape, indices, is_first, |path| output.time(path))
+        else {
             return;
         };
         let hits = &class_hits.hits;
 
         // Find the points; paths from the camera pass the back faces of single-sided shapes.
         PointsKernel { world, class_hits: &class_hits, points }.set_points();
-        let active = self.pass_back_faces(batch, eight.paths, (hits, points.front), output);
+        let active = class_hits.pass_back_faces(eight.paths.len(), points, output);
         if active == 0 {
             return;
         }
@@ -153,51 +157,46 @@ impl PathTracer {
         };
         self.go_on(world, departure, active, scattered, output);
     }
-
-    /// Takes paths that pass the surface, because they hit the back of it, through it one by one. Returns the lanes of the others.
-    #[inline(always)]
-    pub(super) fn pass_back_faces<P: Probe>(
-        &self,
-        batch: &HitBatch<'_>,
-        indices: &[u32],
-        (hits, front): (&[ClassHit<'_>; LANES], u32),
-        output: &mut StepOutput<'_, P>,
-    ) -> u32 {
-        let mut active = (1 << indices.len()) - 1;
-        for (lane, index) in indices.iter().enumerate() {
-            if hits[lane].passes_back_faces() && front & 1 << lane == 0 {
-                let (path, hit) = (&batch.paths[*index as usize], &batch.hits[*index as usize]);
-                self.step(batch.world, &batch.streams.of(path), path, hit, output);
-                active &= !(1 << lane);
-            }
-        }
-        active
-    }
 }
 
 impl<'a> ClassHits<'a> {
-    /// Hits about which chance has still to decide.
-    pub(super) fn undecided(batch: &HitBatch<'a>, indices: &[u32]) -> Option<Self> {
-        Self::of(batch, (indices, None), |_| false)
+    /// Hits about which chance has still to decide, on shapes of one kind.
+    pub(super) fn undecided(
+        batch: &HitBatch<'a>,
+        shape: ShapeClass,
+        indices: &[u32],
+        time: impl Fn(&Path) -> f32,
+    ) -> Option<Self> {
+        Self::of(batch, shape, (indices, None), |_| false, time)
     }
 
-    /// Hits of paths of a batch, by their indices, of materials by theirs: those of the surfaces, where they are not given.
+    /// Hits of paths of a batch, by their indices, on shapes of one kind, of materials by theirs: those of the surfaces, where they are
+    /// not given.
     #[inline(always)]
     fn of(
         batch: &HitBatch<'a>,
+        shape: ShapeClass,
         (indices, materials): (&[u32], Option<&[u32]>),
         is_first: impl Fn(&Path) -> bool,
+        time: impl Fn(&Path) -> f32,
     ) -> Option<Self> {
         let index = |lane: usize| indices[lane.min(indices.len() - 1)] as usize;
         let (world, all) = (batch.world, batch.hits);
-        let (shapes, bindings) = match world.sphere(&all[index(0)]) {
-            None => {
+        let (shapes, bindings) = match shape {
+            ShapeClass::Mesh => {
                 let meshes = by_lane!(lane => world.mesh(&all[index(lane)])?);
                 (Shapes::Meshes(meshes), by_lane!(lane => &meshes[lane].0.binding))
             }
-            Some(_) => {
+            ShapeClass::Sphere => {
                 let spheres = by_lane!(lane => world.sphere(&all[index(lane)])?);
                 (Shapes::Spheres(spheres), by_lane!(lane => &spheres[lane].1.binding))
+            }
+            ShapeClass::Other => {
+                let others = by_lane!(lane => {
+                    (world.primitives_of(&all[index(lane)]), time(&batch.paths[index(lane)]))
+                });
+                let binding = |lane: usize| others[lane].0.binding(all[index(lane)].primitive as usize);
+                (Shapes::Others(others), by_lane!(lane => binding(lane)))
             }
         };
         let material = |lane: usize| match materials {
@@ -214,8 +213,28 @@ impl<'a> ClassHits<'a> {
         let vary = hits.iter().any(ClassHit::varies);
         let are_first = bitmask(&by_lane!(lane => !hits[lane].is_chosen() && is_first(hits[lane].path)));
         let needs_footprint = vary && hits.iter().any(|hit| hit.material.needs_footprint);
-        let pixels = batch.world.footprint.as_ref().filter(|_| needs_footprint);
+        let pixels = world.footprint.as_ref().filter(|_| needs_footprint);
         Some(Self { hits, shapes, vary, are_first, pixels })
+    }
+
+    /// Lets those of the first hits whose paths have met the back of a surface, and pass it there, go on. Returns the lanes of the others.
+    #[inline(always)]
+    pub(super) fn pass_back_faces<P: Probe>(
+        &self,
+        count: usize,
+        points: &ClassPoints,
+        output: &mut StepOutput<'_, P>,
+    ) -> u32 {
+        let active = (1 << count) - 1;
+        let backs = lanes_where(active & !points.front, |lane| self.hits[lane].passes_back_faces());
+        self.go_on_behind(backs, points, output);
+        active & !backs
+    }
+
+    /// Whether texture coordinates are wanted.
+    #[inline(always)]
+    pub(super) fn wants_uvs(&self) -> bool {
+        self.vary || self.are_first != 0
     }
 
     /// The lanes that see surfaces from behind which are black there.
@@ -284,6 +303,10 @@ impl<'a> ClassHits<'a> {
                     world.texture_point_on_mesh(meshes[lane].0, hit.hit, at, row(uv, lane))
                 }
                 Shapes::Spheres(_) => world.texture_point_at(at, row(uv, lane)),
+                Shapes::Others(others) => match others[lane].0 {
+                    Primitives::Mesh(mesh) => world.texture_point_on_mesh(mesh, hit.hit, at, row(uv, lane)),
+                    _ => world.texture_point_at(at, row(uv, lane)),
+                },
             };
             points[lane].is_inside = front & 1 << lane == 0;
             if self.pixels.is_some() && hit.material.needs_footprint {

@@ -1,14 +1,14 @@
-//! The points of hits on meshes, or on spheres, side by side.
+//! The points of hits on shapes of one kind, side by side.
 
 use lookfrom_simd::{Float, Kernel, Real, Simd, f32x8, prelude::*};
 
 use super::bent_frames::BentFrames;
-use super::class_hits::{ClassHits, Shapes};
+use super::class_hits::{ClassHit, ClassHits, Shapes};
 use super::vertices::VertexColumns;
-use crate::core::lanes::{Columns, by_lane, gather, row, shade_together, store};
+use crate::core::lanes::{Columns, LANES, by_lane, gather, row, shade_together, store};
 use crate::core::points::Lift;
 use crate::core::vector::Vector;
-use crate::primitive::{points_on_meshes, points_on_spheres};
+use crate::primitive::{Primitives, SurfacePoint, SurfacePoints, points_on_meshes, points_on_spheres};
 use crate::shading::footprint::{Changes, SurfaceFootprint};
 use crate::shading::material::frame_about;
 use crate::world::World;
@@ -26,6 +26,28 @@ pub(super) struct ClassPoints {
     pub(super) bent: BentFrames,
     /// The footprints of pixels, where materials depend on them.
     pub(super) footprints: Footprints,
+    /// The points of shapes that are neither meshes nor spheres, one by one.
+    others: Vec<SurfacePoint>,
+}
+
+impl ClassPoints {
+    /// Finds the points of shapes that were hit at some times.
+    #[inline(never)]
+    fn find_others(
+        &mut self,
+        world: &World,
+        class_hits: &ClassHits<'_>,
+        others: &[(&Primitives, f32); LANES],
+    ) {
+        self.others.clear();
+        for (lane, ClassHit { path, hit, .. }) in class_hits.hits.iter().enumerate() {
+            let point = match lane > 0 && std::ptr::eq(*hit, class_hits.hits[lane - 1].hit) {
+                true => self.others[lane - 1],
+                false => world.surface_point(&path.ray, hit, others[lane].1, class_hits.wants_uvs()),
+            };
+            self.others.push(point);
+        }
+    }
 }
 
 /// [`SurfaceFootprint`]s.
@@ -58,6 +80,9 @@ pub(super) struct PointsKernel<'a> {
 impl PointsKernel<'_> {
     #[inline(never)]
     pub(super) fn set_points(self) {
+        if let Shapes::Others(others) = &self.class_hits.shapes {
+            self.points.find_others(self.world, self.class_hits, others);
+        }
         shade_together(self);
     }
 }
@@ -67,9 +92,9 @@ impl Kernel for PointsKernel<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { world, class_hits: ClassHits { hits, shapes, vary, are_first, pixels }, points } = self;
-        let are_first = *are_first != 0;
-        let wants_uvs = *vary || are_first;
+        let Self { world, class_hits, points } = self;
+        let ClassHits { hits, shapes, pixels, .. } = class_hits;
+        let (are_first, wants_uvs) = (class_hits.are_first != 0, class_hits.wants_uvs());
         let direction = gather(simd, &by_lane!(lane => hits[lane].path.ray.direction)).widen();
         let at = match shapes {
             Shapes::Meshes(shapes) => {
@@ -82,6 +107,7 @@ impl Kernel for PointsKernel<'_> {
                 let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].hit.t));
                 points_on_spheres(simd, spheres, origin + direction * Real::widen(t), [wants_uvs, true])
             }
+            Shapes::Others(_) => SurfacePoints::gather(simd, &by_lane!(lane => &points.others[lane])),
         };
         let wide_wo = -direction.normalize();
         let wo = Vector::narrow(wide_wo);

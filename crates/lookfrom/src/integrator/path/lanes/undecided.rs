@@ -1,4 +1,4 @@
-//! Hits on meshes and spheres about which chance decides, eight at a time: paths go on behind surfaces that fail the alpha test, and one
+//! Hits about which chance decides, eight at a time: paths go on behind surfaces that fail the alpha test, and one
 //! of mixed materials is chosen.
 
 use lookfrom_bvh::OriginPrimitive;
@@ -12,7 +12,7 @@ use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, Path, PathTracer, StepOutput, dimension};
 use crate::shading::material::Material;
 use crate::shading::texture::FloatTexture;
-use crate::world::{HitClass, World};
+use crate::world::{HitClass, ShapeClass, World};
 
 /// Decided hits.
 pub(super) struct Decided {
@@ -42,35 +42,26 @@ impl PathTracer {
         }
     }
 
-    /// Decides about up to eight paths' hits. Those whose surfaces are not there go on behind them, as those do that pass back faces.
+    /// Decides about up to eight paths' hits on shapes of one kind. Those whose surfaces are not there go on behind them, as those do that pass back faces.
     pub(super) fn decide<P: Probe>(
         &self,
         batch: &HitBatch<'_>,
-        indices: &[u32],
+        (shape, indices): (ShapeClass, &[u32]),
         points: &mut ClassPoints,
         output: &mut StepOutput<'_, P>,
     ) -> Decided {
         let (world, materials) = (batch.world, [0; LANES]);
-        let Some(class_hits) = ClassHits::undecided(batch, indices) else {
+        let Some(class_hits) = ClassHits::undecided(batch, shape, indices, |path| output.time(path)) else {
             return Decided { there: 0, materials };
         };
         PointsKernel { world, class_hits: &class_hits, points }.set_points();
         let hits = &class_hits.hits;
-        let active = self.pass_back_faces(batch, indices, (hits, points.front), output);
+        let active = class_hits.pass_back_faces(indices.len(), points, output);
 
         // Test the alphas, and go on behind surfaces that are not there.
         let alphas = class_hits.alphas(world, points);
         let there = lanes_where(active, |lane| is_there(alphas[lane], || presence(batch, hits[lane].path)));
-        let gaps = active & !there;
-        if gaps != 0 {
-            let paths = by_lane!(lane => hits[lane].path);
-            let origins = origins_behind(&points.surfaces, &paths);
-            output
-                .paths
-                .extend(LaneMask(gaps).map(|lane| {
-                    paths[lane].behind(row(&origins, lane), OriginPrimitive::of(hits[lane].hit))
-                }));
-        }
+        class_hits.go_on_behind(active & !there, points, output);
 
         Decided {
             there,
@@ -92,6 +83,24 @@ fn is_there(alpha: f32, numbers: impl FnOnce() -> [f32; 2]) -> bool {
 }
 
 impl ClassHits<'_> {
+    /// Lets paths in the lanes of a mask go on behind their surfaces, as if these were not there.
+    #[inline(always)]
+    pub(super) fn go_on_behind<P: Probe>(
+        &self,
+        lanes: u32,
+        points: &ClassPoints,
+        output: &mut StepOutput<'_, P>,
+    ) {
+        if lanes == 0 {
+            return;
+        }
+        let paths = by_lane!(lane => self.hits[lane].path);
+        let origins = origins_behind(&points.surfaces, &paths);
+        let behind =
+            |lane: usize| paths[lane].behind(row(&origins, lane), OriginPrimitive::of(self.hits[lane].hit));
+        output.paths.extend(LaneMask(lanes).map(behind));
+    }
+
     /// The materials of hits in the lanes of a mask, by random numbers by lane where they are mixed.
     fn chosen_materials(
         &self,

@@ -10,10 +10,10 @@ use crate::integrator::Probe;
 use crate::integrator::path::{HitBatch, PathTracer, Vertex};
 use crate::integrator::wavefront::{Behind, Bins, Interfaces};
 use crate::shading::bsdf::BsdfClass;
-use crate::world::{HitClass, World};
+use crate::world::{HitClass, ShapeClass, World};
 
-/// Paths that wait for others of their class: those that hit meshes and those that hit spheres by their class, and those that hit
-/// nothing, in bins, and all others as vertices.
+/// Paths that wait for others of their class: those that hit surfaces whose materials have a class, by the kind of shape, and those that
+/// hit nothing, in bins, and all others as vertices.
 #[derive(Default)]
 pub(in crate::integrator::path) struct Waiting {
     /// Whether they wait at all: otherwise each is scattered alone, at once.
@@ -22,8 +22,8 @@ pub(in crate::integrator::path) struct Waiting {
     vertices: [Vec<Vertex>; BsdfClass::COUNT],
     in_media: Vec<MediumVertex>,
     interfaces: Interfaces,
-    /// Indices in the batch of hits about which chance has still to decide, on meshes and on spheres.
-    undecided: [Vec<u32>; 2],
+    /// Indices in the batch of hits about which chance has still to decide, by the kind of shape.
+    undecided: [Vec<u32>; ShapeClass::ALL.len()],
     /// Paths at interfaces of media.
     at_interfaces: Vec<(Path, Hit)>,
     /// Paths that have come through a medium to shapes whose BSDFs have a class, and what they have hit.
@@ -41,12 +41,15 @@ struct Arrived {
     classes: Vec<HitClass>,
 }
 
-/// The bin of paths that hit nothing, after those of the classes.
-const ESCAPED: usize = BsdfClass::COUNT;
+/// The bin of paths that hit nothing.
+const ESCAPED: usize = 0;
 
-/// The bin of the first class of paths that hit spheres.
-const ON_SPHERES: usize = ESCAPED + 1;
-const _: () = assert!(ON_SPHERES + BsdfClass::COUNT <= Bins::COUNT, "bins of other kinds");
+/// The bin of paths that hit a kind of shape of a class.
+const fn bin(shape: ShapeClass, class: BsdfClass) -> usize {
+    1 + shape as usize * BsdfClass::COUNT + class as usize
+}
+
+const _: () = assert!(ShapeClass::ALL.len() * BsdfClass::COUNT < Bins::COUNT, "bins of other kinds");
 
 impl Waiting {
     /// None yet; to be scattered in lanes or alone.
@@ -76,8 +79,8 @@ impl Waiting {
         output: &mut StepOutput<'_, P>,
     ) {
         match class {
-            HitClass { bsdf: Some(bsdf), alpha: None, material, is_sphere } => {
-                self.push_decided(tracer, batch, (bsdf, is_sphere), (index as u32, material), output);
+            HitClass { bsdf: Some(bsdf), alpha: None, material, shape } => {
+                self.push_decided(tracer, batch, (shape, bsdf), (index as u32, material), output);
             }
             _ => self.push_undecided(tracer, batch, (class, index), output),
         }
@@ -92,11 +95,11 @@ impl Waiting {
         (class, index): (HitClass, usize),
         output: &mut StepOutput<'_, P>,
     ) {
-        let HitClass { is_sphere, .. } = class;
+        let HitClass { shape, .. } = class;
         if let Some(material) = PathTracer::decided_at_once(batch, class, index) {
-            self.push_material(tracer, batch, (material, is_sphere, index as u32), output);
-        } else if fills_lanes(&mut self.undecided[usize::from(is_sphere)], index as u32) {
-            self.decide(tracer, batch, is_sphere, output);
+            self.push_material(tracer, batch, (material, shape, index as u32), output);
+        } else if fills_lanes(&mut self.undecided[shape as usize], index as u32) {
+            self.decide(tracer, batch, shape, output);
         }
     }
 
@@ -105,18 +108,19 @@ impl Waiting {
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        are_spheres: bool,
+        shape: ShapeClass,
         output: &mut StepOutput<'_, P>,
     ) {
-        let mut hits = std::mem::take(&mut self.undecided[usize::from(are_spheres)]);
+        let mut hits = std::mem::take(&mut self.undecided[shape as usize]);
         if !hits.is_empty() {
-            let Decided { there, materials } = tracer.decide(batch, &hits, &mut self.memory.points, output);
+            let Decided { there, materials } =
+                tracer.decide(batch, (shape, &hits), &mut self.memory.points, output);
             for lane in LaneMask(there) {
-                self.push_material(tracer, batch, (materials[lane], are_spheres, hits[lane]), output);
+                self.push_material(tracer, batch, (materials[lane], shape, hits[lane]), output);
             }
             hits.clear();
         }
-        self.undecided[usize::from(are_spheres)] = hits;
+        self.undecided[shape as usize] = hits;
     }
 
     /// Adds a hit on a surface that is there, of a material that is not mixed.
@@ -125,11 +129,11 @@ impl Waiting {
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (material, is_sphere, index): (u32, bool, u32),
+        (material, shape, index): (u32, ShapeClass, u32),
         output: &mut StepOutput<'_, P>,
     ) {
         if let Some(bsdf) = batch.world.materials[material as usize].class() {
-            self.push_decided(tracer, batch, (bsdf, is_sphere), (index, material), output);
+            self.push_decided(tracer, batch, (shape, bsdf), (index, material), output);
         }
     }
 
@@ -139,14 +143,13 @@ impl Waiting {
         &mut self,
         tracer: &PathTracer,
         batch: &HitBatch<'_>,
-        (bsdf, is_sphere): (BsdfClass, bool),
+        (shape, bsdf): (ShapeClass, BsdfClass),
         (index, material): (u32, u32),
         output: &mut StepOutput<'_, P>,
     ) {
         let memory = &mut self.memory;
-        let first = if is_sphere { ON_SPHERES } else { 0 };
-        self.bins.push(first + bsdf as usize, index, material, |eight| {
-            tracer.scatter_hits(bsdf, batch, eight, memory, output);
+        self.bins.push(bin(shape, bsdf), index, material, |eight| {
+            tracer.scatter_hits((shape, bsdf), batch, eight, memory, output);
         });
     }
 
@@ -254,14 +257,14 @@ impl Waiting {
         batch: &HitBatch<'_>,
         output: &mut StepOutput<'_, P>,
     ) {
-        for are_spheres in [false, true] {
-            self.decide(tracer, batch, are_spheres, output);
+        for shape in ShapeClass::ALL {
+            self.decide(tracer, batch, shape, output);
         }
         let Self { bins, memory, .. } = self;
         for &class in BsdfClass::ALL {
-            for first in [0, ON_SPHERES] {
-                bins.flush(1 << (first + class as usize), |eight| {
-                    tracer.scatter_hits(class, batch, eight, memory, output);
+            for shape in ShapeClass::ALL {
+                bins.flush(1 << bin(shape, class), |eight| {
+                    tracer.scatter_hits((shape, class), batch, eight, memory, output);
                 });
             }
         }
