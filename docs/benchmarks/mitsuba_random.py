@@ -3,14 +3,16 @@
 
 Needs: pip packages mitsuba and numpy; a release build of lookfrom.
 
-    mitsuba_random.py --lookfrom target/release/lookfrom [--seeds 0 40] [--samples 64] [--bsdf KIND] [--color spectral] [--folder DIR]
+    mitsuba_random.py --lookfrom target/release/lookfrom [--seeds 0 40] [--samples 64] [--bsdf KIND]
+                      [--color spectral] [--folder DIR]
 
-A scene has a floor, sometimes a wall, two to four shapes with BSDFs by a grammar (textures, masks, maps, blends, media inside), and one to three
-lights. --bsdf puts one BSDF of a kind on one shape instead. Both programs render eight pictures of other seeds. A block of pixels differs when its
-means are more than 1.5 % and six standard errors apart; a scene is told by `<<<` when two blocks differ, or the mean of the picture.
+A scene has a floor, sometimes a wall, two to four shapes with BSDFs by a grammar (textures, masks, maps, blends, media inside),
+and one to three lights. --bsdf puts one BSDF of a kind on one shape instead. Both programs render eight pictures of other seeds.
+A block of pixels differs when its means are more than 1.5 % and six standard errors apart; a scene is told by `<<<` when two
+blocks differ, or the mean of the picture.
 
-Left out, because Mitsuba 3.9 is known to be different (docs/guide/mitsuba.md): masks with `path` in place of `volpath`, blends of smooth and rough
-BSDFs, maps over rough BSDFs with a grain, a grain on disks, emitting meshes with smooth normals, media outside
+Left out, because Mitsuba 3.9 is known to be different (docs/guide/mitsuba.md): masks with `path` in place of `volpath`, blends of
+smooth and rough BSDFs, maps over rough BSDFs with a grain, a grain on disks, emitting meshes with smooth normals, media outside
 of bodies, and filters wider than a pixel.
 """
 
@@ -265,6 +267,7 @@ class Grammar:
             parts.append(tag("shape", *group, type="shapegroup", id="group"))
             places = self.random.sample([(-1.8, 0), (0, -1), (1.8, 0.3), (-0.8, 1.8), (1, 1.9)], self.random.randint(2, 4))
             parts += [self.shape(place) for place in places]
+        parts.insert(0, tag("default", name="spp", value=9))
         return tag("scene", "\n", "\n".join(parts + [self.light(kind) for kind in kinds]), version="3.0.0")
 
 

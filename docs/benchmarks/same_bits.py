@@ -11,6 +11,10 @@ Files are those of gltf_random.py (of every second seed the animations are blurr
 of mitsuba_random.py, pbrt_random.py and toml_random.py (of every second seed in spectra); --files adds others. With --options
 each is rendered with random options: integrators, layers, samplers, lights, filters. A level that the machine does not have is
 the next lower one.
+
+The files remain in the folder. That their hits are shaded eight at a time as one by one is a test:
+
+    LOOKFROM_SCENES=/tmp/lookfrom-same-bits cargo test --locked -p lookfrom --test library -- --ignored scenes_of_a_folder
 """
 
 import argparse

@@ -1,5 +1,7 @@
 //! One and the same picture, bit for bit, however the work is divided – and the inspector tells the truth about it.
 
+use std::path::{Path as FilePath, PathBuf};
+
 use crate::light_paths::layer;
 use crate::support::{Compiled, own_scene, scene};
 use lookfrom::film::FilmTile;
@@ -11,8 +13,9 @@ use lookfrom::integrator::{
 use lookfrom::render::SampleId;
 use lookfrom::world::World;
 use lookfrom_bvh::Hit;
-use lookfrom_scene::Scene;
 use lookfrom_scene::settings::{ColorMode, Integrator, Layers, PixelBounds, RenderSettings};
+use lookfrom_scene::{Disk, LoadContext, Scene, load};
+use lookfrom_test_data::shared;
 
 const SCENES: [&str; 6] = [
     "whitted1980.toml",
@@ -235,29 +238,42 @@ fn steps_eight_at_once_are_steps_one_by_one() {
         "[[light]]\ntype = \"environment\"\nzenith = [0.3, 0.4, 0.9]\nhorizon = 0.5\nnadir = 0.1";
     for lights in [&[LAMP][..], &[POINT], &[SUN], &[SKY], &[BULB], &[LAMP, BULB, POINT, SUN, SKY]] {
         for settings in ["", "independent", "spectral"] {
-            let lit = lit_as_one_by_one(room(lights, settings), &format!("{lights:?} {settings}"));
+            let lit =
+                lit_as_one_by_one(room(lights, settings), path_tracer, &format!("{lights:?} {settings}"));
             assert!(lit > 600, "{lit} samples see light of {lights:?}");
         }
     }
 }
 
-/// Asserts that samples of a scene of [`room`] are those of steps one by one, and so is what they tell. Returns how many see light.
-fn lit_as_one_by_one(scene: Scene, of: &str) -> usize {
-    let compiled = Compiled::new(scene);
-    let renderer = compiled.renderer();
-    let pixels = (0..40).flat_map(|y| (0..48).map(move |x| [x, y]));
+/// Path tracing by the settings of a scene.
+fn path_tracer(settings: &RenderSettings) -> PathTracer {
+    let &RenderSettings { depth, regularize, thin_passages_count, .. } = settings;
+    PathTracer { depth, regularize, thin_passages_count, light_sampling: LightSampling::MultipleImportance }
+}
+
+/// Whitted's ray tracing by the settings of a scene.
+fn whitted(settings: &RenderSettings) -> Whitted {
+    let &RenderSettings { depth, min_contribution, transparent_shadows, .. } = settings;
+    Whitted { tree: Some(RayTree { depth, min_contribution }), transparent_shadows }
+}
+
+/// Asserts that samples of a scene are those of an integrator's steps one by one, and so is what they tell. Returns how many see light.
+fn lit_as_one_by_one<I: Transport + 'static>(
+    scene: Scene,
+    integrator: impl FnOnce(&RenderSettings) -> I,
+    of: &str,
+) -> usize {
+    let [width, height] = [scene.image.width, scene.image.height];
+    let scalar = OneByOne(integrator(&scene.render));
+    let renderer = Compiled::new(scene).renderer();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
     let (in_lanes, rays) = renderer.trace(&ids);
-    let tracer = PathTracer {
-        depth: 7,
-        regularize: false,
-        thin_passages_count: true,
-        light_sampling: LightSampling::MultipleImportance,
-    };
-    let scalar = renderer.clone().with_integrator(OneByOne(tracer));
+    let scalar = renderer.clone().with_integrator(scalar);
     let (one_by_one, same_rays) = scalar.trace(&ids);
-    assert_eq!(rays, same_rays);
+    assert_eq!(rays, same_rays, "{of}");
     for (a, b) in in_lanes.iter().zip(&one_by_one) {
+        assert!(a.radiance.0.iter().all(|lane| lane.is_finite()), "{of}: {:?}", a.radiance);
         assert_eq!(a.radiance, b.radiance, "{of}");
     }
     // A watched sample takes the same steps and tells the same of each.
@@ -266,7 +282,7 @@ fn lit_as_one_by_one(scene: Scene, of: &str) -> usize {
         let (watched, _) = renderer.trace_events(&[*id], &mut events);
         scalar.trace_events(&[*id], &mut expected);
         assert_eq!(format!("{events:?}"), format!("{expected:?}"), "{of} {id:?}");
-        let unwatched = &in_lanes[(id.pixel[1] * 48 + id.pixel[0]) as usize];
+        let unwatched = &in_lanes[(id.pixel[1] * width + id.pixel[0]) as usize];
         assert_eq!(watched[0].radiance, unwatched.radiance);
     }
     in_lanes.iter().filter(|sample| !sample.radiance.is_black()).count()
@@ -332,7 +348,7 @@ fn chance_decides_about_eight_hits_as_about_one() {
         intensity = 0.5
     "#;
     for settings in ["", "independent", "spectral"] {
-        let lit = lit_as_one_by_one(room(&[BODIES], settings), settings);
+        let lit = lit_as_one_by_one(room(&[BODIES], settings), path_tracer, settings);
         assert!(lit > 1500, "{lit} samples see light");
     }
 }
@@ -406,7 +422,7 @@ fn points_of_any_shape_are_shaded_eight_at_once_as_one_by_one() {
         intensity = 0.5
     "#;
     for settings in ["", "independent", "spectral"] {
-        let lit = lit_as_one_by_one(room(&[BODIES], settings), settings);
+        let lit = lit_as_one_by_one(room(&[BODIES], settings), path_tracer, settings);
         assert!(lit > 1500, "{lit} samples see light");
     }
 }
@@ -421,12 +437,7 @@ fn layers_of_steps_eight_at_once_are_those_of_steps_one_by_one() {
         (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);
         let ways = [("td", "C<TD>.*"), ("tg", "C<TG>.*"), ("ts", "C<TS>.*"), ("r", "C<R.>.*")];
         scene.image.light_paths = ways.map(layer).to_vec();
-        let tracer = PathTracer {
-            depth: scene.render.depth,
-            regularize: scene.render.regularize,
-            thin_passages_count: true,
-            light_sampling: LightSampling::MultipleImportance,
-        };
+        let tracer = path_tracer(&scene.render);
         let in_lanes = Compiled::new(scene).renderer();
         let scalar = in_lanes.clone().with_integrator(OneByOne(tracer));
         let [a, b] = [in_lanes, scalar].map(|renderer| renderer.render(Some(1), &()).unwrap().film);
@@ -446,18 +457,7 @@ fn trees_grow_eight_at_once_as_one_by_one() {
             if spectral {
                 scene.render.color = ColorMode::Spectral;
             }
-            let RenderSettings { depth, min_contribution, transparent_shadows, .. } = scene.render;
-            let whitted = Whitted { tree: Some(RayTree { depth, min_contribution }), transparent_shadows };
-            let compiled = Compiled::new(scene);
-            let renderer = compiled.renderer();
-            let one_by_one = renderer.clone().with_integrator(OneByOne(whitted));
-            let pixels = (0..50).flat_map(|y| (0..72).map(move |x| [x, y]));
-            let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
-            let ((traced, rays), (expected, same_rays)) = (renderer.trace(&ids), one_by_one.trace(&ids));
-            assert_eq!(rays, same_rays, "{name}");
-            for ((a, b), id) in traced.iter().zip(&expected).zip(&ids) {
-                assert_eq!(a.radiance, b.radiance, "{name} {id:?}");
-            }
+            lit_as_one_by_one(scene, whitted, name);
         }
     }
 }
@@ -534,4 +534,39 @@ fn shadow_rays_pass_surfaces_eight_at_once_as_one_by_one() {
         }
         assert!(passed > 1000, "{passed} surfaces were passed");
     }
+}
+
+/// Those of other programs, or of the folder that `LOOKFROM_SCENES` names: docs/benchmarks/same_bits.py writes random ones.
+#[test]
+#[ignore = "needs LOOKFROM_SHARED"]
+fn scenes_of_a_folder_are_traced_eight_at_once_as_one_by_one() {
+    let folder = std::env::var_os("LOOKFROM_SCENES").map_or_else(|| shared("scenes"), PathBuf::from);
+    let mut count = 0;
+    for file in scenes_in(&folder) {
+        // Parts of scenes are none alone.
+        let Ok(mut scene) = load::scene(&file, &mut LoadContext::new(&Disk)) else { continue };
+        count += 1;
+        let image = &mut scene.image;
+        (image.width, image.height, image.crop) = (48, (48 * image.height / image.width).max(1), None);
+        scene.render.samples = 2;
+        let name = file.display().to_string();
+        scene.render.integrator = Integrator::Whitted;
+        lit_as_one_by_one(scene.clone(), whitted, &name);
+        scene.render.integrator = Integrator::Path;
+        lit_as_one_by_one(scene, path_tracer, &name);
+    }
+    assert!(count > 0, "no scenes in {}", folder.display());
+}
+
+/// The files of scenes and models in a folder, and in its folders.
+fn scenes_in(folder: &FilePath) -> Vec<PathBuf> {
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+    entries.sort();
+    let is_scene = |path: &PathBuf| {
+        path.extension()
+            .is_some_and(|extension| ["glb", "pbrt", "toml", "xml"].iter().any(|it| extension == *it))
+    };
+    let (folders, files): (Vec<_>, Vec<_>) = entries.into_iter().partition(|entry| entry.is_dir());
+    files.into_iter().filter(is_scene).chain(folders.iter().flat_map(|folder| scenes_in(folder))).collect()
 }

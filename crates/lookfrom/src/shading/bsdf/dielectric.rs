@@ -202,7 +202,8 @@ impl<R: Real> Dielectric<R> {
             #[inline(always)]
             |facet| R::select(facet.reflects, facet.fresnel, wo.z.like(1.0) - facet.fresnel),
         );
-        let f = per_cosine / Float::abs(wi.z);
+        let zero = wi.z.like(0.0);
+        let f = R::select(per_cosine.gt(zero), per_cosine / Float::abs(wi.z), zero);
         R::select(first.reflects, f, radiance_scale(f, first.eta, mode))
     }
 

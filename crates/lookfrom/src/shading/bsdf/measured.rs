@@ -150,7 +150,8 @@ impl<R: Real, T: AsRef<[&'static MeasuredTables]>> Measured<R, T> {
                 let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
                 let wi = wi.negate_where(seen.is_inside);
                 let (wm, exists) = (seen.wo + wi).try_normalize();
-                let is_lit = exists & same_side(seen.wo, wi);
+                // By rounding the facet between opposite directions may face away.
+                let is_lit = exists & same_side(seen.wo, wi) & seen.wo.dot(wm).gt(zero);
                 if !is_lit.any() {
                     return (Spectrum::splat(zero), zero);
                 }

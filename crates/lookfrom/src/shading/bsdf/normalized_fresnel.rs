@@ -39,11 +39,11 @@ impl NormalizedFresnel {
 impl<R: Real> NormalizedFresnel<R> {
     #[inline(always)]
     fn value(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
-        let one = wi.z.like(1.0);
+        let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
         let transmitted = one - fresnel::dielectric(Float::abs(wi.z), self.eta);
         let factor = if mode == Mode::Radiance { self.eta * self.eta } else { one };
         let value = factor * transmitted / self.norm;
-        Spectrum::splat(R::select(same_side(wo, wi), value, wi.z.like(0.0)))
+        Spectrum::splat(R::select(same_side(wo, wi) & self.norm.gt(zero), value, zero))
     }
 
     /// As [`super::Bsdf::sample`].

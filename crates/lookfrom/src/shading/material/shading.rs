@@ -64,15 +64,16 @@ impl Shading {
         Self::with_frame(surface, bump::plain(&surface.shading_geometry()), bsdf)
     }
 
-    /// A BSDF at a surface in the frame of these axes, the third of which is the shading normal, with the guard of that.
+    /// The BSDF of a material at a surface in the frame of these axes, the third of which is the shading normal, with the guard of that.
     pub(crate) fn in_frame(
+        material: &Material,
         surface: &SurfaceInteraction,
         axes: [[f32; 3]; 3],
         guard: Option<Guard>,
         bsdf: Bsdf,
     ) -> Self {
         let [s, t, n] = axes.map(Vec3::from);
-        Self { guard, ..Self::with_frame(surface, Frame { s, t, n }, bsdf) }
+        Self { guard, ..Self::of(material, surface, Frame { s, t, n }, bsdf) }
     }
 
     /// The BSDF of a material at a surface, in a frame.

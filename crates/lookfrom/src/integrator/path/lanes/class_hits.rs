@@ -351,12 +351,12 @@ fn tell_of_shading<P: Probe>(
     output: &mut StepOutput<'_, P>,
 ) {
     for lane in LaneMask(active) {
-        let (ClassHit { path, hit, .. }, Some(bsdf)) = (&hits[lane], bsdfs[lane]) else { continue };
+        let (ClassHit { path, hit, material, .. }, Some(bsdf)) = (&hits[lane], bsdfs[lane]) else { continue };
         let surface = world.surface_at(&path.ray, hit, output.time(path));
         let (axes, guard) = (points.surfaces.axes(lane), points.surfaces.guard(lane));
         output.probe.notice(|| Event::Shaded {
             address: path.address,
-            shading: Box::new(Shading::in_frame(&surface, axes, guard, bsdf)),
+            shading: Box::new(Shading::in_frame(material, &surface, axes, guard, bsdf)),
             surface: Box::new(surface),
             beta: path.beta,
         });
