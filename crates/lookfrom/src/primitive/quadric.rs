@@ -310,17 +310,17 @@ impl Quadric {
 
     /// The point of the surface that is `on_surface` in object space.
     pub fn point(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
-        let at = self.point_without_uv(on_surface, binding);
-        SurfacePoint { uv: self.uv(self.refined(on_surface)), ..at }
+        self.point_of(on_surface, binding, true)
     }
 
-    /// As [`Self::point`], with texture coordinates of 0.
-    fn point_without_uv(&self, on_surface: DVec3, binding: MaterialBinding) -> SurfacePoint {
+    /// As [`Self::point`]. Texture coordinates are 0 where they are not wanted.
+    fn point_of(&self, on_surface: DVec3, binding: MaterialBinding, wants_uv: bool) -> SurfacePoint {
         let p = self.refined(on_surface);
+        let uv = if wants_uv { self.uv(p) } else { Vec2::ZERO };
         let derivatives = self.derivatives(p).map(|d| self.vector_in_render(d));
         let (points, ng) = self.place(p);
         let point = Point { position: points.position.into(), error: points.error.into() };
-        SurfacePoint::plain(point, ng.into(), Vec2::ZERO, derivatives, binding)
+        SurfacePoint::plain(point, ng.into(), uv, derivatives, binding)
     }
 
     /// The texture coordinates of a point of the surface, in object space.
@@ -381,12 +381,8 @@ impl Quadric {
 impl Quadrics {
     /// The point of a quadric nearest to one that is on it up to errors. Texture coordinates are 0 where they are not wanted.
     pub(super) fn point(&self, index: usize, near: DVec3, wants_uv: bool) -> SurfacePoint {
-        let (quadric, binding) = (&self.quadrics[index], self.bindings[index]);
-        let in_object = quadric.point_in_object(near);
-        match wants_uv {
-            true => quadric.point(in_object, binding),
-            false => quadric.point_without_uv(in_object, binding),
-        }
+        let quadric = &self.quadrics[index];
+        quadric.point_of(quadric.point_in_object(near), self.bindings[index], wants_uv)
     }
 }
 

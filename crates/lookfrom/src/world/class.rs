@@ -20,11 +20,11 @@ pub(crate) enum Class {
 /// The ways in which a surface can be shaded in lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceClass {
-    /// That of hits which are shaded in lanes: where its material has a class of BSDFs, and it has no emission.
+    /// The class of its hits; `None` of materials without a class of BSDFs, and of emission.
     hits: Option<HitClass>,
-    /// Where it is bare.
+    /// The surface, if it is bare.
     bare: Option<BareSurface>,
-    /// Where it is on a triangle or sphere and an interface of media, and nothing else: whether it is a sphere.
+    /// True for spheres, false for triangles that are an interface of media and nothing else; `None` for all other surfaces.
     interface: Option<bool>,
 }
 

@@ -1,10 +1,8 @@
 //! Textures that are averaged over the footprint of pixels: their means are those of many samples, their noise is less, and near ones are as
 //! they were.
 
-use crate::same_bits::OneByOne;
+use crate::one_by_one::{assert_same_film, lit_as_one_by_one, whitted};
 use crate::support::{Compiled, scene};
-use lookfrom::integrator::{LightSampling, PathTracer, RayTree, Whitted};
-use lookfrom::render::SampleId;
 use lookfrom_scene::Scene;
 use lookfrom_scene::image::Image;
 use lookfrom_scene::scene::ImageId;
@@ -172,29 +170,11 @@ fn eight_at_once_are_eight_one_by_one() {
             scene.render.depth = 3;
             scene.render.color = color;
             (scene.image.layers, scene.image.denoise) = (Layers::Geometry, true);
-            let tracer = PathTracer {
-                depth: 3,
-                regularize: false,
-                thin_passages_count: true,
-                light_sampling: LightSampling::MultipleImportance,
-            };
-            let in_lanes = Compiled::new(scene.clone()).renderer();
-            let alone = in_lanes.clone().with_integrator(OneByOne(tracer));
-            let [a, b] = [in_lanes, alone].map(|renderer| renderer.render(Some(1), &()).unwrap().film);
-            assert!(a == b, "paths, {kind:?} {color:?}");
+            assert_same_film(scene.clone(), &format!("{kind:?} {color:?}"));
 
             scene.render.integrator = Integrator::Whitted;
-            let tree = Some(RayTree { depth: 3, min_contribution: 0.0 });
-            let whitted = Whitted { tree, transparent_shadows: true };
             scene.render.min_contribution = 0.0;
-            let in_lanes = Compiled::new(scene).renderer();
-            let alone = in_lanes.clone().with_integrator(OneByOne(whitted));
-            let pixels = (0..48).flat_map(|y| (0..64).map(move |x| [x, y]));
-            let ids: Vec<SampleId> = pixels.map(|pixel| SampleId { pixel, sample: 1 }).collect();
-            let ((a, _), (b, _)) = (in_lanes.trace(&ids), alone.trace(&ids));
-            for ((a, b), id) in a.iter().zip(&b).zip(&ids) {
-                assert_eq!(a.radiance, b.radiance, "Whitted, {kind:?} {color:?} {id:?}");
-            }
+            lit_as_one_by_one(scene, whitted, &format!("{kind:?} {color:?}"));
         }
     }
 }

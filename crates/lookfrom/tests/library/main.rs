@@ -33,6 +33,7 @@ mod light_paths;
 mod media;
 mod motion;
 mod nested;
+mod one_by_one;
 mod openpbr;
 mod own_integrator;
 mod panes;

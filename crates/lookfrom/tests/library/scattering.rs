@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use crate::support::Compiled;
+use crate::support::{self, Compiled};
 use lookfrom::inspect::inspect;
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::{ColorMode, Integrator};
@@ -255,7 +255,7 @@ fn pictures_of_fog_have_the_same_bits_for_any_number_of_threads() {
 
 /// Fog that fills all space under a sky of radiance 1, over a black ball out of sight or without any shape.
 fn under_a_sky(medium: &str, shape: &str, integrator: Integrator) -> Scene {
-    let text = format!(
+    let mut scene = support::scene(&format!(
         r#"
         camera = {{ lookfrom = [0, 0, 6], lookat = [0, 0, 0], fov = 1, medium = "fog" }}
         light = [{{ type = "environment", color = 1 }}]
@@ -274,11 +274,7 @@ fn under_a_sky(medium: &str, shape: &str, integrator: Integrator) -> Scene {
         [media.fog]
         {medium}
         "#
-    );
-    let name = PathBuf::from("a.toml");
-    let files = Memory([(name.clone(), text.into_bytes())].into());
-    let mut context = LoadContext::new(&files);
-    let mut scene = load::scene(Path::new(&name), &mut context).unwrap_or_else(|error| panic!("{error}"));
+    ));
     scene.render.integrator = integrator;
     scene
 }
