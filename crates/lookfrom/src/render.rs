@@ -211,11 +211,21 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn with_view(&self, view: View) -> Result<Self> {
-        let other = Self::new(self.world.clone(), view, self.settings.clone())?;
-        Ok(match self.is_plugged_in {
+        // A guide does not depend on how a picture is developed, nor on the part of it that is rendered.
+        if view.starts_rays_as(&self.view) {
+            Self::check(&view, &self.settings)?;
+            let other = Self::without_guide(self.world.clone(), view, self.settings.clone())?;
+            return Ok(self.with_same_integrator(other));
+        }
+        self.with_world(self.world.clone(), view)
+    }
+
+    /// Another renderer with the custom integrator of this one, if it has one.
+    fn with_same_integrator(&self, other: Self) -> Self {
+        match self.is_plugged_in {
             true => Self { integrator: self.integrator.clone(), is_plugged_in: true, ..other },
             false => other,
-        })
+        }
     }
 
     /// A renderer with these settings of another world, or the same one with other lights, and a view of it.
@@ -223,7 +233,7 @@ impl Renderer {
     /// # Errors
     /// As [`Renderer::new`].
     pub fn with_world(&self, world: Arc<World>, view: View) -> Result<Self> {
-        Self { world, ..self.clone() }.with_view(view)
+        Ok(self.with_same_integrator(Self::new(world, view, self.settings.clone())?))
     }
 
     /// A renderer of this view and world with other settings, and the integrator that they name.

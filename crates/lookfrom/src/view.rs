@@ -47,6 +47,11 @@ impl View {
         &self.camera
     }
 
+    /// Whether its samples start with the same rays, in the same medium, as those of another view.
+    pub(crate) fn starts_rays_as(&self, other: &Self) -> bool {
+        (&self.camera, self.medium, self.image.filter) == (&other.camera, other.medium, other.image.filter)
+    }
+
     /// Size, crop, filter, background and development of the picture.
     pub fn image(&self) -> &ImageSettings {
         &self.image

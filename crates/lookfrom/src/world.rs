@@ -101,8 +101,8 @@ pub struct World {
     pub(crate) transmissive: bool,
     /// Whether any surface is a pane ([`Material::is_pane`]).
     pub(crate) has_panes: bool,
-    /// Whether rays may pass any surface as if it were not there: alpha, medium interfaces, open fronts, hidden lights.
-    pub(crate) has_gaps: bool,
+    /// Whether rays from any direction may pass any surface as if it were not there: alpha, medium interfaces, hidden lights.
+    pub(crate) has_holes: bool,
     /// Whether the camera sees no shapes that emit light
     /// ([`RenderSettings::hide_lights`](lookfrom_scene::settings::RenderSettings::hide_lights)).
     pub(crate) hides_lights: bool,

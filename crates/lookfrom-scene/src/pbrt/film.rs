@@ -19,10 +19,17 @@ impl Reader<'_, '_> {
         let shutter = match camera {
             Some(camera) => {
                 let parameters = &camera.parameters;
-                let (open, close) =
+                let (mut open, mut close) =
                     (parameters.float("shutteropen", 0.0)?, parameters.float("shutterclose", 1.0)?);
+                if close < open {
+                    let message =
+                        format!("the shutter closes at {close}, before it opens at {open}: swapped");
+                    self.context.warn(&parameters.place.location(), message);
+                    (open, close) = (close, open);
+                }
                 if !(close > open) {
-                    return Err(parameters.refuse("shutterclose", "a time after that of \"shutteropen\""));
+                    let expected = "a time after that of \"shutteropen\" (nothing is exposed while the shutter is closed)";
+                    return Err(parameters.refuse("shutterclose", expected));
                 }
                 self.shutter = [open, close];
                 close - open

@@ -152,6 +152,9 @@ fn films_have_sensors() {
     let sensor = scene.image.sensor;
     assert_eq!(sensor.camera, CameraSensor::named("nikon_d850"));
     assert_eq!((sensor.imaging_ratio, sensor.white_balance, sensor.max_component), (1.5, Some(5000.0), 10.0));
+    let swapped = "Camera \"perspective\" \"float shutteropen\" .75 \"float shutterclose\" .25 WorldBegin";
+    let (swapped, warnings) = read_files(&[("a.pbrt", swapped)]);
+    assert_eq!((swapped.image.sensor.imaging_ratio, warnings.len()), (0.5, 1), "as by pbrt: {warnings:?}");
     let observer = read("Film \"rgb\" \"string sensor\" \"cie1931\" WorldBegin").image.sensor;
     assert_eq!(observer, read("WorldBegin").image.sensor);
 }

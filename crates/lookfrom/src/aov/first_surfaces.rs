@@ -167,7 +167,7 @@ impl FirstSurfaces {
         (ray, time): (Ray, f32),
     ) -> Option<Aovs> {
         let outermost = RayHit { ray, hit: self.outermost[slot] };
-        let is_blended = world.has_gaps || space.in_media.is_some();
+        let is_blended = world.has_gaps() || space.in_media.is_some();
         let blended = if is_blended { space.blended_aovs(world, outermost, time) } else { None };
         blended.or_else(|| {
             let RayHit { ray, hit } = self.seen(slot, ray);

@@ -12,6 +12,7 @@ use lookfrom_scene::{Error, Location, Result};
 use regex_automata::Anchored;
 use regex_automata::MatchKind;
 use regex_automata::dfa::{Automaton, StartKind, dense};
+use regex_automata::nfa::thompson;
 use regex_automata::util::primitives::StateID;
 use regex_automata::util::syntax;
 
@@ -107,6 +108,7 @@ impl LightPaths {
                     .determinize_size_limit(Some(LARGEST)),
             )
             .syntax(syntax::Config::new().unicode(false).utf8(false))
+            .thompson(thompson::Config::new().nfa_size_limit(Some(LARGEST)))
             .build_many(&patterns)
             .map_err(too_large)?;
         let start = automaton.universal_start_state(Anchored::Yes).unwrap_or_default();

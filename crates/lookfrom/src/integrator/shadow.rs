@@ -150,7 +150,7 @@ impl ShadowTransparency {
 
     /// Whether any surface of a world may let shadow rays pass.
     fn lets_any_pass(self, world: &World) -> bool {
-        world.has_gaps
+        world.has_gaps()
             || match self {
                 Self::AlphaTested => false,
                 Self::Panes => world.has_panes,

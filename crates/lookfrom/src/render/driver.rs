@@ -190,7 +190,7 @@ impl Work<'_> {
         Ok((samples, StopReason::Samples))
     }
 
-    /// Adds the samples to every pixel that lacks them and is not clean.
+    /// Adds the samples to every pixel that lacks them.
     fn pass(&self, samples: Range<u32>) -> Result<Pass> {
         // Pictures of a tile come in the order of its samples.
         let threads = if self.progress.wants_pixels() { 1 } else { parallel::threads() };

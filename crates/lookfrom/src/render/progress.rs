@@ -14,8 +14,8 @@ pub struct StopCriteria {
     /// Stop after the pass over the picture that reaches this time. At least one sample of each pixel is taken. Never
     /// reached on wasm32-unknown-unknown, where nobody gave a clock ([`crate::core::clock`]).
     pub time: Option<Duration>,
-    /// Give no more samples to a tile whose [relative error](Film::relative_error) is at most this, and stop when no
-    /// other tile is left. Not with samples that are allocated adaptively.
+    /// Stop when the picture's [relative error](Film::relative_error) is at most this: rounds of samples go to the pixels
+    /// that lower it most. Not with samples that are allocated adaptively.
     pub noise: Option<f64>,
 }
 
@@ -27,7 +27,7 @@ pub enum StopReason {
     Samples,
     /// The time limit was reached.
     Time,
-    /// Every tile was clean enough.
+    /// The picture's error was low enough.
     Noise,
     /// It was cancelled.
     Cancelled,

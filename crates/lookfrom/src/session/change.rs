@@ -54,6 +54,12 @@ impl Session {
         if options.threads.is_some() {
             changed.threads = options.threads;
         }
+        if options.format.is_some() {
+            changed.format = options.format;
+        }
+        if !changed.has_room_for_layers() {
+            image = image.without_layers();
+        }
         changed.set_settings(settings)?;
         changed.set_image(image)?;
         if let Some(degrees) = options.turn {
@@ -147,6 +153,8 @@ impl Options {
             &self.import;
         let asked = [
             ("film", self.film),
+            ("keep_scene", self.keep_scene),
+            ("framed", self.framed.is_some()),
             ("light_sampler", self.light_sampler.is_some()),
             ("view", self.view.is_some()),
             ("azimuth", self.azimuth.is_some()),

@@ -113,7 +113,7 @@ pub(super) fn light_path_of(name: &str) -> Option<&str> {
 /// The name of the text with the name of the scene's file.
 pub(super) const SCENE: &str = "scene";
 
-/// The name of the text with the relative error at which a tile gets no more samples.
+/// The name of the text with the relative error at which the picture gets no more samples.
 pub(super) const NOISE: &str = "noise";
 
 /// The name of the text of adaptive allocation.

@@ -219,13 +219,18 @@ impl Options {
     /// The samples to take, of a picture with these settings.
     ///
     /// # Errors
-    /// `Request` where there are none, and for a part of an adaptive picture.
+    /// `Request` where there are none, for a part that is none of 1 to the number of parts, and for a part of an adaptive picture.
     pub(super) fn range(
         &self,
         &RenderSettings { samples, allocation, .. }: &RenderSettings,
     ) -> Result<Range<u32>> {
         let all = self.first_sample..samples;
         let [part, parts] = self.part.map(|part| part.map(u64::from)).unwrap_or([1, 1]);
+        if !(1..=parts).contains(&part) {
+            return Err(unsuitable(format!(
+                "part {part} of {parts}; expected a part from 1 to the number of parts"
+            )));
+        }
         let length = u64::from(all.end.saturating_sub(all.start));
         let edge = |part: u64| all.start + (length * part / parts) as u32;
         let range = edge(part - 1)..edge(part);
@@ -397,6 +402,9 @@ mod tests {
         }
         let none = Options { part: Some([2, 6]), ..Options::default() };
         assert!(none.range(&of(5)).is_ok() && Options { part: Some([1, 6]), ..none }.range(&of(5)).is_err());
+        for part in [[0, 0], [0, 3], [1, 0], [3, 2]] {
+            assert!(Options { part: Some(part), ..Options::default() }.range(&of(5)).is_err(), "{part:?}");
+        }
         assert!(Options { first_sample: 5, ..Options::default() }.range(&of(5)).is_err());
         let stop = StopCriteria { noise: Some(0.1), ..StopCriteria::default() };
         assert!(Options { first_sample: 1, stop, ..Options::default() }.range(&of(5)).is_err());

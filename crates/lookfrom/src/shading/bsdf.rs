@@ -44,26 +44,16 @@ use crate::core::vector::Vector;
 use conductor::Conductor;
 use dielectric::Dielectric;
 use diffuse::{Diffuse, DiffuseTransmission};
-use lanes::ClassTraits;
+use lanes::{ClassTraits, LaneBsdf};
 use layered::{CoatLayer, Layered};
 use lobes::Lobes;
 use microfacet::Microfacets;
 use thin_dielectric::ThinDielectric;
 
 pub use class::{Bsdf, BsdfClass, Description, Parameter, ScatteringFunction};
-pub(crate) use class::{Variant, bsdf_classes};
+pub(crate) use class::{Variant, bsdf_classes, types};
 pub use factors::MicrofacetFactors;
 pub(crate) use one::Uniform;
-
-/// The transported quantity: radiance on paths from the camera, importance on paths from lights (Veach 1997). Only
-/// refraction depends on it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// Paths that start at the camera.
-    Radiance,
-    /// Paths that start at lights.
-    Importance,
-}
 
 /// A direction sampled by [`Bsdf::sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,24 +72,6 @@ pub struct BsdfSample {
     pub eta: f32,
     /// True if only the ratio `f / pdf` is meaningful. The density for MIS is then [`Bsdf::pdf`].
     pub pdf_is_proportional: bool,
-}
-
-impl BsdfSample {
-    #[inline]
-    fn new(wi: Vec3, f: Spectrum, pdf: f32, lobe: Lobes) -> Self {
-        Self { wi, f, pdf, lobe, eta: 1.0, pdf_is_proportional: false }
-    }
-
-    /// The sample if it carries light and all its values are finite.
-    #[inline]
-    fn if_useful(self) -> Option<Self> {
-        let is_useful = self.pdf > 0.0
-            && self.pdf < f32::INFINITY
-            && !is_grazing(self.wi)
-            && !self.f.is_black()
-            && self.f.0.into_iter().all(f32::is_finite);
-        is_useful.then_some(self)
-    }
 }
 
 /// A direction chosen by a BSDF of any width: what [`BsdfSample`] is for one.
@@ -245,30 +217,20 @@ impl Bsdf {
 
     /// The BSDF: the fraction of light from `wi` that leaves along `wo`, per solid angle and without the cosine of
     /// `wi`. Black for specular lobes and grazing directions.
-    #[inline]
-    pub fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.class().f(wo, wi, mode)
+    pub fn f(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        LaneBsdf::f(self, &self.prepare(wo.into()), wi.into())
     }
 
-    /// Density over solid angle with which [`Self::sample`] chooses `wi`, given the same `lobes`. Specular lobes
-    /// contribute 0; layered surfaces return an estimate.
-    #[inline]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
-        if !self.lobes().intersects(sides(lobes)) {
-            return 0.0;
-        }
-        self.class().pdf(wo, wi, mode, lobes)
+    /// Density over solid angle with which [`Self::sample`] chooses `wi`. Specular lobes contribute 0; layered surfaces return
+    /// an estimate.
+    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        LaneBsdf::pdf(self, &self.prepare(wo.into()), wi.into())
     }
 
-    /// Samples a direction with a density about proportional to `f |cos θ_i|`, by three numbers in [0, 1). `lobes`
-    /// restricts the sides only (reflection, transmission). `None` where the sample would carry no light; otherwise
-    /// `pdf > 0` and all values are finite.
-    #[inline]
-    pub fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        if is_grazing(wo) || !self.lobes().intersects(sides(lobes)) {
-            return None;
-        }
-        self.class().sample(wo, uc, u, mode, lobes)?.if_useful()
+    /// Samples a direction with a density about proportional to `f |cos θ_i|`, by three numbers in [0, 1). `None` where the
+    /// sample would carry no light; otherwise `pdf > 0` and all values are finite.
+    pub fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2]) -> Option<BsdfSample> {
+        LaneBsdf::sample(self, &self.prepare(wo.into()), uc, u).scalar(self.traits())
     }
 
     /// The set of lobes that it has.
@@ -293,12 +255,6 @@ impl Bsdf {
     pub fn description(&self) -> Description {
         self.class().description()
     }
-}
-
-/// The sides (reflection, transmission) in a set.
-#[inline]
-fn sides(lobes: Lobes) -> Lobes {
-    lobes.intersection(Lobes::REFLECTION | Lobes::TRANSMISSION)
 }
 
 #[cfg(test)]

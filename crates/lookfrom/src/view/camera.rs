@@ -29,7 +29,7 @@ use crate::core::warp;
 use crate::view::lens_system::{LeavingRay, LensSystem};
 
 /// The camera as matrices.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Translates by `(−nx/2, −ny/2, d)`; for an off-centre screen window by the pixel that is on the axis.
     pub t1: DMat4,

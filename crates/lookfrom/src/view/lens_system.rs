@@ -23,7 +23,7 @@ use focus::ThickLens;
 use pupil::{ExitPupil, INTERVALS};
 
 /// A lens system that is focused, with the bounds of its exit pupil.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LensSystem {
     /// From the film to the front.
     surfaces: Vec<Surface>,
@@ -47,7 +47,7 @@ pub struct LensSystem {
 }
 
 /// A surface, in lens space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Surface {
     /// z of its vertex.
     vertex: f64,

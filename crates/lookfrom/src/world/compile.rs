@@ -161,7 +161,7 @@ impl World {
             instances,
             transmissive: is_any_in_use(|material| !material.whitted.transmission.is_gray(0.0)),
             has_panes: is_any_in_use(Material::is_pane),
-            has_gaps: !alphas.is_empty()
+            has_holes: !alphas.is_empty()
                 || has_media
                     && materials.iter().any(|material| matches!(material.kind, MaterialKind::Interface))
                 || hides_lights,
@@ -186,7 +186,6 @@ impl World {
         };
         world.catcher_irradiance = world.unoccluded_irradiance();
         world.has_open_fronts = open_fronts && world.faces_inward();
-        world.has_gaps |= world.has_open_fronts;
         world.classify();
         Ok(world)
     }

@@ -67,6 +67,11 @@ impl World {
         backs > MOSTLY * seen
     }
 
+    /// Whether rays may pass any surface as if it were not there.
+    pub(crate) fn has_gaps(&self) -> bool {
+        self.has_holes || self.has_open_fronts
+    }
+
     /// This world, in which all surfaces are seen from both sides.
     pub(crate) fn with_both_sides(&self) -> Self {
         let mut world = self.clone();

@@ -186,6 +186,7 @@ fn options_change_the_picture_and_the_camera() {
             ..Options::default()
         },
         Options { turn: Some(30.0), ..Options::default() },
+        Options { keep_scene: true, ..Options::default() },
     ] {
         let error = session.change(&options).expect_err("it does not suit");
         assert_eq!(error.kind, ErrorKind::Request, "{error}");

@@ -1,6 +1,9 @@
 //! A room with a window: the sky lights it as before when the window is named as its portal, and with less noise.
 
+use std::sync::Arc;
+
 use lookfrom::session::{Options, Session};
+use lookfrom_scene::settings::ImageSettings;
 
 use crate::support::{Compiled, scene};
 
@@ -15,6 +18,11 @@ fn room(integrator: &str, color: &str, sky: &str, portal: bool) -> [f64; 3] {
 
 /// That room, with portals as named or found.
 fn compiled(integrator: &str, color: &str, sky: &str, portal: bool, portals: &str) -> Compiled {
+    Compiled::new(scene(&text(integrator, color, sky, portal, portals)))
+}
+
+/// The file of that room.
+fn text(integrator: &str, color: &str, sky: &str, portal: bool, portals: &str) -> String {
     let portal = if portal {
         "portal = [[-0.5, -0.5, -2], [0.5, -0.5, -2], [0.5, 0.5, -2], [-0.5, 0.5, -2]]"
     } else {
@@ -36,7 +44,7 @@ fn compiled(integrator: &str, color: &str, sky: &str, portal: bool, portals: &st
         quad([-0.5, -2.0, -2.0], [1.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
         quad([-0.5, 0.5, -2.0], [1.0, 0.0, 0.0], [0.0, 1.5, 0.0]),
     ];
-    let text = format!(
+    format!(
         r#"
 [image]
 width = 12
@@ -61,8 +69,7 @@ type = "environment"
 {portal}
 "#,
         walls.concat()
-    );
-    Compiled::new(scene(&text))
+    )
 }
 
 /// A window that is found lets in as much light as one that is not, and there is less noise, with the same bits for any number
@@ -86,6 +93,19 @@ fn a_window_is_found() {
     let z = (named - found) / ((noise + noise_of_found) / 144.0).sqrt();
     assert!(z.abs() < 4.0, "{named} {found}, {z} standard deviations");
     assert!(noise_of_found < 0.5 * noise, "{noise_of_found}, not far below {noise}");
+}
+
+/// How a picture is developed has nothing to do with what was learned; its size has.
+#[test]
+fn what_is_developed_otherwise_is_not_learned_again() {
+    let text = text("path", "rgb", "zenith = [1, 2, 6]\nhorizon = [3, 3, 3]", false, "auto");
+    let mut session = Session::of_scene(scene(&text), &Options::default()).expect("a scene");
+    let learned = session.world().clone();
+    let developed = ImageSettings { exposure: 1.0, denoise: true, ..session.image().clone() };
+    session.set_image(developed.clone()).expect("an image");
+    assert!(Arc::ptr_eq(&learned, session.world()));
+    session.set_image(ImageSettings { width: 13, ..developed }).expect("an image");
+    assert!(!Arc::ptr_eq(&learned, session.world()));
 }
 
 /// A guide that is given up: a notice, and the bits of the picture without one.

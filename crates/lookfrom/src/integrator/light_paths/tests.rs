@@ -185,6 +185,8 @@ fn faults_say_what_was_expected_and_where() {
     assert!(error(&deep).contains("more than 50 parentheses"), "{}", error(&deep));
     let huge = format!("C{}L", "(.{50}D|.{60}S){80}".repeat(9));
     assert!(error(&huge).contains("too many states"), "{}", error(&huge));
+    let nested = format!("C{}.{}L", "(".repeat(40), "){100}".repeat(40));
+    assert!(error(&nested).contains("too many states"), "{}", error(&nested));
 }
 
 #[test]

@@ -2,48 +2,42 @@
 
 use glam::Vec3;
 
-use super::conductor::Conductor;
-use super::dielectric::Dielectric;
-use super::diffuse::{Diffuse, DiffuseTransmission};
-use super::disney::Disney;
-use super::hair::Hair;
-use super::layered::Layered;
+use super::lanes::{ClassTraits, LaneBsdf};
 use super::lobes::Lobes;
-use super::measured::Measured;
-use super::normalized_fresnel::NormalizedFresnel;
-use super::open_pbr::OpenPbrSurface;
-use super::plastic::Plastic;
-use super::principled::Principled;
-use super::subsurface::Subsurface;
-use super::thin_dielectric::ThinDielectric;
-use super::tinted::TintedDielectric;
-use super::whitted::WhittedCoefficients;
-use super::{BsdfSample, MicrofacetFactors, Mode};
+use super::one::{PreparedBsdf, scattering_functions};
+use super::{DirectionSample, MicrofacetFactors, is_grazing};
 use crate::core::spectrum::Spectrum;
+use crate::core::vector::Vector;
 
-/// A scattering function of one class, one at a time. Directions are those of [`Bsdf`].
+/// The types in the table's rows.
+pub(crate) mod types {
+    pub(crate) use super::super::conductor::Conductor;
+    pub(crate) use super::super::dielectric::Dielectric;
+    pub(crate) use super::super::diffuse::{Diffuse, DiffuseTransmission};
+    pub(crate) use super::super::disney::Disney;
+    pub(crate) use super::super::hair::Hair;
+    pub(crate) use super::super::layered::Layered;
+    pub(crate) use super::super::measured::Measured;
+    pub(crate) use super::super::normalized_fresnel::NormalizedFresnel;
+    pub(crate) use super::super::open_pbr::OpenPbrSurface;
+    pub(crate) use super::super::plastic::Plastic;
+    pub(crate) use super::super::principled::Principled;
+    pub(crate) use super::super::subsurface::Subsurface;
+    pub(crate) use super::super::thin_dielectric::ThinDielectric;
+    pub(crate) use super::super::tinted::TintedDielectric;
+    pub(crate) use super::super::whitted::WhittedCoefficients;
+}
+
+use types::*;
+
+/// A scattering function of one class, as the integrators and the inspector know it besides its values
+/// ([`LaneBsdf`](super::lanes::LaneBsdf)). Directions are those of [`Bsdf`].
 pub trait ScatteringFunction {
-    /// The fraction of light from `wi` that leaves along `wo`, per solid angle and without the cosine of `wi`: black for
-    /// specular lobes and grazing directions.
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum;
-
-    /// The density over solid angle with which [`Self::sample`] chooses `wi`, without specular lobes.
-    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32;
-
-    /// A direction, by three numbers in [0, 1), from the sides of `lobes`; `wo` is not grazing.
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample>;
-
     /// The set of lobes that it has.
     fn lobes(&self) -> Lobes;
 
     /// Increases the roughness of nearly specular lobes, for the later bounces of a path.
     fn regularize(&mut self) {}
-
-    /// The share of diffuse lobes in the value `f` for light from `wi`, 0 … 1 by lane: see
-    /// [`LaneBsdf::diffuse_share`](super::lanes::LaneBsdf::diffuse_share).
-    fn diffuse_share(&self, _wo: Vec3, _wi: Vec3, _f: Spectrum) -> Spectrum {
-        Spectrum::BLACK
-    }
 
     /// The factors of its microfacets for light from `wi` to `wo`; `is_specular` asks for those of a direction that was
     /// sampled from a smooth boundary.
@@ -149,49 +143,6 @@ macro_rules! bsdf_classes {
 }
 
 pub(crate) use bsdf_classes;
-
-/// An enum of the classes in a table.
-macro_rules! scattering_functions {
-    (
-        $(#[$meta:meta])* $name:ident
-        lanes { $($(#[$lane_doc:meta])* $lane:ident($lane_type:ty $(| $_whole:ident.$_part:ident)?),)* }
-        wholes { $($(#[$whole_doc:meta])* $whole:ident($whole_type:ty),)* }
-        one_by_one { $($(#[$doc:meta])* $one:ident($type:ty),)* }
-    ) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        #[non_exhaustive]
-        pub enum $name {
-            $($(#[$lane_doc])* $lane($lane_type),)*
-            $($(#[$whole_doc])* $whole($whole_type),)*
-            $($(#[$doc])* $one($type),)*
-        }
-
-        impl $name {
-            /// The scattering function.
-            #[inline]
-            pub(crate) fn class(&self) -> &dyn ScatteringFunction {
-                match self {
-                    $(Self::$lane(bsdf) => bsdf,)*
-                    $(Self::$whole(bsdf) => bsdf,)*
-                    $(Self::$one(bsdf) => bsdf,)*
-                }
-            }
-
-            #[inline]
-            pub(crate) fn class_mut(&mut self) -> &mut dyn ScatteringFunction {
-                match self {
-                    $(Self::$lane(bsdf) => bsdf,)*
-                    $(Self::$whole(bsdf) => bsdf,)*
-                    $(Self::$one(bsdf) => bsdf,)*
-                }
-            }
-        }
-    };
-}
-
-#[cfg(test)]
-pub(crate) use scattering_functions;
 
 bsdf_classes! {
     scattering_functions

@@ -14,8 +14,7 @@ use lookfrom_simd::{Float, Mask, Real};
 use super::albedo;
 use super::microfacet::Microfacets;
 use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
-    is_grazing,
+    Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, fresnel, is_grazing,
     lanes::{ClassTraits, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
@@ -89,18 +88,6 @@ impl Conductor {
 }
 
 impl ScatteringFunction for Conductor {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        LaneBsdf::f(self, &wo.into(), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        LaneBsdf::pdf(self, &wo.into(), wi.into())
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | if self.roughness.is_smooth() { Lobes::SPECULAR } else { Lobes::GLOSSY }
     }

@@ -10,11 +10,9 @@ use glam::Vec3;
 use lookfrom_scene::material::Energy;
 use lookfrom_simd::{Float, Mask, Real};
 
-use super::lanes::LaneBsdf;
 use super::microfacet::Microfacets;
 use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, across,
-    fresnel, is_grazing,
+    Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, across, fresnel, is_grazing,
 };
 use crate::core::optics;
 use crate::core::spectrum::Spectrum;
@@ -60,18 +58,6 @@ impl Dielectric {
 }
 
 impl ScatteringFunction for Dielectric {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.f(wo.into(), wi.into(), mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        self.pdf(wo.into(), wi.into(), lobes)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sample(wo.into(), uc, u, mode, lobes).scalar(self.traits())
-    }
-
     /// With equal indices nothing is reflected or refracted.
     fn lobes(&self) -> Lobes {
         let sides =
@@ -349,6 +335,16 @@ pub(super) fn refraction_jacobian<R: Real>(wo: Vector<R>, wi: Vector<R>, wm: Vec
     let squared = sum * sum;
     let jacobian = Float::min(Float::abs(wi.dot(wm)) / squared, eta.like(f32::MAX));
     R::select(squared.gt(zero), jacobian, zero)
+}
+
+/// The transported quantity: radiance on paths from the camera, importance on paths from lights, and from below through a coat
+/// (Veach 1997). Only refraction depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// Paths that start at the camera.
+    Radiance,
+    /// Paths that start at lights.
+    Importance,
 }
 
 /// Radiance is scaled by 1/η² on refraction.

@@ -4,11 +4,10 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::{
-    BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, is_grazing,
+    Description, DirectionSample, Lobes, ScatteringFunction, is_grazing,
     lanes::{ClassTraits, LaneBsdf},
     layered::{Base, DiffuseInterior},
     same_side,
@@ -32,24 +31,8 @@ impl Diffuse {
 }
 
 impl ScatteringFunction for Diffuse {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        LaneBsdf::f(self, &wo.into(), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        LaneBsdf::pdf(self, &wo.into(), wi.into())
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        LaneBsdf::sample(self, &wo.into(), uc, u).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         if self.reflectance.is_black() { Lobes::NONE } else { Lobes::REFLECTION | Lobes::DIFFUSE }
-    }
-
-    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
-        Spectrum([1.0; 4])
     }
 
     fn description(&self) -> Description {
@@ -164,10 +147,10 @@ impl DiffuseTransmission {
 }
 
 impl<R: Real> DiffuseTransmission<R> {
-    /// The probability of reflection, and whether an allowed side carries light.
+    /// The probability of reflection, and whether either side carries light.
     #[inline(always)]
-    fn reflection_probability(&self, lobes: Lobes) -> (R, R::Mask) {
-        let [r, t] = lobes.allowed([self.reflectance.max_lane(), self.transmittance.max_lane()]);
+    fn reflection_probability(&self) -> (R, R::Mask) {
+        let (r, t) = (self.reflectance.max_lane(), self.transmittance.max_lane());
         let (sum, zero) = (r + t, r.like(0.0));
         (R::select(sum.gt(zero), r / sum, zero), sum.gt(zero))
     }
@@ -180,8 +163,8 @@ impl<R: Real> DiffuseTransmission<R> {
     }
 
     #[inline(always)]
-    fn density(&self, wo: Vector<R>, wi: Vector<R>, lobes: Lobes) -> R {
-        let (reflection, is_lit) = self.reflection_probability(lobes);
+    fn density(&self, wo: Vector<R>, wi: Vector<R>) -> R {
+        let (reflection, is_lit) = self.reflection_probability();
         let is_lit = is_lit & !is_grazing(wo) & !is_grazing(wi);
         let probability = R::select(same_side(wo, wi), reflection, wo.z.like(1.0) - reflection);
         R::select(is_lit, probability * warp::cosine_hemisphere_pdf(Float::abs(wi.z)), wo.z.like(0.0))
@@ -189,9 +172,9 @@ impl<R: Real> DiffuseTransmission<R> {
 
     /// As [`super::Bsdf::sample`].
     #[inline(always)]
-    fn sampled(&self, wo: Vector<R>, uc: R, u: [R; 2], lobes: Lobes) -> DirectionSample<R> {
+    fn sampled(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         let one = uc.like(1.0);
-        let (reflection, is_valid) = self.reflection_probability(lobes);
+        let (reflection, is_valid) = self.reflection_probability();
         let is_transmission = !uc.lt(reflection);
         let wi = cosine_direction(u, R::select(is_transmission, -wo.z, wo.z));
         let probability = R::select(is_transmission, one - reflection, reflection);
@@ -224,12 +207,12 @@ impl<R: Real> LaneBsdf<R> for DiffuseTransmission<R> {
 
     #[inline(always)]
     fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
-        self.density(wo, wi, Lobes::ALL)
+        self.density(wo, wi)
     }
 
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        self.sampled(wo, uc, u, Lobes::ALL)
+        self.sampled(wo, uc, u)
     }
 
     #[inline(always)]
@@ -244,18 +227,6 @@ impl<R: Real> LaneBsdf<R> for DiffuseTransmission<R> {
 }
 
 impl ScatteringFunction for DiffuseTransmission {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        self.value(wo.into(), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        self.density(wo.into(), wi.into(), lobes)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sampled(wo.into(), uc, u, lobes).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         let mut lobes = Lobes::NONE;
         if !self.reflectance.is_black() {
@@ -265,10 +236,6 @@ impl ScatteringFunction for DiffuseTransmission {
             lobes |= Lobes::TRANSMISSION | Lobes::DIFFUSE;
         }
         lobes
-    }
-
-    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
-        Spectrum([1.0; 4])
     }
 
     fn description(&self) -> Description {

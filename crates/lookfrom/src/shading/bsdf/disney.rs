@@ -18,9 +18,7 @@ use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 use super::diffuse::cosine_direction;
 use super::lanes::{LaneBsdf, RowBsdf};
 use super::microfacet::TrowbridgeReitz;
-use super::{
-    BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, across, fresnel, is_grazing,
-};
+use super::{Description, DirectionSample, Lobes, ScatteringFunction, across, fresnel, is_grazing};
 use crate::core::elementary;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::optics;
@@ -135,28 +133,19 @@ impl<R: Real> Disney<R> {
         }
     }
 
-    /// The probabilities of the lobes on the sides that are asked for, for a facet with the reflectance `fresnel`. The sum of their weights
+    /// The probabilities of the lobes, for a facet with the reflectance `fresnel`. The sum of their weights
     /// does not depend on it, as those of other lobes must not: their directions have other facets.
     #[inline(always)]
-    fn choice(&self, seen: &SeenDisney<R>, fresnel: R, lobes: Lobes) -> Choice<R> {
+    fn choice(&self, seen: &SeenDisney<R>, fresnel: R) -> Choice<R> {
         let (zero, one) = (fresnel.like(0.0), fresnel.like(1.0));
         let passes = R::select(seen.is_inside, one, seen.glass);
         let refracted = passes * (one - fresnel);
-        let [reflection, transmission] = match (lobes.is_reflection(), lobes.is_transmission()) {
-            (true, true) => [one - refracted, refracted],
-            (true, false) => [one, zero],
-            (false, _) => [zero, passes],
-        };
         let half = seen.glass * 0.5;
         let matte = R::select(seen.is_inside, zero, seen.matte);
-        let coat = R::select(seen.is_inside, zero, self.clearcoat * 0.25);
-        let [reflection, transmission] = lobes.allowed([
-            R::select(self.is_thin, half, reflection),
-            R::select(self.is_thin, half, transmission),
-        ]);
-        let [diffuse, diffuse_transmission] =
-            lobes.allowed([matte * (one - self.diff_trans), matte * self.diff_trans]);
-        let [clearcoat, _] = lobes.allowed([coat, zero]);
+        let clearcoat = R::select(seen.is_inside, zero, self.clearcoat * 0.25);
+        let reflection = R::select(self.is_thin, half, one - refracted);
+        let transmission = R::select(self.is_thin, half, refracted);
+        let (diffuse, diffuse_transmission) = (matte * (one - self.diff_trans), matte * self.diff_trans);
         let sum = reflection + transmission + clearcoat + diffuse + diffuse_transmission;
         Choice {
             reflection: reflection / sum,
@@ -170,18 +159,11 @@ impl<R: Real> Disney<R> {
 
     /// As [`super::Bsdf::sample`].
     #[inline(always)]
-    fn sampled(
-        &self,
-        seen: &SeenDisney<R>,
-        uc: R,
-        u: [R; 2],
-        mode: Mode,
-        lobes: Lobes,
-    ) -> DirectionSample<R> {
+    fn sampled(&self, seen: &SeenDisney<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         let (wo, one) = (seen.wo, uc.like(1.0));
         let wm = seen.facets.sample(wo, u);
         let cos = wo.dot(wm);
-        let choice = self.choice(seen, fresnel::dielectric(cos, self.eta), lobes);
+        let choice = self.choice(seen, fresnel::dielectric(cos, self.eta));
 
         // Choose a lobe.
         let diffuse = choice.diffuse + choice.diffuse_transmission;
@@ -223,7 +205,7 @@ impl<R: Real> Disney<R> {
         exists = exists & is_transmission.choose(!is_same_side, is_same_side);
 
         let wi = wi.negate_where(seen.is_turned);
-        let scattered = self.scattered(seen, wi, mode, lobes);
+        let scattered = self.scattered(seen, wi);
         DirectionSample {
             wi,
             f: scattered.f,
@@ -258,23 +240,23 @@ impl<R: Real> LaneBsdf<R> for Disney<R> {
 
     #[inline(always)]
     fn f(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> Spectrum<R> {
-        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).f
+        self.scattered(seen, wi).f
     }
 
     #[inline(always)]
     fn pdf(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> R {
-        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).pdf
+        self.scattered(seen, wi).pdf
     }
 
     #[inline(always)]
     fn f_and_pdf(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> (Spectrum<R>, R) {
-        let scattered = self.scattered(seen, wi, Mode::Radiance, Lobes::ALL);
+        let scattered = self.scattered(seen, wi);
         (scattered.f, scattered.pdf)
     }
 
     #[inline(always)]
     fn sample(&self, seen: &SeenDisney<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        self.sampled(seen, uc, u, Mode::Radiance, Lobes::ALL)
+        self.sampled(seen, uc, u)
     }
 
     #[inline(always)]
@@ -284,23 +266,11 @@ impl<R: Real> LaneBsdf<R> for Disney<R> {
 
     #[inline(always)]
     fn diffuse_share(&self, seen: &SeenDisney<R>, wi: Vector<R>, f: Spectrum<R>) -> Spectrum<R> {
-        self.scattered(seen, wi, Mode::Radiance, Lobes::ALL).diffuse.share_of(f)
+        self.scattered(seen, wi).diffuse.share_of(f)
     }
 }
 
 impl ScatteringFunction for Disney {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.scattered(&self.seen_from(wo.into()), wi.into(), mode, Lobes::ALL).f
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
-        self.scattered(&self.seen_from(wo.into()), wi.into(), mode, lobes).pdf
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sampled(&self.seen_from(wo.into()), uc, u, mode, lobes).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         let seen = self.seen_from(Vec3::Z.into());
         let passes = seen.glass > 0.0 || self.diff_trans > 0.0;
@@ -312,10 +282,6 @@ impl ScatteringFunction for Disney {
         if self.roughness < 0.55 {
             self.roughness = (self.roughness * 1.42).clamp(0.32, 0.55);
         }
-    }
-
-    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        LaneBsdf::diffuse_share(self, &self.seen_from(wo.into()), wi.into(), f)
     }
 
     fn description(&self) -> Description {

@@ -9,11 +9,10 @@
 
 use std::f32::consts::{FRAC_1_PI, PI};
 
-use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::lanes::{LaneBsdf, RowBsdf};
-use super::{BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, fresnel, is_grazing};
+use super::{Description, DirectionSample, Lobes, ScatteringFunction, fresnel, is_grazing};
 use crate::core::elementary::{angle_in_turns, exp, ln, sin_cos_of_turns};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
@@ -104,11 +103,6 @@ impl Hair {
         let n = Float::clamp(beta_n, LEAST_ROUGHNESS, 1.0);
         ((((0.245 * n + 5.574) * n - 10.73) * n + 2.532) * n - 0.215) * n + 5.969
     }
-}
-
-/// The side of a direction: fibres scatter to both, whatever was asked for.
-fn side(is_transmission: bool) -> Lobes {
-    if is_transmission { Lobes::TRANSMISSION } else { Lobes::REFLECTION }
 }
 
 /// xⁿ by multiplications.
@@ -363,22 +357,6 @@ impl<R: Real> LaneBsdf<R> for Hair<R> {
 }
 
 impl ScatteringFunction for Hair {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        LaneBsdf::f(self, &self.prepare(wo.into()), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        match lobes.intersects(side(wo.z * wi.z < 0.0)) {
-            true => LaneBsdf::pdf(self, &self.prepare(wo.into()), wi.into()),
-            false => 0.0,
-        }
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let sample = LaneBsdf::sample(self, &self.prepare(wo.into()), uc, u).scalar(self.traits());
-        sample.filter(|sample| lobes.intersects(side(sample.lobe.is_transmission())))
-    }
-
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::GLOSSY
     }

@@ -3,7 +3,7 @@
 use lookfrom_simd::{Real, Simd, f32x8, prelude::*};
 
 use super::conductor::Conductor;
-use super::dielectric::Dielectric;
+use super::dielectric::{Dielectric, Mode};
 use super::diffuse::{Diffuse, DiffuseTransmission};
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::layered::{Base, DiffuseInterior, Layered};
@@ -12,7 +12,7 @@ use super::microfacet::{Microfacets, TrowbridgeReitz};
 use super::open_pbr::OpenPbrSurface;
 use super::principled::Principled;
 use super::principled::open_pbr::OpenPbr;
-use super::{DirectionSample, Mode, ScatteringFunction, Variant};
+use super::{DirectionSample, ScatteringFunction, Variant};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -114,15 +114,15 @@ impl<R: Real, B: Base<R>> LaneBsdf<R> for Layered<B, R> {
     }
     #[inline(always)]
     fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
-        self.f(wo, wi, Mode::Radiance)
+        self.f(wo, wi)
     }
     #[inline(always)]
     fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
-        self.pdf(wo, wi, Mode::Radiance)
+        self.pdf(wo, wi)
     }
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        self.sample(wo, uc, u, Mode::Radiance)
+        self.sample(wo, uc, u)
     }
     #[inline(always)]
     fn has_density(&self) -> R::Mask {

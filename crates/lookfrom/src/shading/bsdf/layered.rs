@@ -32,15 +32,13 @@ use lookfrom_scene::material::CoatEstimate;
 use lookfrom_simd::{Float, Mask, Real};
 
 use super::conductor::Conductor;
-use super::dielectric::Dielectric;
+use super::dielectric::{Dielectric, Mode};
 use super::diffuse::Diffuse;
 use super::fresnel;
 use super::henyey_greenstein::HenyeyGreenstein;
 use super::lanes::LaneBsdf;
 use super::microfacet::Microfacets;
-use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, is_grazing,
-};
+use super::{Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, is_grazing};
 use crate::core::elementary::exp;
 use crate::core::math::{both, power_heuristic};
 use crate::core::spectrum::Spectrum;
@@ -134,18 +132,6 @@ impl<B: Base<f32>> Layered<B> {
 }
 
 impl<B: Base<f32, Interior: Default> + ScatteringFunction> ScatteringFunction for Layered<B> {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.f(wo.into(), wi.into(), mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, _: Lobes) -> f32 {
-        self.pdf(wo.into(), wi.into(), mode)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
-        self.sample(wo.into(), uc, u, mode).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         let (coat, base) = (self.coat.lobes(), self.base.lobes());
         let mut lobes = Lobes::REFLECTION;
@@ -165,10 +151,6 @@ impl<B: Base<f32, Interior: Default> + ScatteringFunction> ScatteringFunction fo
         self.base.regularize();
         // It was that of a smoother coat.
         self.interior = B::Interior::default();
-    }
-
-    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        LaneBsdf::diffuse_share(self, &wo.into(), wi.into(), f)
     }
 
     /// A part of what is reflected is reflected by the coat; both sides scatter alike.
@@ -207,7 +189,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
 
     /// As [`super::Bsdf::f`].
     #[inline(always)]
-    pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+    pub(super) fn f(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let zero = wo.z.like(0.0);
         // Both sides scatter alike.
         let is_below = wo.z.lt(zero);
@@ -217,7 +199,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         if !is_lit.any() {
             return black;
         }
-        let mut sum = Spectrum::splat(coat_f(&self.coat, wo, wi, mode)) * self.samples;
+        let mut sum = Spectrum::splat(coat_f(&self.coat, wo, wi, Mode::Radiance)) * self.samples;
         let mut random = Random::new(Purpose::Value, self.seed, wo, [wi.x, wi.y, wi.z]);
         let mut taken = 0.0;
         loop {
@@ -232,9 +214,9 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             }
             sum += match self.base.lambertian(&self.interior) {
                 Some((reflectance, interior)) => {
-                    self.through((reflectance, interior), [wo, wi], mode, &mut random, active)
+                    self.through((reflectance, interior), [wo, wi], &mut random, active)
                 }
-                None => self.walk([wo, wi], mode, &mut random, active),
+                None => self.walk([wo, wi], &mut random, active),
             };
             taken += 1.0;
         }
@@ -247,7 +229,6 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         &self,
         (reflectance, interior): (Spectrum<R>, &DiffuseInterior<R>),
         [wo, wi]: [Vector<R>; 2],
-        mode: Mode,
         random: &mut Random<R>,
         active: R::Mask,
     ) -> Spectrum<R> {
@@ -270,11 +251,11 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         let active = active & !is_closed;
         let is_known = active & !is_unknown;
         if (active & is_unknown).any() {
-            let walked = self.walk([wo, wi], mode, random, active & is_unknown);
+            let walked = self.walk([wo, wi], random, active & is_unknown);
             sum = Spectrum::select(active & is_unknown, walked, sum);
         }
         if is_known.any() {
-            let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, is_known);
+            let [entry, exit] = self.entry_and_exit([wo, wi], random, is_known);
             let [entering, leaving] = both(
                 [entry, exit],
                 #[inline(always)]
@@ -295,30 +276,25 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
     fn entry_and_exit(
         &self,
         [wo, wi]: [Vector<R>; 2],
-        mode: Mode,
         random: &mut Random<R>,
         active: R::Mask,
     ) -> [DirectionSample<R>; 2] {
-        let adjoint = match mode {
-            Mode::Radiance => Mode::Importance,
-            Mode::Importance => Mode::Radiance,
-        };
         let u = (random.one(active), random.two(active));
-        let entry = sample_coat(&self.coat, wo, u.0, u.1, mode, Lobes::TRANSMISSION);
+        let entry = sample_coat(&self.coat, wo, u.0, u.1, Mode::Radiance, Lobes::TRANSMISSION);
         let enters = active & entry.is_valid;
         let u = (random.one(enters), random.two(enters));
-        let exit = sample_coat(&self.coat, wi, u.0, u.1, adjoint, Lobes::TRANSMISSION);
+        let exit = sample_coat(&self.coat, wi, u.0, u.1, Mode::Importance, Lobes::TRANSMISSION);
         let is_valid = exit.is_valid & enters;
         [entry, DirectionSample { is_valid, ..exit }]
     }
 
     /// As [`super::Bsdf::sample`]; only `f / pdf` means anything.
     #[inline(always)]
-    pub(super) fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
+    pub(super) fn sample(&self, wo: Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         let is_below = wo.z.lt(zero);
         let wo = wo.negate_where(is_below);
-        let first = sample_coat(&self.coat, wo, uc, u, mode, Lobes::ALL);
+        let first = sample_coat(&self.coat, wo, uc, u, Mode::Radiance, Lobes::ALL);
         let none = is_below.like(false);
         let mut result = DirectionSample {
             is_valid: first.is_valid & !first.is_transmission,
@@ -356,7 +332,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             }
             if step.at_coat.any() {
                 let u = (random.one(step.at_coat), random.two(step.at_coat));
-                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, mode, Lobes::ALL);
+                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, Mode::Radiance, Lobes::ALL);
                 Self::turn(&mut walk, step.at_coat, &sample);
                 is_specular = is_specular & (!step.at_coat | sample.is_specular);
                 let leaves = step.at_coat & walk.alive & sample.is_transmission;
@@ -379,15 +355,15 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
 
     /// As [`super::Bsdf::pdf`]. Not inlined, since it is needed twice.
     #[inline(never)]
-    pub(super) fn pdf(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
+    pub(super) fn pdf(&self, wo: Vector<R>, wi: Vector<R>) -> R {
         wo.x.at_level(
             #[inline(always)]
-            || self.density(wo, wi, mode),
+            || self.density(wo, wi),
         )
     }
 
     #[inline(always)]
-    fn density(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> R {
+    fn density(&self, wo: Vector<R>, wi: Vector<R>) -> R {
         const UNIFORM: f32 = 0.25 * FRAC_1_PI;
         let zero = wo.z.like(0.0);
         let is_below = wo.z.lt(zero);
@@ -419,23 +395,16 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 let estimate = R::select(reflects, sum / self.samples * 0.9 + 0.1 * UNIFORM, uniform);
                 return R::select(is_closed, closed, estimate);
             }
-            sum = sum + self.once_off_the_base(wo, wi, mode, &mut random, active);
+            sum = sum + self.once_off_the_base(wo, wi, &mut random, active);
             taken += 1.0;
         }
     }
 
     /// One estimate of the density of `wi` for light that enters, is reflected by the base once, and leaves.
     #[inline(always)]
-    fn once_off_the_base(
-        &self,
-        wo: Vector<R>,
-        wi: Vector<R>,
-        mode: Mode,
-        random: &mut Random<R>,
-        active: R::Mask,
-    ) -> R {
+    fn once_off_the_base(&self, wo: Vector<R>, wi: Vector<R>, random: &mut Random<R>, active: R::Mask) -> R {
         let zero = wo.z.like(0.0);
-        let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
+        let [entry, exit] = self.entry_and_exit([wo, wi], random, active);
         let passes = active & exit.is_valid;
         let reflecting = self.base.pdf(&-entry.wi, -exit.wi);
         let coat_is_specular = self.coat.is_specular();

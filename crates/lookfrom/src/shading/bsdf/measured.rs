@@ -11,13 +11,12 @@ mod tables;
 
 use std::f32::consts::{FRAC_2_PI, PI};
 
-use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 pub use self::tables::MeasuredTables;
 use self::tables::Values;
 use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
-use super::{BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, same_side};
+use super::{Description, DirectionSample, Lobes, ScatteringFunction, same_side};
 use crate::core::elementary::{angle_in_turns, sin_cos_of_turns};
 use crate::core::lanes::{LANES, by_lane, gather_four};
 use crate::core::spectrum::Spectrum;
@@ -273,18 +272,6 @@ impl<R: Real, T: AsRef<[&'static MeasuredTables]>> LaneBsdf<R> for Measured<R, T
 }
 
 impl ScatteringFunction for Measured {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        self.scattered(&self.seen_from(wo.into()), wi.into()).0
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        self.scattered(&self.seen_from(wo.into()), wi.into()).1
-    }
-
-    fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        self.sampled(&self.seen_from(wo.into()), u).scalar(LaneBsdf::traits(self))
-    }
-
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::GLOSSY
     }

@@ -6,13 +6,12 @@
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
 use lookfrom_simd::{Float, Real, Simd, f32x8, prelude::*};
 
 use super::diffuse::{cosine_direction, cosine_pdf, cosine_sample};
 use super::lanes::{ClassTraits, LaneBsdf, RowBsdf};
 use super::lobes::Lobes;
-use super::{BsdfSample, Description, DirectionSample, Mode, ScatteringFunction, fresnel, same_side};
+use super::{Description, DirectionSample, ScatteringFunction, fresnel, same_side};
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -38,41 +37,17 @@ impl NormalizedFresnel {
 
 impl<R: Real> NormalizedFresnel<R> {
     #[inline(always)]
-    fn value(&self, wo: Vector<R>, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+    fn value(&self, wo: Vector<R>, wi: Vector<R>) -> Spectrum<R> {
         let (zero, one) = (wi.z.like(0.0), wi.z.like(1.0));
         let transmitted = one - fresnel::dielectric(Float::abs(wi.z), self.eta);
-        let factor = if mode == Mode::Radiance { self.eta * self.eta } else { one };
-        let value = factor * transmitted / self.norm;
+        let value = self.eta * self.eta * transmitted / self.norm;
         Spectrum::splat(R::select(same_side(wo, wi) & self.norm.gt(zero), value, zero))
-    }
-
-    /// As [`super::Bsdf::sample`].
-    #[inline(always)]
-    fn sampled(&self, wo: Vector<R>, u: [R; 2], mode: Mode) -> DirectionSample<R> {
-        let wi = cosine_direction(u, wo.z);
-        cosine_sample(wo, wi, self.value(wo, wi, mode))
     }
 }
 
 impl ScatteringFunction for NormalizedFresnel {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.value(wo.into(), wi.into(), mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        cosine_pdf(wo.into(), wi.into())
-    }
-
-    fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
-        self.sampled(wo.into(), u, mode).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::DIFFUSE
-    }
-
-    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
-        Spectrum([1.0; 4])
     }
 
     fn description(&self) -> Description {
@@ -99,7 +74,7 @@ impl<R: Real> LaneBsdf<R> for NormalizedFresnel<R> {
 
     #[inline(always)]
     fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
-        self.value(wo, wi, Mode::Radiance)
+        self.value(wo, wi)
     }
 
     #[inline(always)]
@@ -109,7 +84,8 @@ impl<R: Real> LaneBsdf<R> for NormalizedFresnel<R> {
 
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, _: R, u: [R; 2]) -> DirectionSample<R> {
-        self.sampled(wo, u, Mode::Radiance)
+        let wi = cosine_direction(u, wo.z);
+        cosine_sample(wo, wi, self.value(wo, wi))
     }
 
     #[inline(always)]
@@ -137,25 +113,25 @@ impl RowBsdf for NormalizedFresnel {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::shading::bsdf::Bsdf;
     use crate::shading::bsdf::tests::{direction, numbers};
 
-    /// Its integral with the cosine is 1 for importance, and η² for radiance.
+    /// Its integral with the cosine is η².
     #[test]
     fn it_is_normalized() {
         const COUNT: u32 = 1000;
         for eta in [1.0, 1.1, 1.33, 1.5, 2.4] {
             let bsdf = Bsdf::NormalizedFresnel(NormalizedFresnel::new(eta));
-            for (mode, expected) in [(Mode::Importance, 1.0), (Mode::Radiance, eta * eta)] {
-                let part = |i: u32| {
-                    let wi = direction(90.0 * (i as f32 + 0.5) / COUNT as f32, 30.0);
-                    let sin = (1.0 - wi.z * wi.z).sqrt();
-                    bsdf.f(Vec3::Z, wi, mode).0[0] * wi.z * sin
-                };
-                let integral = PI * PI / COUNT as f32 * (0..COUNT).map(part).sum::<f32>();
-                assert!((integral / expected - 1.0).abs() < 2e-4, "η {eta}: {integral}");
-            }
+            let part = |i: u32| {
+                let wi = direction(90.0 * (i as f32 + 0.5) / COUNT as f32, 30.0);
+                let sin = (1.0 - wi.z * wi.z).sqrt();
+                bsdf.f(Vec3::Z, wi).0[0] * wi.z * sin
+            };
+            let integral = PI * PI / COUNT as f32 * (0..COUNT).map(part).sum::<f32>();
+            assert!((integral / (eta * eta) - 1.0).abs() < 2e-4, "η {eta}: {integral}");
         }
     }
 
@@ -165,11 +141,11 @@ mod tests {
         for wo in [Vec3::Z, -Vec3::Z] {
             for index in 0..100 {
                 let (uc, u) = numbers(1, index);
-                let sample = bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL).expect("a direction");
+                let sample = bsdf.sample(wo, uc, u).expect("a direction");
                 assert!(sample.wi.z * wo.z > 0.0);
-                assert_eq!(sample.pdf, bsdf.pdf(wo, sample.wi, Mode::Radiance, Lobes::ALL));
+                assert_eq!(sample.pdf, bsdf.pdf(wo, sample.wi));
             }
         }
-        assert_eq!(bsdf.f(Vec3::Z, -Vec3::Z, Mode::Radiance), Spectrum::BLACK);
+        assert_eq!(bsdf.f(Vec3::Z, -Vec3::Z), Spectrum::BLACK);
     }
 }

@@ -3,112 +3,129 @@
 use glam::Vec3;
 
 use super::lanes::{ClassTraits, LaneBsdf};
-use super::lobes::Lobes;
-use super::principled::LocalScattering;
-use super::principled::open_pbr::OpenPbr;
-use super::{Bsdf, BsdfSample, DirectionSample, Mode};
+use super::{Bsdf, DirectionSample};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
 
-/// A BSDF seen from the outgoing direction ω_o.
-pub struct PreparedBsdf {
-    wo: Vec3,
-    layers: Layers,
+/// A BSDF of any class seen from an outgoing direction, `P`.
+pub struct PreparedBsdf<P> {
+    pub(super) is_grazing: bool,
+    pub(super) class: P,
 }
 
-/// The layers of a principled surface, prepared.
-enum Layers {
-    None,
-    Gltf(LocalScattering),
-    OpenPbr(LocalScattering<f32, OpenPbr>),
-}
+/// An enum of the classes in a table.
+macro_rules! scattering_functions {
+    (
+        $(#[$meta:meta])* $name:ident
+        lanes { $($(#[$lane_doc:meta])* $lane:ident($lane_type:ty $(| $of_whole:ident.$part:ident)?),)* }
+        wholes { $($(#[$whole_doc:meta])* $whole:ident($whole_type:ty),)* }
+        one_by_one { $($(#[$doc:meta])* $one:ident($type:ty),)* }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum $name {
+            $($(#[$lane_doc])* $lane($lane_type),)*
+            $($(#[$whole_doc])* $whole($whole_type),)*
+            $($(#[$doc])* $one($type),)*
+        }
 
-/// An expression of the prepared layers, or one without them.
-macro_rules! by_layers {
-    ($prepared:expr, $layers:ident => $with:expr, $without:expr) => {
-        match &$prepared.layers {
-            Layers::Gltf($layers) => $with,
-            Layers::OpenPbr($layers) => $with,
-            Layers::None => $without,
+        /// One of them, and what it has prepared for an outgoing direction.
+        pub enum PreparedClass {
+            $($(#[$lane_doc])* $lane($lane_type, <$lane_type as LaneBsdf<f32>>::Prepared),)*
+            $($(#[$doc])* $one($type, <$type as LaneBsdf<f32>>::Prepared),)*
+        }
+
+        impl $name {
+            /// The scattering function.
+            #[inline]
+            pub(crate) fn class(&self) -> &dyn ScatteringFunction {
+                match self {
+                    $(Self::$lane(bsdf) => bsdf,)*
+                    $(Self::$whole(bsdf) => bsdf,)*
+                    $(Self::$one(bsdf) => bsdf,)*
+                }
+            }
+
+            #[inline]
+            pub(crate) fn class_mut(&mut self) -> &mut dyn ScatteringFunction {
+                match self {
+                    $(Self::$lane(bsdf) => bsdf,)*
+                    $(Self::$whole(bsdf) => bsdf,)*
+                    $(Self::$one(bsdf) => bsdf,)*
+                }
+            }
+        }
+
+        impl LaneBsdf<f32> for $name {
+            type Prepared = PreparedBsdf<PreparedClass>;
+
+            fn traits(&self) -> ClassTraits {
+                match self {
+                    $(
+                        Self::$lane(bsdf) => LaneBsdf::<f32>::traits(bsdf),
+                        $(Self::$of_whole(bsdf) => LaneBsdf::<f32>::traits(&bsdf.$part),)?
+                    )*
+                    $(Self::$one(bsdf) => LaneBsdf::<f32>::traits(bsdf),)*
+                }
+            }
+
+            fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf<PreparedClass> {
+                let class = match *self {
+                    $(
+                        Self::$lane(bsdf) => PreparedClass::$lane(bsdf, bsdf.prepare(wo)),
+                        $(Self::$of_whole(bsdf) => PreparedClass::$lane(bsdf.$part, bsdf.$part.prepare(wo)),)?
+                    )*
+                    $(Self::$one(bsdf) => PreparedClass::$one(bsdf, bsdf.prepare(wo)),)*
+                };
+                PreparedBsdf { is_grazing: is_grazing(wo), class }
+            }
+
+            fn f(&self, prepared: &PreparedBsdf<PreparedClass>, wi: Vector<f32>) -> Spectrum {
+                match &prepared.class {
+                    $(PreparedClass::$lane(bsdf, seen) => LaneBsdf::f(bsdf, seen, wi),)*
+                    $(PreparedClass::$one(bsdf, seen) => LaneBsdf::f(bsdf, seen, wi),)*
+                }
+            }
+
+            fn pdf(&self, prepared: &PreparedBsdf<PreparedClass>, wi: Vector<f32>) -> f32 {
+                match &prepared.class {
+                    $(PreparedClass::$lane(bsdf, seen) => LaneBsdf::pdf(bsdf, seen, wi),)*
+                    $(PreparedClass::$one(bsdf, seen) => LaneBsdf::pdf(bsdf, seen, wi),)*
+                }
+            }
+
+            fn f_and_pdf(&self, prepared: &PreparedBsdf<PreparedClass>, wi: Vector<f32>) -> (Spectrum, f32) {
+                match &prepared.class {
+                    $(PreparedClass::$lane(bsdf, seen) => LaneBsdf::f_and_pdf(bsdf, seen, wi),)*
+                    $(PreparedClass::$one(bsdf, seen) => LaneBsdf::f_and_pdf(bsdf, seen, wi),)*
+                }
+            }
+
+            fn sample(&self, prepared: &PreparedBsdf<PreparedClass>, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
+                let sample = match &prepared.class {
+                    $(PreparedClass::$lane(bsdf, seen) => LaneBsdf::sample(bsdf, seen, uc, u).if_useful(),)*
+                    $(PreparedClass::$one(bsdf, seen) => LaneBsdf::sample(bsdf, seen, uc, u).if_useful(),)*
+                };
+                DirectionSample { is_valid: sample.is_valid && !prepared.is_grazing, ..sample }
+            }
+
+            fn has_density(&self) -> bool {
+                self.class().lobes().is_non_specular()
+            }
+
+            fn diffuse_share(&self, prepared: &PreparedBsdf<PreparedClass>, wi: Vector<f32>, f: Spectrum) -> Spectrum {
+                match &prepared.class {
+                    $(PreparedClass::$lane(bsdf, seen) => LaneBsdf::diffuse_share(bsdf, seen, wi, f),)*
+                    $(PreparedClass::$one(bsdf, seen) => LaneBsdf::diffuse_share(bsdf, seen, wi, f),)*
+                }
+            }
         }
     };
 }
 
-impl LaneBsdf<f32> for Bsdf {
-    type Prepared = PreparedBsdf;
-
-    fn traits(&self) -> ClassTraits {
-        match self {
-            Self::CoatedDiffuse(bsdf) => bsdf.traits(),
-            Self::CoatedConductor(bsdf) => bsdf.traits(),
-            Self::Principled(_) | Self::OpenPbr(_) => {
-                ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN }
-            }
-            _ => ClassTraits::PLAIN,
-        }
-    }
-
-    fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf {
-        let wo = wo.into();
-        let layers = match self {
-            Self::Principled(look) => Layers::Gltf(look.scattering(wo, Lobes::ALL)),
-            Self::OpenPbr(look) => Layers::OpenPbr(look.layers().scattering(wo, Lobes::ALL)),
-            _ => Layers::None,
-        };
-        PreparedBsdf { wo, layers }
-    }
-
-    fn f(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> Spectrum {
-        let without = || self.f(prepared.wo, wi.into(), Mode::Radiance);
-        by_layers!(prepared, layers => layers.f(wi, Mode::Radiance), without())
-    }
-
-    fn pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> f32 {
-        let without = || self.pdf(prepared.wo, wi.into(), Mode::Radiance, Lobes::ALL);
-        by_layers!(prepared, layers => layers.pdf(wi), without())
-    }
-
-    fn f_and_pdf(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> (Spectrum, f32) {
-        let without = || {
-            let f = LaneBsdf::f(self, prepared, wi);
-            (f, if f.is_black() { 0.0 } else { LaneBsdf::pdf(self, prepared, wi) })
-        };
-        by_layers!(prepared, layers => layers.f_and_pdf(wi, Mode::Radiance), without())
-    }
-
-    fn sample(&self, prepared: &PreparedBsdf, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
-        let without = || self.sample(prepared.wo, uc, u, Mode::Radiance, Lobes::ALL).into();
-        by_layers!(prepared, layers => layers.sample(uc, u, Mode::Radiance), without())
-    }
-
-    fn has_density(&self) -> bool {
-        self.lobes().is_non_specular()
-    }
-
-    fn diffuse_share(&self, prepared: &PreparedBsdf, wi: Vector<f32>, f: Spectrum) -> Spectrum {
-        let without = || self.class().diffuse_share(prepared.wo, wi.into(), f);
-        by_layers!(prepared, layers => layers.diffuse_f(wi).share_of(f), without())
-    }
-}
-
-impl From<Option<BsdfSample>> for DirectionSample<f32> {
-    fn from(sample: Option<BsdfSample>) -> Self {
-        let is_valid = sample.is_some();
-        let none = BsdfSample::new(Vec3::Z, Spectrum::BLACK, 1.0, Lobes::NONE);
-        let BsdfSample { wi, f, pdf, lobe, eta, .. } = sample.unwrap_or(none);
-        Self {
-            wi: wi.into(),
-            f,
-            pdf,
-            eta,
-            is_specular: lobe.is_specular(),
-            is_diffuse: lobe.intersects(Lobes::DIFFUSE),
-            is_transmission: lobe.is_transmission(),
-            is_valid,
-        }
-    }
-}
+pub(super) use scattering_functions;
 
 /// A BSDF whose directions are sampled uniformly over the sphere, whatever it is: to verify importance sampling.
 pub(crate) struct Uniform<'a> {
@@ -118,30 +135,38 @@ pub(crate) struct Uniform<'a> {
 }
 
 impl LaneBsdf<f32> for Uniform<'_> {
-    type Prepared = PreparedBsdf;
+    type Prepared = <Bsdf as LaneBsdf<f32>>::Prepared;
 
     fn traits(&self) -> ClassTraits {
         ClassTraits { pdf_is_proportional: false, ..self.bsdf.traits() }
     }
 
-    fn prepare(&self, wo: Vector<f32>) -> PreparedBsdf {
+    fn prepare(&self, wo: Vector<f32>) -> Self::Prepared {
         self.bsdf.prepare(wo)
     }
 
-    fn f(&self, prepared: &PreparedBsdf, wi: Vector<f32>) -> Spectrum {
+    fn f(&self, prepared: &Self::Prepared, wi: Vector<f32>) -> Spectrum {
         LaneBsdf::f(self.bsdf, prepared, wi)
     }
 
-    fn pdf(&self, _: &PreparedBsdf, _: Vector<f32>) -> f32 {
+    fn pdf(&self, _: &Self::Prepared, _: Vector<f32>) -> f32 {
         warp::UNIFORM_SPHERE_PDF
     }
 
-    fn sample(&self, prepared: &PreparedBsdf, _: f32, u: [f32; 2]) -> DirectionSample<f32> {
+    fn sample(&self, prepared: &Self::Prepared, _: f32, u: [f32; 2]) -> DirectionSample<f32> {
         let direction = warp::uniform_sphere(u);
-        let wi = Vec3::from(self.axes.map(|axis| direction.dot(axis.into())));
-        let lobe = Lobes::REFLECTION.union(Lobes::DIFFUSE);
-        let f = LaneBsdf::f(self.bsdf, prepared, wi.into());
-        Some(BsdfSample::new(wi, f, warp::UNIFORM_SPHERE_PDF, lobe)).into()
+        let wi = Vec3::from(self.axes.map(|axis| direction.dot(axis.into()))).into();
+        let f = LaneBsdf::f(self.bsdf, prepared, wi);
+        DirectionSample {
+            wi,
+            f,
+            pdf: warp::UNIFORM_SPHERE_PDF,
+            eta: 1.0,
+            is_specular: false,
+            is_diffuse: true,
+            is_transmission: false,
+            is_valid: true,
+        }
     }
 
     fn has_density(&self) -> bool {

@@ -5,11 +5,12 @@
 
 use glam::Vec3;
 
+use super::lanes::{ClassTraits, LaneBsdf};
 use super::microfacet::TrowbridgeReitz;
-use super::principled::Principled;
 use super::principled::film::ThinFilm;
 use super::principled::open_pbr::OpenPbr;
-use super::{BsdfSample, Description, Lobes, MicrofacetFactors, Mode, ScatteringFunction};
+use super::principled::{LocalScattering, Principled};
+use super::{Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 
@@ -193,19 +194,43 @@ impl OpenPbrSurface {
     }
 }
 
+impl LaneBsdf<f32> for OpenPbrSurface {
+    type Prepared = LocalScattering<f32, OpenPbr>;
+
+    fn traits(&self) -> ClassTraits {
+        ClassTraits { needs_agreement: true, ..ClassTraits::PLAIN }
+    }
+
+    fn prepare(&self, wo: Vector<f32>) -> Self::Prepared {
+        self.layers().prepare(wo)
+    }
+
+    fn f(&self, prepared: &Self::Prepared, wi: Vector<f32>) -> Spectrum {
+        prepared.f(wi)
+    }
+
+    fn pdf(&self, prepared: &Self::Prepared, wi: Vector<f32>) -> f32 {
+        prepared.pdf(wi)
+    }
+
+    fn f_and_pdf(&self, prepared: &Self::Prepared, wi: Vector<f32>) -> (Spectrum, f32) {
+        prepared.f_and_pdf(wi)
+    }
+
+    fn sample(&self, prepared: &Self::Prepared, uc: f32, u: [f32; 2]) -> DirectionSample<f32> {
+        prepared.sample(uc, u)
+    }
+
+    fn has_density(&self) -> bool {
+        self.layers().has_density()
+    }
+
+    fn diffuse_share(&self, prepared: &Self::Prepared, wi: Vector<f32>, f: Spectrum) -> Spectrum {
+        prepared.diffuse_f(wi).share_of(f)
+    }
+}
+
 impl ScatteringFunction for OpenPbrSurface {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        ScatteringFunction::f(&self.layers(), wo, wi, mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
-        ScatteringFunction::pdf(&self.layers(), wo, wi, mode, lobes)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        ScatteringFunction::sample(&self.layers(), wo, uc, u, mode, lobes)
-    }
-
     fn lobes(&self) -> Lobes {
         self.layers().lobes()
     }
@@ -213,10 +238,6 @@ impl ScatteringFunction for OpenPbrSurface {
     fn regularize(&mut self) {
         self.roughness.regularize();
         self.coat_roughness.regularize();
-    }
-
-    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        ScatteringFunction::diffuse_share(&self.layers(), wo, wi, f)
     }
 
     fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {

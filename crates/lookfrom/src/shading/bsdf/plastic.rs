@@ -18,8 +18,8 @@ use super::diffuse::cosine_direction;
 use super::lanes::{LaneBsdf, RowBsdf, gather_microfacets};
 use super::microfacet::Microfacets;
 use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
-    is_grazing, same_side,
+    Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, fresnel, is_grazing,
+    same_side,
 };
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::optics;
@@ -269,18 +269,6 @@ impl<R: Real, T: AsRef<[&'static Interface]>> LaneBsdf<R> for Plastic<R, T> {
 }
 
 impl ScatteringFunction for Plastic {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        LaneBsdf::f(self, &self.seen_from(wo.into()), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        LaneBsdf::pdf(self, &self.seen_from(wo.into()), wi.into())
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, _: Lobes) -> Option<BsdfSample> {
-        self.sampled(&self.seen_from(wo.into()), uc, u).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         let mut lobes = Lobes::REFLECTION;
         if !self.reflectance.is_black() {
@@ -294,10 +282,6 @@ impl ScatteringFunction for Plastic {
 
     fn regularize(&mut self) {
         self.microfacets.regularize();
-    }
-
-    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        LaneBsdf::diffuse_share(self, &self.seen_from(wo.into()), wi.into(), f)
     }
 
     fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {

@@ -54,9 +54,7 @@ use lookfrom_simd::Real;
 
 use super::lanes::{ClassTraits, LaneBsdf};
 use super::microfacet::TrowbridgeReitz;
-use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
-};
+use super::{Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, fresnel};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use film::ThinFilm;
@@ -180,24 +178,12 @@ impl<M: Copy> Principled<f32, M> {
 
 impl<M: Model<f32>> Principled<f32, M> {
     /// The surface for a fixed outgoing direction.
-    pub(super) fn scattering(&self, wo: Vec3, lobes: Lobes) -> LocalScattering<f32, M> {
-        LocalScattering::new(self, wo.into(), lobes)
+    pub(super) fn scattering(&self, wo: Vec3) -> LocalScattering<f32, M> {
+        LocalScattering::new(self, wo.into())
     }
 }
 
 impl<M: Model<f32>> ScatteringFunction for Principled<f32, M> {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.scattering(wo, Lobes::ALL).f(wi.into(), mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        self.scattering(wo, lobes).pdf(wi.into())
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.scattering(wo, lobes).sample(uc, u, mode).scalar(ClassTraits::PLAIN)
-    }
-
     fn lobes(&self) -> Lobes {
         let of = |roughness: TrowbridgeReitz| match roughness.is_smooth() {
             true => Lobes::SPECULAR,
@@ -232,14 +218,10 @@ impl<M: Model<f32>> ScatteringFunction for Principled<f32, M> {
         self.clearcoat_roughness.regularize();
     }
 
-    fn diffuse_share(&self, wo: Vec3, wi: Vec3, f: Spectrum) -> Spectrum {
-        self.scattering(wo, Lobes::ALL).diffuse_f(wi.into()).share_of(f)
-    }
-
     fn factors(&self, wo: Vec3, wi: Vec3, is_specular: bool) -> Vec<MicrofacetFactors> {
         match is_specular {
             true => Vec::new(),
-            false => self.scattering(wo, Lobes::ALL).factors(wi.into()),
+            false => self.scattering(wo).factors(wi.into()),
         }
     }
 
@@ -285,11 +267,11 @@ impl<R: Real, M: Model<R>> LaneBsdf<R> for Principled<R, M> {
     }
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> LocalScattering<R, M> {
-        LocalScattering::new(self, wo, Lobes::ALL)
+        LocalScattering::new(self, wo)
     }
     #[inline(always)]
     fn f(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> Spectrum<R> {
-        prepared.f(wi, Mode::Radiance)
+        prepared.f(wi)
     }
     #[inline(always)]
     fn pdf(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> R {
@@ -297,11 +279,11 @@ impl<R: Real, M: Model<R>> LaneBsdf<R> for Principled<R, M> {
     }
     #[inline(always)]
     fn f_and_pdf(&self, prepared: &LocalScattering<R, M>, wi: Vector<R>) -> (Spectrum<R>, R) {
-        prepared.f_and_pdf(wi, Mode::Radiance)
+        prepared.f_and_pdf(wi)
     }
     #[inline(always)]
     fn sample(&self, prepared: &LocalScattering<R, M>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        prepared.sample(uc, u, Mode::Radiance)
+        prepared.sample(uc, u)
     }
     #[inline(always)]
     fn has_density(&self) -> R::Mask {

@@ -5,8 +5,7 @@ use glam::Vec3;
 use super::dielectric::Dielectric;
 use super::lobes::Lobes;
 use super::normalized_fresnel::NormalizedFresnel;
-use super::{BsdfSample, Description, MicrofacetFactors, Mode, ScatteringFunction};
-use crate::core::spectrum::Spectrum;
+use super::{Description, MicrofacetFactors, ScatteringFunction};
 use crate::shading::bssrdf::MediumBelow;
 
 /// Scatters light as its boundary does; what is transmitted leaves at another point.
@@ -21,18 +20,6 @@ pub struct Subsurface {
 }
 
 impl ScatteringFunction for Subsurface {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        ScatteringFunction::f(&self.boundary, wo, wi, mode)
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, mode: Mode, lobes: Lobes) -> f32 {
-        ScatteringFunction::pdf(&self.boundary, wo, wi, mode, lobes)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        ScatteringFunction::sample(&self.boundary, wo, uc, u, mode, lobes)
-    }
-
     fn lobes(&self) -> Lobes {
         self.boundary.lobes()
     }

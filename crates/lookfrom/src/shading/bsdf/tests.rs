@@ -227,6 +227,31 @@ pub(super) fn of_any_kind(index: u64, roughness: TrowbridgeReitz) -> Microfacets
     Microfacets::new(roughness, written::Microfacets { distribution, masking })
 }
 
+/// The index of refraction on the side of ω_i over that on the side of ω_o, of what is refracted.
+fn index_between(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> f32 {
+    let inside = match bsdf {
+        Bsdf::Dielectric(boundary) => boundary.eta,
+        Bsdf::TintedDielectric(tinted) => tinted.boundary.eta,
+        Bsdf::Principled(look) if look.is_solid => look.eta,
+        Bsdf::OpenPbr(look) if look.layers().is_solid => look.layers().eta,
+        Bsdf::Disney(look) if !look.is_thin => look.eta,
+        _ => 1.0,
+    };
+    if wo.z * wi.z < 0.0 { inside.powf(wo.z.signum()) } else { 1.0 }
+}
+
+/// The part of the light along ω_o that goes on along a sample: radiance that is refracted is scaled by 1/η², diffuse light that
+/// passes is not.
+pub(super) fn weight_of_energy(bsdf: &Bsdf, wo: Vec3, sample: &BsdfSample) -> Spectrum {
+    let BsdfSample { wi, f, pdf, lobe, .. } = *sample;
+    let eta = index_between(bsdf, wo, wi);
+    let diffuse = match lobe.is_specular() {
+        true => Spectrum::BLACK,
+        false => f * bsdf.diffuse_share(&bsdf.prepare(wo.into()), wi.into(), f),
+    };
+    ((f - diffuse) * (eta * eta) + diffuse) * (wi.z.abs() / pdf)
+}
+
 /// From above, from the side, nearly grazing, and from inside.
 fn views() -> [Vec3; 6] {
     [

@@ -6,8 +6,7 @@ use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 use super::lanes::{LaneBsdf, RowBsdf};
 use super::tinted::Tint;
 use super::{
-    BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction, fresnel,
-    is_grazing,
+    Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction, fresnel, is_grazing,
 };
 use crate::core::lanes::{LANES, by_lane};
 use crate::core::optics;
@@ -53,31 +52,6 @@ impl<R: Real> ThinDielectric<R> {
         let more = (one - once) * (one - once) * once / (one - once * once);
         R::select(once.lt(one), once + more, once)
     }
-
-    /// As [`super::Bsdf::sample`].
-    #[inline(always)]
-    fn sample(&self, wo: Vector<R>, uc: R, lobes: Lobes) -> DirectionSample<R> {
-        let (zero, one) = (uc.like(0.0), uc.like(1.0));
-        let fresnel = self.reflectance(wo.z);
-        let [r, t] = lobes.allowed([fresnel, one - fresnel]);
-        let reflection = r / (r + t);
-        let reflects = uc.lt(reflection);
-        let part = Spectrum::select(
-            reflects,
-            self.tint.reflectance * fresnel,
-            self.tint.transmittance * (one - fresnel),
-        );
-        DirectionSample {
-            wi: Vector { x: -wo.x, y: -wo.y, z: R::select(reflects, wo.z, -wo.z) },
-            f: part / Float::abs(wo.z),
-            pdf: R::select(reflects, reflection, one - reflection),
-            eta: one,
-            is_specular: reflects.like(true),
-            is_diffuse: reflects.like(false),
-            is_transmission: !reflects,
-            is_valid: (r + t).gt(zero) & !is_grazing(wo),
-        }
-    }
 }
 
 impl<R: Real> LaneBsdf<R> for ThinDielectric<R> {
@@ -100,7 +74,22 @@ impl<R: Real> LaneBsdf<R> for ThinDielectric<R> {
 
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, uc: R, _: [R; 2]) -> DirectionSample<R> {
-        self.sample(wo, uc, Lobes::ALL)
+        let (zero, one) = (uc.like(0.0), uc.like(1.0));
+        let r = self.reflectance(wo.z);
+        let t = one - r;
+        let reflection = r / (r + t);
+        let reflects = uc.lt(reflection);
+        let part = Spectrum::select(reflects, self.tint.reflectance * r, self.tint.transmittance * t);
+        DirectionSample {
+            wi: Vector { x: -wo.x, y: -wo.y, z: R::select(reflects, wo.z, -wo.z) },
+            f: part / Float::abs(wo.z),
+            pdf: R::select(reflects, reflection, one - reflection),
+            eta: one,
+            is_specular: reflects.like(true),
+            is_diffuse: reflects.like(false),
+            is_transmission: !reflects,
+            is_valid: (r + t).gt(zero) & !is_grazing(wo),
+        }
     }
 
     #[inline(always)]
@@ -110,18 +99,6 @@ impl<R: Real> LaneBsdf<R> for ThinDielectric<R> {
 }
 
 impl ScatteringFunction for ThinDielectric {
-    fn f(&self, _: Vec3, _: Vec3, _: Mode) -> Spectrum {
-        Spectrum::BLACK
-    }
-
-    fn pdf(&self, _: Vec3, _: Vec3, _: Mode, _: Lobes) -> f32 {
-        0.0
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, _: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sample(wo.into(), uc, lobes).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR
     }

@@ -5,7 +5,7 @@ use lookfrom_simd::{Real, Simd, f32x8};
 
 use super::dielectric::Dielectric;
 use super::lanes::{LaneBsdf, RowBsdf};
-use super::{BsdfSample, Description, DirectionSample, Lobes, MicrofacetFactors, Mode, ScatteringFunction};
+use super::{Description, DirectionSample, Lobes, MicrofacetFactors, ScatteringFunction};
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
@@ -51,13 +51,6 @@ pub struct TintedDielectric<R = f32> {
     pub(crate) tint: Tint<R>,
 }
 
-impl<R: Real> TintedDielectric<R> {
-    #[inline(always)]
-    fn tinted(&self, wo: Vector<R>, sample: DirectionSample<R>) -> DirectionSample<R> {
-        DirectionSample { f: sample.f * self.tint.between(wo, sample.wi), ..sample }
-    }
-}
-
 impl<R: Real> LaneBsdf<R> for TintedDielectric<R> {
     type Prepared = Vector<R>;
 
@@ -68,17 +61,18 @@ impl<R: Real> LaneBsdf<R> for TintedDielectric<R> {
 
     #[inline(always)]
     fn f(&self, &wo: &Vector<R>, wi: Vector<R>) -> Spectrum<R> {
-        self.boundary.f(wo, wi, Mode::Radiance) * self.tint.between(wo, wi)
+        LaneBsdf::f(&self.boundary, &wo, wi) * self.tint.between(wo, wi)
     }
 
     #[inline(always)]
     fn pdf(&self, &wo: &Vector<R>, wi: Vector<R>) -> R {
-        self.boundary.pdf(wo, wi, Lobes::ALL)
+        LaneBsdf::pdf(&self.boundary, &wo, wi)
     }
 
     #[inline(always)]
     fn sample(&self, &wo: &Vector<R>, uc: R, u: [R; 2]) -> DirectionSample<R> {
-        self.tinted(wo, self.boundary.sample(wo, uc, u, Mode::Radiance, Lobes::ALL))
+        let sample = LaneBsdf::sample(&self.boundary, &wo, uc, u);
+        DirectionSample { f: sample.f * self.tint.between(wo, sample.wi), ..sample }
     }
 
     #[inline(always)]
@@ -88,19 +82,6 @@ impl<R: Real> LaneBsdf<R> for TintedDielectric<R> {
 }
 
 impl ScatteringFunction for TintedDielectric {
-    fn f(&self, wo: Vec3, wi: Vec3, mode: Mode) -> Spectrum {
-        self.boundary.f(wo.into(), wi.into(), mode) * self.tint.between(wo.into(), wi.into())
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        self.boundary.pdf(wo.into(), wi.into(), lobes)
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], mode: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        let sample = self.boundary.sample(wo.into(), uc, u, mode, lobes);
-        self.tinted(wo.into(), sample).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         self.boundary.lobes()
     }

@@ -10,15 +10,12 @@
 
 use std::f32::consts::{FRAC_1_PI, TAU};
 
-use glam::Vec3;
 use lookfrom_simd::{Float, Mask, Real, Simd, f32x8, prelude::*};
 
 use super::conductor::half_vector;
 use super::diffuse::cosine_direction;
 use super::lanes::{LaneBsdf, RowBsdf};
-use super::{
-    BsdfSample, Description, DirectionSample, Lobes, Mode, ScatteringFunction, is_grazing, same_side,
-};
+use super::{Description, DirectionSample, Lobes, ScatteringFunction, is_grazing, same_side};
 use crate::core::elementary;
 use crate::core::lanes::{LANES, by_lane, gather_spectrum};
 use crate::core::optics;
@@ -137,9 +134,9 @@ pub struct SeenWhitted<R: Real> {
 }
 
 impl<R: Real> WhittedCoefficients<R> {
-    /// The model seen from `wo`, with the sides of `lobes`. Each lobe has a probability about proportional to its weight.
+    /// The model seen from `wo`. Each lobe has a probability about proportional to its weight.
     #[inline(always)]
-    fn seen_from(&self, wo: Vector<R>, lobes: Lobes) -> SeenWhitted<R> {
+    fn seen_from(&self, wo: Vector<R>) -> SeenWhitted<R> {
         let (zero, one) = (wo.z.like(0.0), wo.z.like(1.0));
         let black = Spectrum::splat(zero);
         let (mut mirror, mut refracted) = (black, (wo, black));
@@ -153,9 +150,8 @@ impl<R: Real> WhittedCoefficients<R> {
         // The highlight's albedo seen from above: ∫ 4 (N·H)ⁿ⁺¹ / π dω_H = 8 / (n + 2), less the part below
         // the surface.
         let highlight = one.like(8.0) / (self.shininess + 4.0);
-        let [diffuse, _] = lobes.allowed([self.diffuse.max_lane(), zero]);
-        let [glossy, _] = lobes.allowed([self.specular.max_lane() * highlight, zero]);
-        let [reflected, transmitted] = lobes.allowed([mirror.max_lane(), refracted.1.max_lane()]);
+        let (diffuse, glossy) = (self.diffuse.max_lane(), self.specular.max_lane() * highlight);
+        let (reflected, transmitted) = (mirror.max_lane(), refracted.1.max_lane());
         let sum = diffuse + glossy + reflected + transmitted;
         let exists = sum.gt(zero);
         let sum = R::select(exists, sum, one);
@@ -265,7 +261,7 @@ impl<R: Real> LaneBsdf<R> for WhittedCoefficients<R> {
 
     #[inline(always)]
     fn prepare(&self, wo: Vector<R>) -> SeenWhitted<R> {
-        self.seen_from(wo, Lobes::ALL)
+        self.seen_from(wo)
     }
 
     #[inline(always)]
@@ -300,18 +296,6 @@ impl<R: Real> LaneBsdf<R> for WhittedCoefficients<R> {
 }
 
 impl ScatteringFunction for WhittedCoefficients {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
-        self.scattered(&self.seen_from(wo.into(), Lobes::ALL), wi.into()).0
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, lobes: Lobes) -> f32 {
-        self.scattered(&self.seen_from(wo.into(), lobes), wi.into()).1
-    }
-
-    fn sample(&self, wo: Vec3, uc: f32, u: [f32; 2], _: Mode, lobes: Lobes) -> Option<BsdfSample> {
-        self.sampled(&self.seen_from(wo.into(), lobes), uc, u).scalar(self.traits())
-    }
-
     fn lobes(&self) -> Lobes {
         let mut lobes = Lobes::NONE;
         if !self.diffuse.is_black() {
@@ -327,10 +311,6 @@ impl ScatteringFunction for WhittedCoefficients {
             lobes |= Lobes::REFLECTION | Lobes::TRANSMISSION | Lobes::SPECULAR;
         }
         lobes
-    }
-
-    fn diffuse_share(&self, _: Vec3, _: Vec3, f: Spectrum) -> Spectrum {
-        (self.diffuse * FRAC_1_PI).share_of(f)
     }
 
     fn description(&self) -> Description {

@@ -4,21 +4,8 @@ use super::{
     BumpMapping, Evaluator, Frame, Guard, LocalNormal, Material, MaterialKind, Relief, ShadingContext,
 };
 use crate::shading::bsdf::BsdfClass;
-use crate::shading::bsdf::conductor::Conductor;
-use crate::shading::bsdf::dielectric::Dielectric;
-use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
-use crate::shading::bsdf::disney::Disney;
-use crate::shading::bsdf::hair::Hair;
 use crate::shading::bsdf::lanes::RowBsdf;
-use crate::shading::bsdf::layered::Layered;
-use crate::shading::bsdf::measured::Measured;
-use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
-use crate::shading::bsdf::open_pbr::OpenPbrSurface;
-use crate::shading::bsdf::plastic::Plastic;
-use crate::shading::bsdf::principled::Principled;
-use crate::shading::bsdf::thin_dielectric::ThinDielectric;
-use crate::shading::bsdf::tinted::TintedDielectric;
-use crate::shading::bsdf::whitted::WhittedCoefficients;
+use crate::shading::bsdf::types::*;
 use crate::shading::interaction::ShadingGeometry;
 use crate::shading::texture::{PicturedFloat, TexturePoint, Textures};
 

@@ -9,7 +9,7 @@ use lookfrom_scene::{Error, Location, Result};
 const SIDE: usize = 256;
 
 /// Transmittances on the square around the stop's circle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct ApertureImage {
     width: usize,
     height: usize,

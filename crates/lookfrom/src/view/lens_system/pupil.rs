@@ -35,7 +35,7 @@ const PBRT_MARGIN: f64 = 2.0 / 1024.0;
 type Rectangle = [f64; 4];
 
 /// Bounds by interval, with the area 0 where no light passes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ExitPupil(Vec<[f32; 4]>);
 
 impl ExitPupil {

@@ -105,11 +105,11 @@ fn values_are_those_of_mitsuba() {
         let found = surfaces().into_iter().find(|(of, _)| *of == name).map(|(_, surface)| surface);
         let surface = found.expect("a surface");
         let [wo, wi] = [wo, wi].map(|w: [f32; 3]| Vec3::from(w).normalize());
-        let value = ScatteringFunction::f(&surface, wo, wi, Mode::Radiance);
+        let value = Bsdf::Disney(surface).f(wo, wi);
         for lane in 0..3 {
             assert!(close(value.0[lane], f[lane]), "{name} {wo} {wi}: {value:?} is not {f:?}");
         }
-        let density = ScatteringFunction::pdf(&surface, wo, wi, Mode::Radiance, Lobes::ALL);
+        let density = Bsdf::Disney(surface).pdf(wo, wi);
         assert!(close(density, pdf), "{name} {wo} {wi}: density {density} is not {pdf}");
     }
 }

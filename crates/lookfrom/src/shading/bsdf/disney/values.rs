@@ -10,7 +10,7 @@ use crate::core::math::schlick;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
-use crate::shading::bsdf::{Lobes, Mode, across, fresnel, is_grazing};
+use crate::shading::bsdf::{across, fresnel, is_grazing};
 
 /// The BSDF and the density for a pair of directions.
 #[derive(Clone, Copy)]
@@ -149,7 +149,6 @@ impl<R: Real> Disney<R> {
         facet: &Facet<R>,
         choice: &Choice<R>,
         dielectric: R,
-        mode: Mode,
     ) -> (Spectrum<R>, R) {
         let &Facet { wi, wm, cos_o, cos_i, eta, reflects, refracts, passes_sheet, .. } = facet;
         let (wo, one) = (seen.wo, eta.like(1.0));
@@ -162,7 +161,7 @@ impl<R: Real> Disney<R> {
             let sum = cos_o + eta * cos_i;
             let jacobian = Float::abs(cos_o * cos_i) * eta * eta / (sum * sum);
             per_facet = R::select(refracts, jacobian, per_facet);
-            let scale = if mode == Mode::Radiance { one / (eta * eta) } else { one };
+            let scale = one / (eta * eta);
             let base = Spectrum::select(self.is_thin, self.base, self.base.map(Float::sqrt));
             let passed = base * (seen.glass * (one - dielectric) * scale);
             color = Spectrum::select(reflects, color, passed);
@@ -183,15 +182,9 @@ impl<R: Real> Disney<R> {
         [f, choice.clearcoat * d * facet.wm.z * 0.25 / Float::abs(facet.cos_o)]
     }
 
-    /// The BSDF for light from `wi`, and the density of `wi` among the sides of `lobes`. Not inlined, since it is needed several times.
+    /// The BSDF for light from `wi`, and the density of `wi`. Not inlined, since it is needed several times.
     #[inline(never)]
-    pub(super) fn scattered(
-        &self,
-        seen: &SeenDisney<R>,
-        wi: Vector<R>,
-        mode: Mode,
-        lobes: Lobes,
-    ) -> Scattered<R> {
+    pub(super) fn scattered(&self, seen: &SeenDisney<R>, wi: Vector<R>) -> Scattered<R> {
         wi.z.at_level(
             #[inline(always)]
             || {
@@ -205,10 +198,10 @@ impl<R: Real> Disney<R> {
                     return Scattered { f: black, diffuse: black, pdf: zero };
                 }
                 let dielectric = fresnel::dielectric(facet.cos_o, self.eta);
-                let choice = self.choice(seen, dielectric, lobes);
+                let choice = self.choice(seen, dielectric);
 
                 // What has a facet.
-                let (mut f, mut pdf) = self.microfacets(seen, &facet, &choice, dielectric, mode);
+                let (mut f, mut pdf) = self.microfacets(seen, &facet, &choice, dielectric);
                 let is_front = reflects & !seen.is_inside;
                 let has_coat = is_front & self.clearcoat.gt(zero);
                 if has_coat.any() {

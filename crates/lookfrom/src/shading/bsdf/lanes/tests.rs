@@ -174,11 +174,7 @@ fn compare<B: RowBsdf>(bsdf: impl Fn(u64) -> Bsdf) {
         for (lane, together) in values_together.into_iter().enumerate() {
             let Query { wo, wi, uc, u } = queries[lane];
             let bsdf = &bsdfs[lane];
-            let alone = Values::new(
-                bsdf.f(wo, wi, Mode::Radiance),
-                bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL),
-                bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL),
-            );
+            let alone = Values::new(bsdf.f(wo, wi), bsdf.pdf(wo, wi), bsdf.sample(wo, uc, u));
             assert_eq!(together, alone, "{bsdf:?} {:?}", queries[lane]);
             samples += u32::from(alone.sample.is_some());
             values += u32::from(alone.f != [0; 4]);

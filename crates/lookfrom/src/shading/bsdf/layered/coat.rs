@@ -6,11 +6,11 @@ use lookfrom_simd::{Float, Real};
 use super::transmittance;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::bsdf::dielectric::Dielectric;
+use crate::shading::bsdf::DirectionSample;
+use crate::shading::bsdf::dielectric::{Dielectric, Mode};
 use crate::shading::bsdf::diffuse::cosine_direction;
 use crate::shading::bsdf::lobes::Lobes;
 use crate::shading::bsdf::microfacet::{Microfacets, TrowbridgeReitz};
-use crate::shading::bsdf::{DirectionSample, Mode};
 
 /// A coat: a dielectric boundary and the slab below it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -55,14 +55,14 @@ fn with_walks(bsdf: &Bsdf, estimate: CoatEstimate, seed: f32) -> Bsdf {
 
 /// `f` with MIS weights of the two exit strategies that add up to one, as pbrt's do not.
 fn unbiased_f(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> Spectrum {
-    with_walks(bsdf, CoatEstimate::Unbiased, 0.0).f(wo, wi, Mode::Radiance)
+    with_walks(bsdf, CoatEstimate::Unbiased, 0.0).f(wo, wi)
 }
 
 /// The mean weight by `sample`, of the specular or the other lobes.
 fn mean_weight(bsdf: &Bsdf, wo: Vec3, n: u64, seed: u64, specular: bool) -> Estimate {
     estimate(n, |index| {
         let (uc, u) = numbers(seed, index);
-        let sample = bsdf.sample(wo, uc, u, Mode::Radiance, Lobes::ALL);
+        let sample = bsdf.sample(wo, uc, u);
         let sample = sample.filter(|sample| sample.lobe.is_specular() == specular);
         sample.map_or(0.0, |s| f64::from(s.f.0[0] * s.wi.z.abs() / s.pdf))
     })
@@ -102,7 +102,7 @@ fn a_smooth_coat_on_lambert_is_a_geometric_series() {
             (1.0 - mirrored) * f64::from(reflectance) * sum * (1.0 - inside)
         };
         // `f` connects the base with the exit at every second step, the first included; `sample` must also leave.
-        let f = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 200_000, 1);
+        let f = integral_of_f(|wo, wi| bsdf.f(wo, wi), wo, 200_000, 1);
         let expected = Estimate { mean: series(i32::from(max_depth.div_ceil(2))), error: 1e-4 };
         assert!(f.distance(expected) < 4.5, "{coat:?} {theta}: f {f:?}, series {expected:?}");
         let sampled = mean_weight(&bsdf, wo, 200_000, 2, false);
@@ -127,7 +127,7 @@ fn the_slab_absorbs_on_each_crossing() {
     let bsdf = Bsdf::coated_diffuse(grey(0.8), &coat);
     let (wo, wi) = (direction(50.0, 0.0), direction(20.0, 100.0));
     let expected = 0.8 * (-0.3_f32 / wo.z - 0.3 / wi.z).exp() * FRAC_1_PI;
-    let f = bsdf.f(wo, wi, Mode::Radiance).0[0];
+    let f = bsdf.f(wo, wi).0[0];
     assert!((f / expected - 1.0).abs() < 1e-4, "{f} {expected}");
 }
 
@@ -151,7 +151,7 @@ fn single_scattering_in_the_slab_has_a_formula() {
     // The function is one estimate per seed.
     let f = estimate(200_000, |index| {
         let bsdf = with_walks(&bsdf, CoatEstimate::Pbrt, number(5, index));
-        f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+        f64::from(bsdf.f(wo, wi).0[0])
     });
     assert!(f.distance(Estimate { mean: expected, error: 1e-5 }) < 4.5, "{f:?} {expected}");
 }
@@ -211,7 +211,7 @@ fn ways_out_are_weighed_as_in_pbrt() {
     // compared with pbrt's, so `f` must keep that; smooth coats have one exit strategy.
     let wo = direction(10.0, 30.0);
     for (name, bsdf) in deep() {
-        let kept = integral_of_f(|wo, wi| bsdf.f(wo, wi, Mode::Radiance), wo, 100_000, 60);
+        let kept = integral_of_f(|wo, wi| bsdf.f(wo, wi), wo, 100_000, 60);
         let unbiased = integral_of_f(|wo, wi| unbiased_f(&bsdf, wo, wi), wo, 100_000, 61);
         match name {
             "rough on white" => {
@@ -232,7 +232,7 @@ fn the_mean_over_seeds_is_that_over_directions_nearby() {
     for (name, bsdf) in deep() {
         let over_seeds = estimate(40_000, |index| {
             let bsdf = with_walks(&bsdf, CoatEstimate::Unbiased, number(80, index));
-            f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+            f64::from(bsdf.f(wo, wi).0[0])
         });
         let nearby = estimate(40_000, |index| {
             let jitter = |k: u64| 1e-4 * (number(81, index * 6 + k) - 0.5);
@@ -242,7 +242,7 @@ fn the_mean_over_seeds_is_that_over_directions_nearby() {
         });
         assert!(over_seeds.distance(nearby) < 4.5, "{name}: {over_seeds:?} {nearby:?}");
         let seed = |seed| with_walks(&bsdf, CoatEstimate::Unbiased, seed);
-        let densities = [0.25, 0.75].map(|u| seed(u).pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+        let densities = [0.25, 0.75].map(|u| seed(u).pdf(wo, wi));
         assert!(densities.iter().all(|pdf| *pdf > 0.0), "{name}");
     }
 }
@@ -284,7 +284,7 @@ fn the_series_of_a_diffuse_base_is_the_mean_of_walks() {
                         coat,
                         number(seed, index),
                     ));
-                    f64::from(bsdf.f(wo, wi, Mode::Radiance).0[0])
+                    f64::from(bsdf.f(wo, wi).0[0])
                 })
             };
             let (walks, series) = (mean(&coat, 90), mean(&closed, 91));
@@ -315,35 +315,9 @@ fn light_goes_both_ways_on_average() {
         let (there, back) = (mean(40, false), mean(41, true));
         assert!(there.distance(back) < 4.5, "{name}: {there:?} {back:?}");
         // The other side scatters alike.
-        let below = bsdf.f(-wo, -wi, Mode::Radiance);
-        assert_eq!(below, bsdf.f(wo, wi, Mode::Radiance), "{name}");
-        assert!(bsdf.f(wo, -wi, Mode::Radiance).is_black(), "{name}");
-    }
-}
-
-#[test]
-fn radiance_and_importance_are_scattered_alike() {
-    // The factor 1/η² on the way in cancels on the way out; shallow, because Russian roulette depends on the
-    // throughput.
-    let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
-    let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
-    for roughness in [TrowbridgeReitz::SMOOTH, TrowbridgeReitz::new(0.3, 0.3)] {
-        let bsdf = Bsdf::coated_diffuse(
-            grey(0.9),
-            &CoatLayer { roughness: roughness.into(), max_depth: 4, ..CoatLayer::default() },
-        );
-        let f = |mode| bsdf.f(wo, wi, mode).0[0];
-        assert!(close(f(Mode::Radiance), f(Mode::Importance)), "{roughness:?}");
-        let weight = |mode, index| {
-            let (uc, u) = numbers(70, index);
-            bsdf.sample(wo, uc, u, mode, Lobes::ALL).map(|s| s.f.0[0] * s.wi.z.abs() / s.pdf)
-        };
-        for index in 0..200 {
-            match (weight(Mode::Radiance, index), weight(Mode::Importance, index)) {
-                (Some(a), Some(b)) => assert!(close(a, b), "{roughness:?}: {a} {b}"),
-                (a, b) => assert_eq!(a, b),
-            }
-        }
+        let below = bsdf.f(-wo, -wi);
+        assert_eq!(below, bsdf.f(wo, wi), "{name}");
+        assert!(bsdf.f(wo, -wi).is_black(), "{name}");
     }
 }
 
@@ -351,10 +325,10 @@ fn radiance_and_importance_are_scattered_alike() {
 fn values_are_functions_of_their_arguments() {
     let bsdf = deep()[4].1;
     let (wo, wi) = (direction(60.0, 30.0), direction(25.0, 170.0));
-    let sample = || bsdf.sample(wo, 0.99, [0.3, 0.4], Mode::Radiance, Lobes::ALL);
+    let sample = || bsdf.sample(wo, 0.99, [0.3, 0.4]);
     assert_eq!(sample(), sample());
-    assert_eq!(bsdf.f(wo, wi, Mode::Radiance), bsdf.f(wo, wi, Mode::Radiance));
-    assert_eq!(bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL), bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+    assert_eq!(bsdf.f(wo, wi), bsdf.f(wo, wi));
+    assert_eq!(bsdf.pdf(wo, wi), bsdf.pdf(wo, wi));
     assert!(sample().is_none_or(|sample| sample.pdf_is_proportional));
 }
 
@@ -367,7 +341,7 @@ fn the_density_is_never_zero_and_about_normal() {
         let total = estimate(50_000, |index| {
             let (_, u) = numbers(50, index);
             let wi = crate::core::warp::uniform_sphere(u);
-            let pdf = bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL);
+            let pdf = bsdf.pdf(wo, wi);
             assert!(pdf >= 0.1 * 0.079, "{name} {wi}: {pdf}");
             f64::from(pdf) * 4.0 * std::f64::consts::PI
         });
@@ -386,7 +360,7 @@ fn lobes_are_named_as_in_pbrt() {
     let mirror = TrowbridgeReitz::SMOOTH;
     let mut bsdf = Bsdf::coated_conductor(grey(0.3), grey(3.0), mirror, &CoatLayer::default());
     assert_eq!(bsdf.lobes(), reflection | specular);
-    assert!(bsdf.f(Vec3::Z, direction(10.0, 0.0), Mode::Radiance).is_black());
+    assert!(bsdf.f(Vec3::Z, direction(10.0, 0.0)).is_black());
     bsdf.regularize();
     assert_eq!(bsdf.lobes(), reflection | Lobes::GLOSSY);
 }

@@ -9,7 +9,8 @@ use crate::core::elementary::ln;
 use crate::core::math::power_heuristic;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
-use crate::shading::bsdf::{DirectionSample, Lobes, Mode, is_grazing};
+use crate::shading::bsdf::dielectric::Mode;
+use crate::shading::bsdf::{DirectionSample, Lobes, is_grazing};
 
 /// Russian roulette: the throughput after a step, and the walks that go on.
 #[inline(always)]
@@ -100,7 +101,6 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
     pub(super) fn walk(
         &self,
         [wo, wi]: [Vector<R>; 2],
-        mode: Mode,
         random: &mut Random<R>,
         active: R::Mask,
     ) -> Spectrum<R> {
@@ -109,7 +109,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
         let coat_is_specular = self.coat.is_specular();
         let base_is_specular = self.base.is_specular();
         // Enter along `wo`, and find the direction from which light leaves along `wi`.
-        let [entry, exit] = self.entry_and_exit([wo, wi], mode, random, active);
+        let [entry, exit] = self.entry_and_exit([wo, wi], random, active);
         let to_exit = -exit.wi;
         let exit_weight = exit.f / exit.pdf;
 
@@ -139,7 +139,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 walk.z = R::select(scatters, step.next, walk.z);
                 let leaves = scatters & walk.w.z.gt(zero) & !coat_is_specular;
                 if leaves.any() {
-                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
+                    let leaving = coat_f(&self.coat, -walk.w, wi, Mode::Radiance);
                     let weight = power_heuristic(pdf, self.exit_density(-walk.w, wi));
                     let out = transmittance(walk.z - self.thickness, walk.w);
                     let light = walk.beta * (leaving * (out * weight));
@@ -149,7 +149,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
             if step.at_coat.any() {
                 // Reflect at the coat, from inside.
                 let u = (random.one(step.at_coat), random.two(step.at_coat));
-                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, mode, Lobes::REFLECTION);
+                let sample = sample_coat(&self.coat, -walk.w, u.0, u.1, Mode::Radiance, Lobes::REFLECTION);
                 Self::turn(&mut walk, step.at_coat, &sample);
             }
             if step.at_base.any() {
@@ -168,7 +168,7 @@ impl<R: Real, B: Base<R>> Layered<B, R> {
                 Self::turn(&mut walk, step.at_base, &sample);
                 let leaves = step.at_base & walk.alive & !coat_is_specular;
                 if leaves.any() {
-                    let leaving = coat_f(&self.coat, -walk.w, wi, mode);
+                    let leaving = coat_f(&self.coat, -walk.w, wi, Mode::Radiance);
                     let weight = power_heuristic(sample.pdf, self.exit_density(-walk.w, wi));
                     let weight = R::select(base_is_specular, one, weight);
                     let light = walk.beta * (leaving * (weight * transmittance(self.thickness, walk.w)));

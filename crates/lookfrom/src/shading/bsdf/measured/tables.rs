@@ -11,7 +11,7 @@ use super::half_angle::HalfAngleValues;
 use super::interpolant::Interpolant;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::kept::Kept;
-use crate::shading::bsdf::{Lobes, Mode, ScatteringFunction};
+use crate::shading::bsdf::lanes::LaneBsdf;
 
 /// The tables of a measured material, compiled.
 pub struct MeasuredTables {
@@ -108,12 +108,9 @@ impl MeasuredTables {
         let numbers =
             |index: u32| [(index as f32 + 0.5) / COUNT as f32, index.reverse_bits() as f32 * 2_f32.powi(-32)];
         let mut sum = Spectrum::BLACK;
-        for sample in (0..COUNT)
-            .filter_map(|index| {
-                ScatteringFunction::sample(&bsdf, Vec3::Z, 0.0, numbers(index), Mode::Radiance, Lobes::ALL)
-            })
-            .filter(|sample| sample.pdf > 0.0)
-        {
+        let seen = bsdf.prepare(Vec3::Z.into());
+        let samples = (0..COUNT).map(|index| bsdf.sample(&seen, 0.0, numbers(index)));
+        for sample in samples.filter(|sample| sample.is_valid && sample.pdf > 0.0) {
             sum += sample.f * (sample.wi.z.abs() / sample.pdf / COUNT as f32);
         }
         sum.rgb()

@@ -8,7 +8,7 @@ use crate::core::vector::Vector;
 use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::layered::{PLANE, lattice};
 use crate::shading::bsdf::microfacet::TrowbridgeReitz;
-use crate::shading::bsdf::tests::{direction, numbers};
+use crate::shading::bsdf::tests::{direction, numbers, weight_of_energy};
 
 /// Facets of α.
 fn facets(alpha: f32, distribution: Distribution, masking: Masking) -> Microfacets {
@@ -53,7 +53,7 @@ fn plastic_is_that_of_mitsuba() {
         let bsdf = plastic([0.2, 0.5, 0.9], is_nonlinear, facets);
         for ([wi, wo], expected) in PAIRS.into_iter().zip(values) {
             let [wi, wo] = [wi, wo].map(|(theta, phi)| direction(theta, phi));
-            let [dark, _, bright, _] = ScatteringFunction::f(&bsdf, wo, wi, Mode::Radiance).0;
+            let [dark, _, bright, _] = Bsdf::Plastic(bsdf).f(wo, wi).0;
             for (found, expected) in [dark, bright].into_iter().zip(expected) {
                 // There masking is a fit within 0.35 % of Smith's, and the reflectance inside a smooth surface another.
                 let error = (found / expected - 1.0).abs();
@@ -69,8 +69,8 @@ fn albedos(bsdf: &Bsdf, wo: Vec3) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for index in 0..COUNT {
         let (uc, u) = numbers(7, index);
-        if let Some(sample) = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL) {
-            let weight = f64::from(sample.f.0[0] * sample.wi.z.abs() / sample.pdf);
+        if let Some(sample) = bsdf.sample(wo, uc, u) {
+            let weight = f64::from(weight_of_energy(bsdf, wo, &sample).0[0]);
             sums[usize::from(sample.lobe.is_transmission())] += weight;
         }
     }

@@ -5,7 +5,6 @@ use lookfrom_simd::{Float, Mask, Real};
 
 use super::Model;
 use super::prepared::PreparedSurface;
-use crate::shading::bsdf::Lobes;
 
 /// Probabilities of the lobes.
 pub(super) struct Choice<R: Real> {
@@ -15,13 +14,13 @@ pub(super) struct Choice<R: Real> {
     pub(super) facet: R,
     pub(super) matte: R,
     pub(super) matte_through: R,
-    /// Whether there is a lobe on the sides that are allowed.
+    /// Whether any lobe carries light.
     pub(super) exists: R::Mask,
 }
 
 impl<R: Real> Choice<R> {
     #[inline(always)]
-    pub(super) fn new<M: Model<R>>(prepared: &PreparedSurface<R, M>, lobes: Lobes) -> Self {
+    pub(super) fn new<M: Model<R>>(prepared: &PreparedSurface<R, M>) -> Self {
         let surface = &prepared.surface;
         let (zero, one) = (prepared.wo.z.like(0.0), prepared.wo.z.like(1.0));
         let coat = match &prepared.coat {
@@ -35,8 +34,7 @@ impl<R: Real> Choice<R> {
         let below = (one - coat) * (one - sheen);
         let facet = surface.facet(Float::min(prepared.wo.z, one), prepared.is_inside);
         let all = prepared.mirror.all() * below;
-        let [mirrored, passed] =
-            lobes.allowed([prepared.weigh(facet.mirrored) * all, prepared.weigh(facet.passed) * all]);
+        let facet = prepared.weigh(facet.mirrored) * all + prepared.weigh(facet.passed) * all;
         let through = prepared.is_inside.like(true);
         let passes = surface.leaf.gt(zero) | surface.has_glass();
         let mut matte_through = zero;
@@ -45,15 +43,11 @@ impl<R: Real> Choice<R> {
             matte_through = R::select(passes, albedo * below, zero);
         }
         let matte = prepared.weigh(prepared.matte_albedo(!through)) * below;
-        let [matte, matte_through] = lobes.allowed([matte, matte_through]);
         // glTF's sheen is below the coat, OpenPBR's fuzz above.
-        let (of_sheen, coat) = match surface.model.open_pbr() {
+        let (sheen, coat) = match surface.model.open_pbr() {
             None => (of_sheen * (one - coat), coat),
             Some(_) => (of_sheen, coat * (one - sheen)),
         };
-        let [sheen, _] = lobes.allowed([of_sheen, zero]);
-        let [coat, _] = lobes.allowed([coat, zero]);
-        let facet = mirrored + passed;
         let sum = coat + sheen + facet + matte + matte_through;
         Self {
             coat: coat / sum,

@@ -14,9 +14,8 @@ use super::{Model, Principled};
 use crate::core::math::both;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
+use crate::shading::bsdf::across;
 use crate::shading::bsdf::albedo::{self, Split};
-use crate::shading::bsdf::dielectric::radiance_scale;
-use crate::shading::bsdf::{Mode, across};
 
 /// A surface with the terms that depend on `wo` alone.
 pub(super) struct PreparedSurface<R: Real, M> {
@@ -292,12 +291,12 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
 
     /// As [`crate::shading::bsdf::Bsdf::f`], for `wi` in the mirrored frame and not grazing, by its facets.
     #[inline(always)]
-    pub(super) fn f_by(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
+    pub(super) fn f_by(&self, wi: Vector<R>, facets: &Facings<R>) -> Spectrum<R> {
         let zero = wi.z.like(0.0);
         let through = is_below(wi);
         let (below_coat, below_sheen) = self.below(wi);
         let mut f = self.matte(upward(wi), through) * zero.like(FRAC_1_PI);
-        f += self.facets_f(wi, mode, facets);
+        f += self.facets_f(wi, facets);
         if self.surface.model.open_pbr().is_some() {
             return self.under_fuzz(f * self.tinted_by_coat(wi, below_coat), wi, below_sheen);
         }
@@ -360,7 +359,7 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
 
     /// Reflection and transmission by facets.
     #[inline(always)]
-    fn facets_f(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
+    fn facets_f(&self, wi: Vector<R>, facets: &Facings<R>) -> Spectrum<R> {
         let surface = &self.surface;
         let zero = wi.z.like(0.0);
         let black = Spectrum::splat(zero);
@@ -382,14 +381,14 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
         let Some(back) = back else { return sum };
         // Without shadowing: all of the light leaves.
         let eta = R::select(through, self.relative_eta(), zero.like(1.0));
-        self.add_pane(&mut sum, wi, first, eta, mode);
-        self.add_pane(&mut sum, wi, back, eta, mode);
+        self.add_pane(&mut sum, wi, first, eta);
+        self.add_pane(&mut sum, wi, back, eta);
         sum
     }
 
     /// Adds reflection and transmission by a facet of a rough body.
     #[inline(always)]
-    fn add_pane(&self, sum: &mut Spectrum<R>, wi: Vector<R>, facing: &Facing<R>, eta: R, mode: Mode) {
+    fn add_pane(&self, sum: &mut Spectrum<R>, wi: Vector<R>, facing: &Facing<R>, eta: R) {
         let surface = &self.surface;
         let is_seen = facing.exists & surface.is_rough_body();
         if !is_seen.any() {
@@ -397,7 +396,7 @@ impl<R: Real, M: Model<R>> PreparedSurface<R, M> {
         }
         let pane = surface.pane(facing.cos, self.is_inside);
         let part = Spectrum::select(is_below(wi), pane.passed * surface.tint(), pane.mirrored);
-        let value = surface.glass * radiance_scale(facing.density / Float::abs(wi.z), eta, mode);
+        let value = surface.glass * (facing.density / Float::abs(wi.z) / (eta * eta));
         *sum += Spectrum::select(is_seen, part * value, Spectrum::splat(value.like(0.0)));
     }
 }

@@ -12,9 +12,8 @@ use crate::core::sampler::ONE_MINUS_EPSILON;
 use crate::core::spectrum::Spectrum;
 use crate::core::vector::Vector;
 use crate::core::warp;
-use crate::shading::bsdf::dielectric::radiance_scale;
 use crate::shading::bsdf::diffuse::cosine_direction;
-use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
+use crate::shading::bsdf::{DirectionSample, across, is_grazing};
 
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///
@@ -22,19 +21,18 @@ use crate::shading::bsdf::{DirectionSample, Lobes, Mode, across, is_grazing};
 pub struct LocalScattering<R: Real = f32, M = Gltf> {
     prepared: PreparedSurface<R, M>,
     choice: Choice<R>,
-    lobes: Lobes,
     /// False for a grazing ω_o.
     is_usable: R::Mask,
 }
 
 impl<R: Real, M: Model<R>> LocalScattering<R, M> {
     #[inline(never)]
-    pub(in crate::shading::bsdf) fn new(look: &Principled<R, M>, wo: Vector<R>, lobes: Lobes) -> Self {
+    pub(in crate::shading::bsdf) fn new(look: &Principled<R, M>, wo: Vector<R>) -> Self {
         wo.z.at_level(
             #[inline(always)]
             || {
                 let prepared = PreparedSurface::new(look, wo);
-                Self { choice: Choice::new(&prepared, lobes), prepared, lobes, is_usable: !is_grazing(wo) }
+                Self { choice: Choice::new(&prepared), prepared, is_usable: !is_grazing(wo) }
             },
         )
     }
@@ -47,13 +45,13 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
 
     /// As [`crate::shading::bsdf::Bsdf::f`].
     #[inline(never)]
-    pub(in crate::shading::bsdf) fn f(&self, wi: Vector<R>, mode: Mode) -> Spectrum<R> {
+    pub(in crate::shading::bsdf) fn f(&self, wi: Vector<R>) -> Spectrum<R> {
         wi.z.at_level(
             #[inline(always)]
             || {
                 let is_usable = self.is_usable & !is_grazing(wi);
                 let wi = self.towards(wi);
-                let f = self.f_by(wi, mode, &self.prepared.facets(wi));
+                let f = self.f_by(wi, &self.prepared.facets(wi));
                 Spectrum::select(is_usable, f, Spectrum::splat(wi.z.like(0.0)))
             },
         )
@@ -74,21 +72,21 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
 
     /// Both, by the same facets; the density is 0 where the value is black.
     #[inline(always)]
-    pub(in crate::shading::bsdf) fn f_and_pdf(&self, wi: Vector<R>, mode: Mode) -> (Spectrum<R>, R) {
+    pub(in crate::shading::bsdf) fn f_and_pdf(&self, wi: Vector<R>) -> (Spectrum<R>, R) {
         let is_usable = self.is_usable & !is_grazing(wi);
-        let (f, pdf) = self.both(self.towards(wi), mode);
+        let (f, pdf) = self.both(self.towards(wi));
         let zero = wi.z.like(0.0);
         (Spectrum::select(is_usable, f, Spectrum::splat(zero)), R::select(is_usable, pdf, zero))
     }
 
     /// Value and density in the mirrored frame, for directions that are not grazing.
     #[inline(never)]
-    fn both(&self, wi: Vector<R>, mode: Mode) -> (Spectrum<R>, R) {
+    fn both(&self, wi: Vector<R>) -> (Spectrum<R>, R) {
         wi.z.at_level(
             #[inline(always)]
             || {
                 let facets = self.prepared.facets(wi);
-                let f = self.f_by(wi, mode, &facets);
+                let f = self.f_by(wi, &facets);
                 let (zero, is_black) = (wi.z.like(0.0), f.is_black());
                 if is_black.all() {
                     return (f, zero);
@@ -112,10 +110,10 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
     }
 
     #[inline(never)]
-    fn f_by(&self, wi: Vector<R>, mode: Mode, facets: &Facings<R>) -> Spectrum<R> {
+    fn f_by(&self, wi: Vector<R>, facets: &Facings<R>) -> Spectrum<R> {
         wi.z.at_level(
             #[inline(always)]
-            || self.prepared.f_by(wi, mode, facets),
+            || self.prepared.f_by(wi, facets),
         )
     }
 
@@ -164,20 +162,20 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
         let PreparedSurface { surface, wo, is_inside, .. } = &self.prepared;
         let (zero, one) = (cos.like(0.0), cos.like(1.0));
         let has_glass = surface.has_glass();
-        let may_reflect = has_glass.like(self.lobes.is_reflection());
+        let always = has_glass.like(true);
         if !has_glass.any() {
-            return (one, may_reflect);
+            return (one, always);
         }
         let cos = R::select(surface.passes_sharply(), Float::min(wo.z, one), cos);
         let Facet { mirrored, passed } = surface.facet(cos, *is_inside);
-        let [r, t] = self.lobes.allowed([self.prepared.weigh(mirrored), self.prepared.weigh(passed)]);
+        let (r, t) = (self.prepared.weigh(mirrored), self.prepared.weigh(passed));
         let mirrors = R::select(has_glass, r / (r + t), one);
-        (mirrors, has_glass.choose((r + t).gt(zero), may_reflect))
+        (mirrors, has_glass.choose((r + t).gt(zero), always))
     }
 
     /// As [`crate::shading::bsdf::Bsdf::sample`].
     #[inline(always)]
-    pub(in crate::shading::bsdf) fn sample(&self, uc: R, u: [R; 2], mode: Mode) -> DirectionSample<R> {
+    pub(in crate::shading::bsdf) fn sample(&self, uc: R, u: [R; 2]) -> DirectionSample<R> {
         let choice = &self.choice;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         // The lobe is chosen by the first of the two numbers of the direction, which is then stretched over the lobe's part:
@@ -218,13 +216,13 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
             self.sample_coat(&mut sample, u, is_coat);
         }
         if is_facet.any() {
-            self.sample_facet(&mut sample, u, uc, is_facet, mode);
+            self.sample_facet(&mut sample, u, uc, is_facet);
         }
         sample.is_valid = sample.is_valid & !is_grazing(sample.wi);
         sample.is_transmission = is_below(sample.wi);
         let is_spread = sample.is_valid & !sample.is_specular;
         if is_spread.any() {
-            let (f, pdf) = self.both(sample.wi, mode);
+            let (f, pdf) = self.both(sample.wi);
             let eta = R::select(is_facet & sample.is_transmission, self.prepared.relative_eta(), one);
             sample.f = Spectrum::select(sample.is_specular, sample.f, f);
             sample.pdf = R::select(sample.is_specular, sample.pdf, pdf);
@@ -252,7 +250,7 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
     }
 
     #[inline(always)]
-    fn sample_facet(&self, sample: &mut DirectionSample<R>, u: [R; 2], uc: R, is_facet: R::Mask, mode: Mode) {
+    fn sample_facet(&self, sample: &mut DirectionSample<R>, u: [R; 2], uc: R, is_facet: R::Mask) {
         let PreparedSurface { surface, wo, .. } = &self.prepared;
         let (zero, one) = (uc.like(0.0), uc.like(1.0));
         let probability = self.choice.facet;
@@ -270,7 +268,7 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
         sample.is_valid = sample.is_valid & (!is_facet | is_valid);
         let is_sharp = is_facet & reflects.choose(is_smooth, surface.passes_sharply());
         if is_sharp.any() {
-            let (f, eta) = self.sharp(wi, mode);
+            let (f, eta) = self.sharp(wi);
             let pdf = probability * R::select(reflects, mirrors, one - mirrors);
             sample.f = Spectrum::select(is_sharp, f, sample.f);
             sample.pdf = R::select(is_sharp, pdf, sample.pdf);
@@ -303,7 +301,7 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
 
     /// The value of specular reflection or transmission to `wi`, and the relative index.
     #[inline(always)]
-    fn sharp(&self, wi: Vector<R>, mode: Mode) -> (Spectrum<R>, R) {
+    fn sharp(&self, wi: Vector<R>) -> (Spectrum<R>, R) {
         let PreparedSurface { surface, wo, is_inside, .. } = &self.prepared;
         let one = wi.z.like(1.0);
         let through = is_below(wi);
@@ -311,11 +309,11 @@ impl<R: Real, M: Model<R>> LocalScattering<R, M> {
         let part = Spectrum::select(through, facet.passed, facet.mirrored);
         let eta = R::select(through, self.prepared.relative_eta(), one);
         if surface.model.open_pbr().is_some() {
-            let scale = radiance_scale(one / Float::abs(wi.z), eta, mode);
+            let scale = one / Float::abs(wi.z) / (eta * eta);
             return (part * self.prepared.below_all(wi) * scale, eta);
         }
         let (coat, sheen) = self.prepared.below(wi);
-        (part * radiance_scale(coat * sheen / Float::abs(wi.z), eta, mode), eta)
+        (part * (coat * sheen / Float::abs(wi.z) / (eta * eta)), eta)
     }
 }
 

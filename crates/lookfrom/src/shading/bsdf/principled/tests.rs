@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::core::color::DenselySampledSpectrum;
-use crate::shading::bsdf::tests::{direction, number, numbers};
+use crate::shading::bsdf::BsdfSample;
+use crate::shading::bsdf::tests::{direction, number, numbers, weight_of_energy};
 use crate::shading::bsdf::{Bsdf, fresnel};
 
 fn grey(value: f32) -> Spectrum {
@@ -132,8 +133,8 @@ fn albedo(bsdf: &Bsdf, wo: Vec3, lane: usize) -> (f64, f64) {
         // Stratified over the choice of lobe.
         let (uc, u) = numbers(29, index);
         let uc = (index as f32 + uc) / N as f32;
-        if let Some(s) = bsdf.sample(wo, uc, u, Mode::Importance, Lobes::ALL) {
-            let weight = f64::from(s.f.0[lane] * s.wi.z.abs() / s.pdf);
+        if let Some(s) = bsdf.sample(wo, uc, u) {
+            let weight = f64::from(weight_of_energy(bsdf, wo, &s).0[lane]);
             sum += weight;
             squares += weight * weight;
         }
@@ -195,8 +196,9 @@ fn bodies_of_white_glass_keep_all_light() {
                     for index in 0..100 {
                         // Not only in the mean: for every sample.
                         let (uc, u) = numbers(37, index);
-                        let sample = bsdf.sample(direction(angle, 20.0), uc, u, Mode::Importance, Lobes::ALL);
-                        let weight = sample.map_or(0.0, |s| s.f.0[0] * s.wi.z.abs() / s.pdf);
+                        let wo = direction(angle, 20.0);
+                        let sample = bsdf.sample(wo, uc, u);
+                        let weight = sample.map_or(0.0, |s| weight_of_energy(&bsdf, wo, &s).0[0]);
                         if !((weight - 1.0).abs() < 1e-3) {
                             faults.push(format!(
                                 "{name}, roughness {roughness}, index {eta}, {angle}°: {weight} {sample:?}"
@@ -274,8 +276,7 @@ fn limits_are_what_is_there_already() {
             let wo = direction(angle, 30.0);
             for index in 0..200 {
                 let (uc, u) = numbers(k as u64, index);
-                let mode = Mode::Radiance;
-                let [ours, theirs] = [&glass, &pbrt].map(|bsdf| bsdf.sample(wo, uc, u, mode, Lobes::ALL));
+                let [ours, theirs] = [&glass, &pbrt].map(|bsdf| bsdf.sample(wo, uc, u));
                 let (Some(ours), Some(theirs)) = (ours, theirs) else {
                     // From inside, a rough one maps random numbers to facet normals in another order.
                     assert!(
@@ -293,10 +294,10 @@ fn limits_are_what_is_there_already() {
                 if !ours.lobe.is_specular() {
                     // Except for the light that pbrt's facets mask, and what they send to the wrong side.
                     let seen = rough(alpha).g(wo.into(), theirs.wi.into()) / rough(alpha).g1(wo.into());
-                    let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi, mode).0[0]);
+                    let [f, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.f(wo, theirs.wi).0[0]);
                     assert!(f * seen > 0.998 * pbrts, "{angle}: {f} {pbrts}");
                     near.0 += u32::from(close(f * seen, pbrts, 5e-3));
-                    let [pdf, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.pdf(wo, theirs.wi, mode, Lobes::ALL));
+                    let [pdf, pbrts] = [&glass, &pbrt].map(|bsdf| bsdf.pdf(wo, theirs.wi));
                     assert!(pdf > 0.998 * pbrts, "{angle}: {pdf} {pbrts}");
                     near.1 += 1;
                     continue;
@@ -322,11 +323,11 @@ fn limits_are_what_is_there_already() {
     for (wo, wi) in
         [(direction(10.0, 0.0), direction(12.0, 170.0)), (direction(35.0, 0.0), direction(30.0, 175.0))]
     {
-        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.f(wo, wi, Mode::Radiance));
+        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.f(wo, wi));
         for lane in 0..4 {
             assert!(close(ours.0[lane], theirs.0[lane], 0.02), "{ours:?} {theirs:?}");
         }
-        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.pdf(wo, wi, Mode::Radiance, Lobes::ALL));
+        let [ours, theirs] = [&metal, &pbrt].map(|bsdf| bsdf.pdf(wo, wi));
         assert!(close(ours, theirs, 0.02), "{ours} {theirs}");
     }
     // A diffuse body without specular reflection is Lambertian.
@@ -342,7 +343,7 @@ fn limits_are_what_is_there_already() {
     for (wo, wi) in
         [(direction(10.0, 0.0), direction(60.0, 130.0)), (direction(80.0, 0.0), direction(30.0, 10.0))]
     {
-        let [ours, theirs] = [&matte, &lambert].map(|bsdf| bsdf.f(wo, wi, Mode::Radiance).0[1]);
+        let [ours, theirs] = [&matte, &lambert].map(|bsdf| bsdf.f(wo, wi).0[1]);
         assert!(close(ours, theirs, 1e-3), "{ours} {theirs}");
     }
 }

@@ -2,13 +2,12 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use glam::{Vec2, Vec3, Vec3Swizzles};
-
 use crate::core::spectrum::Spectrum;
-use crate::core::warp;
-use crate::shading::bsdf::diffuse::cosine_direction;
+use crate::core::vector::Vector;
+use crate::shading::bsdf::diffuse::{cosine_direction, cosine_pdf, cosine_sample};
+use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::{BsdfSample, Description, Mode, ScatteringFunction, same_side};
+use crate::shading::bsdf::{Description, DirectionSample, ScatteringFunction, same_side};
 
 /// Clay: facets that are matte each, so that its edges do not darken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +18,14 @@ pub struct Clay {
     pub sigma: f32,
 }
 
-impl ScatteringFunction for Clay {
-    fn f(&self, wo: Vec3, wi: Vec3, _: Mode) -> Spectrum {
+impl LaneBsdf<f32> for Clay {
+    type Prepared = Vector<f32>;
+
+    fn prepare(&self, wo: Vector<f32>) -> Vector<f32> {
+        wo
+    }
+
+    fn f(&self, &wo: &Vector<f32>, wi: Vector<f32>) -> Spectrum {
         if !same_side(wo, wi) {
             return Spectrum::BLACK;
         }
@@ -28,26 +33,31 @@ impl ScatteringFunction for Clay {
         let matte = 1.0 - 0.5 * variance / (variance + 0.33);
         let rough = 0.45 * variance / (variance + 0.09);
         // sin α tan β cos (φ_i − φ_o), where α is the larger angle.
-        let back = Vec2::dot(wo.xy(), wi.xy()).max(0.0) / wo.z.abs().max(wi.z.abs());
+        let back = (wo.x * wi.x + wo.y * wi.y).max(0.0) / wo.z.abs().max(wi.z.abs());
         self.reflectance * (FRAC_1_PI * (matte + rough * back))
     }
 
-    fn pdf(&self, wo: Vec3, wi: Vec3, _: Mode, _: Lobes) -> f32 {
-        if same_side(wo, wi) { warp::cosine_hemisphere_pdf(wi.z.abs()) } else { 0.0 }
+    fn pdf(&self, &wo: &Vector<f32>, wi: Vector<f32>) -> f32 {
+        cosine_pdf(wo, wi)
     }
 
-    fn sample(&self, wo: Vec3, _: f32, u: [f32; 2], mode: Mode, _: Lobes) -> Option<BsdfSample> {
-        let wi = Vec3::from(cosine_direction(u, wo.z));
-        let (f, pdf) = (self.f(wo, wi, mode), self.pdf(wo, wi, mode, Lobes::ALL));
-        Some(BsdfSample::new(wi, f, pdf, self.lobes()))
+    fn sample(&self, wo: &Vector<f32>, _: f32, u: [f32; 2]) -> DirectionSample<f32> {
+        let wi = cosine_direction(u, wo.z);
+        cosine_sample(*wo, wi, self.f(wo, wi))
     }
 
+    fn has_density(&self) -> bool {
+        true
+    }
+
+    fn diffuse_share(&self, _: &Vector<f32>, _: Vector<f32>, _: Spectrum) -> Spectrum {
+        Spectrum([1.0; 4])
+    }
+}
+
+impl ScatteringFunction for Clay {
     fn lobes(&self) -> Lobes {
         Lobes::REFLECTION | Lobes::DIFFUSE
-    }
-
-    fn diffuse_share(&self, _: Vec3, _: Vec3, _: Spectrum) -> Spectrum {
-        Spectrum([1.0; 4])
     }
 
     fn description(&self) -> Description {

@@ -5,9 +5,10 @@ use glam::Vec3;
 use super::clay::Clay;
 use super::uniform_direction;
 use crate::core::spectrum::Spectrum;
-use crate::shading::bsdf::class::scattering_functions;
-use crate::shading::bsdf::lobes::Lobes;
-use crate::shading::bsdf::{Mode, ScatteringFunction};
+use crate::core::vector::Vector;
+use crate::shading::bsdf::lanes::{ClassTraits, LaneBsdf};
+use crate::shading::bsdf::one::{PreparedBsdf, scattering_functions};
+use crate::shading::bsdf::{DirectionSample, ScatteringFunction, is_grazing};
 
 scattering_functions! {
     /// A table with one row.
@@ -24,6 +25,10 @@ fn clay(sigma: f32) -> Extended {
     Extended::Clay(Clay { reflectance: Spectrum([0.8; 4]), sigma })
 }
 
+fn value(bsdf: &Extended, wo: Vec3, wi: Vec3) -> f32 {
+    bsdf.f(&bsdf.prepare(wo.into()), wi.into()).0[0]
+}
+
 /// The midpoints of a grid of numbers in [0, 1)².
 fn grid() -> impl Iterator<Item = [f32; 2]> {
     let at = |k: usize| (k as f32 + 0.5) / 64.0;
@@ -36,10 +41,10 @@ fn a_row_makes_it_a_bsdf() {
     bsdf.class_mut().regularize();
     assert_eq!(bsdf.class().description().kind, "clay");
     let [a, b] = [[0.1, 0.7], [0.4, 0.2]].map(|u| uniform_direction(u).with_z(0.3).normalize());
-    let f = |wo, wi| bsdf.class().f(wo, wi, Mode::Radiance).0[0];
+    let f = |wo, wi| value(&bsdf, wo, wi);
     assert!((f(a, b) - f(b, a)).abs() < 1e-6);
     // Without roughness it is Lambert's.
-    assert!((clay(0.0).class().f(a, b, Mode::Radiance).0[0] - 0.8 / std::f32::consts::PI).abs() < 1e-6);
+    assert!((value(&clay(0.0), a, b) - 0.8 / std::f32::consts::PI).abs() < 1e-6);
 }
 
 #[test]
@@ -47,12 +52,13 @@ fn its_samples_add_up_to_its_albedo() {
     for (sigma, wo) in [(0.2, Vec3::Z), (0.6, Vec3::new(0.8, 0.0, 0.6)), (1.0, Vec3::new(0.0, -0.6, -0.8))] {
         let bsdf = clay(sigma);
         let sampled: f32 = grid()
-            .filter_map(|u| bsdf.class().sample(wo, 0.0, u, Mode::Radiance, Lobes::ALL))
+            .map(|u| bsdf.sample(&bsdf.prepare(wo.into()), 0.0, u))
+            .filter(|sample| sample.is_valid)
             .map(|sample| sample.f.0[0] * sample.wi.z.abs() / sample.pdf)
             .sum();
         let integral: f32 = grid()
             .map(|u| (uniform_direction(u), 4.0 * std::f32::consts::PI))
-            .map(|(wi, area)| bsdf.class().f(wo, wi, Mode::Radiance).0[0] * wi.z.abs() * area)
+            .map(|(wi, area)| value(&bsdf, wo, wi) * wi.z.abs() * area)
             .sum();
         let [sampled, integral] = [sampled, integral].map(|sum| sum / 4096.0);
         assert!((sampled - integral).abs() < 2e-3, "{sigma}: {sampled} {integral}");

@@ -1,8 +1,10 @@
 //! Tests of Whitted's BSDF against Whitted ray tracing. (Its density is tested with all others.)
 
+use glam::Vec3;
+
 use super::*;
+use crate::shading::bsdf::Bsdf;
 use crate::shading::bsdf::tests::{direction, number, numbers, uniform_direction};
-use crate::shading::bsdf::{Bsdf, Mode};
 
 fn coefficients(trial: u64) -> WhittedCoefficients {
     let spectrum = |k: u64| Spectrum(std::array::from_fn(|lane| number(80 + k, trial * 4 + lane as u64)));
@@ -37,7 +39,7 @@ fn lit_as_the_tree_of_rays_is() {
             }
             false => Spectrum::BLACK,
         };
-        let got = Bsdf::Whitted(whitted).f(wo, wi, Mode::Radiance) * wi.z.abs();
+        let got = Bsdf::Whitted(whitted).f(wo, wi) * wi.z.abs();
         assert!(close(got, expected), "{whitted:?} {wo} {wi}");
     }
 }
@@ -58,11 +60,10 @@ fn matte_it_is_lambertian_reflection_bit_for_bit() {
         let lambertian = Bsdf::diffuse(diffuse);
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
         let wi = uniform_direction([number(3, trial), number(4, trial)]);
-        let (mode, all) = (Mode::Radiance, Lobes::ALL);
-        assert_eq!(whitted.f(wo, wi, mode), lambertian.f(wo, wi, mode));
-        assert_eq!(whitted.pdf(wo, wi, mode, all), lambertian.pdf(wo, wi, mode, all));
+        assert_eq!(whitted.f(wo, wi), lambertian.f(wo, wi));
+        assert_eq!(whitted.pdf(wo, wi), lambertian.pdf(wo, wi));
         let (uc, u) = (number(5, trial), [number(6, trial), number(7, trial)]);
-        assert_eq!(whitted.sample(wo, uc, u, mode, all), lambertian.sample(wo, uc, u, mode, all));
+        assert_eq!(whitted.sample(wo, uc, u), lambertian.sample(wo, uc, u));
     }
 }
 
@@ -75,7 +76,9 @@ fn branches_as_the_tree_of_rays_does() {
         let wo = uniform_direction([number(1, trial), number(2, trial)]);
         let n = Vec3::new(0.0, 0.0, wo.z.signum());
         let branches = whitted.has_branches().then(|| whitted.branches(n.into(), wo.into(), wo.z > 0.0));
-        // Restrict the sampling to one side at a time; a specular lobe's expectation is f cos.
+        let seen = whitted.seen_from(wo.into());
+        let of_mirror = seen.diffuse_probability + seen.glossy_probability + 0.5 * seen.mirror_probability;
+        // A specular lobe's expectation is f cos / pdf, times its probability.
         for side in [Lobes::REFLECTION, Lobes::TRANSMISSION] {
             let expected = match (&branches, side) {
                 (None, _) => None,
@@ -83,8 +86,8 @@ fn branches_as_the_tree_of_rays_does() {
                 (Some(branches), _) => Some(branches.refracted).filter(|_| branches.is_refracted),
             };
             let got = bsdf
-                .sample(wo, 1.0 - f32::EPSILON, [0.5; 2], Mode::Radiance, side)
-                .filter(|sample| sample.lobe.is_specular());
+                .sample(wo, if side == Lobes::REFLECTION { of_mirror } else { 1.0 - f32::EPSILON }, [0.5; 2])
+                .filter(|sample| sample.lobe == side | Lobes::SPECULAR);
             // The largest number below one misses lobes whose probability is less than its distance to one.
             if expected.is_none_or(|(_, weight)| weight.max_lane() > 1e-3) {
                 assert_eq!(
@@ -122,7 +125,7 @@ fn ways_on_are_chosen_as_often_as_they_say() {
     let mut met = [(0_u32, 0.0); 2];
     for index in 0..n {
         let (uc, u) = numbers(9, index);
-        let sample = Bsdf::Whitted(whitted).sample(wo, uc, u, Mode::Radiance, Lobes::ALL);
+        let sample = Bsdf::Whitted(whitted).sample(wo, uc, u);
         let Some(sample) = sample.filter(|sample| sample.lobe.is_specular()) else { continue };
         let way = &mut met[usize::from(sample.lobe.is_transmission())];
         *way = (way.0 + 1, f64::from(sample.pdf));

@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 use super::*;
+use crate::shading::bsdf::lanes::LaneBsdf;
 use crate::shading::bsdf::measured::{Measured, MeasuredTables};
-use crate::shading::bsdf::{Lobes, Mode, ScatteringFunction};
 use lookfrom_scene::measured as written;
 
 /// Trowbridge and Reitz's distribution of normals without shadowing, for a colour: of half vector and light.
@@ -68,8 +68,8 @@ fn densities_follow_the_tables() {
             let weights: Vec<f32> = (0..4000)
                 .map(|index| {
                     let u = [number(7 + 2 * index), number(8 + 2 * index)];
-                    let sample = bsdf.sample(wo, 0.0, u, Mode::Radiance, Lobes::ALL);
-                    sample.map_or(0.0, |sample| sample.f.0[0] * sample.wi.z / sample.pdf)
+                    let sample = bsdf.sample(&bsdf.prepare(wo.into()), 0.0, u);
+                    if sample.is_valid { sample.f.0[0] * sample.wi.z / sample.pdf } else { 0.0 }
                 })
                 .collect();
             let mean = weights.iter().sum::<f32>() / weights.len() as f32;
@@ -85,7 +85,8 @@ fn tables_without_light_are_sampled_all_the_same() {
     let tables = written::Tables::HalfAngle(HalfAngle { counts: [3, 2, 1], values: vec![[0.0; 3]; 6] });
     let written = written::Measured { tables, digest: "black".into() };
     let bsdf = Measured::new(MeasuredTables::kept(&written, &[]), Some([400.0, 500.0, 600.0, 700.0]));
-    let sample = bsdf.sample(Vec3::Z, 0.0, [0.3, 0.4], Mode::Radiance, Lobes::ALL).expect("a direction");
+    let sample = bsdf.sample(&bsdf.prepare(Vec3::Z.into()), 0.0, [0.3, 0.4]);
+    assert!(sample.is_valid);
     assert_eq!(sample.f.0, [0.0; 4]);
     assert!(sample.pdf > 0.0 && sample.pdf < 4.0 * PI);
 }
