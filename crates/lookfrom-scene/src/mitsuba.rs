@@ -18,6 +18,7 @@ mod shape;
 mod texture;
 mod transform;
 mod value;
+mod version1;
 mod volume;
 mod xml;
 
@@ -107,7 +108,7 @@ struct Reader<'s, 'f> {
     slots: Slots,
     /// Whether the shape whose surface is read is a disk, along whose radius Mitsuba's u runs.
     is_on_disk: bool,
-    meshes: HashMap<shape::MeshKey, (Vec<MeshId>, Slots)>,
+    meshes: HashMap<shape::MeshKey, (shape::PlacedMeshes, Slots)>,
     /// Meshes with the normals of their files.
     own_normals: BTreeSet<MeshId>,
     groups: HashMap<*const Plugin, ObjectId>,

@@ -165,7 +165,7 @@ struct Reader<'s, 'f> {
     /// Measured materials by path.
     measured: BTreeMap<PathBuf, Arc<Measured>>,
     /// Media by name.
-    media: BTreeMap<String, MediumId>,
+    media: BTreeMap<String, NamedMedium>,
     /// An integrator that does not support media, until it has been warned of.
     without_media: Option<(String, Place)>,
     /// Missing files so far.
@@ -177,6 +177,14 @@ struct Reader<'s, 'f> {
 /// A material that has been defined or referred to.
 struct NamedMaterial {
     id: MaterialId,
+    /// Location of the first mention.
+    first: Place,
+    is_made: bool,
+}
+
+/// A medium that has been defined or referred to.
+struct NamedMedium {
+    id: MediumId,
     /// Location of the first mention.
     first: Place,
     is_made: bool,
@@ -234,6 +242,10 @@ impl Reader<'_, '_> {
             self.materials.iter().filter(|(_, named)| named.is_made).map(|(name, _)| &**name).collect();
         if let Some((name, named)) = self.materials.iter().find(|(_, named)| !named.is_made) {
             return Err(Self::unknown(&named.first, "material", name, made));
+        }
+        if let Some((name, named)) = self.media.iter().find(|(_, named)| !named.is_made) {
+            let made = self.media.iter().filter(|(_, named)| named.is_made).map(|(name, _)| &**name);
+            return Err(Self::unknown(&named.first, "medium", name, made));
         }
         if let Some(((is_float, name), named)) = self.textures.iter().find(|(_, named)| !named.is_made) {
             let known = self.textures.iter().filter(|((float, _), named)| float == is_float && named.is_made);

@@ -1,5 +1,6 @@
 //! BSDFs, with their opacity.
 
+use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -189,22 +190,26 @@ impl Reader<'_, '_> {
         let inner = self.nested(plugin)?;
         let material = match bump_mapping {
             BumpMapping::None => inner.material,
-            _ => self.under_map(plugin, inner.material, (bump_mapping, guard))?,
+            _ => self.under_map(plugin, inner.material, (bump_mapping, guard), &mut HashMap::new())?,
         };
         Ok(Surface { material, ..inner })
     }
 
-    /// A material, or all that it is mixed of, under a map.
+    /// A material, or all that it is mixed of, under a map; `known` are those that have been put there already.
     fn under_map(
         &mut self,
         plugin: &Plugin,
         inner: MaterialId,
         map: (BumpMapping, BumpGuard),
+        known: &mut HashMap<MaterialId, MaterialId>,
     ) -> Result<MaterialId> {
+        if let Some(&id) = known.get(&inner) {
+            return Ok(id);
+        }
         let mut material = self.scene.materials[inner.index()].clone();
         if let MaterialKind::Mix { materials: [first, second], .. } = &mut material.kind {
-            *first = self.under_map(plugin, *first, map)?;
-            *second = self.under_map(plugin, *second, map)?;
+            *first = self.under_map(plugin, *first, map, known)?;
+            *second = self.under_map(plugin, *second, map, known)?;
         } else if material.bump_mapping == BumpMapping::None {
             (material.bump_mapping, material.bump_guard) = (map.0, Some(map.1));
         } else {
@@ -215,6 +220,7 @@ impl Reader<'_, '_> {
         let Material { bump_mapping, bump_guard, back_face, .. } = material;
         let mapped = &mut self.scene.materials[id.index()];
         (mapped.bump_mapping, mapped.bump_guard, mapped.back_face) = (bump_mapping, bump_guard, back_face);
+        known.insert(inner, id);
         Ok(id)
     }
 

@@ -17,6 +17,9 @@ const PARTS: u32 = 4;
 /// Largest number of divided cells: coordinates of their corners fit in 21 bits each.
 const MOST: u32 = 1 << 20;
 
+/// Bytes that a cell with a part of the surface takes while it is made: of 100 triangles or so.
+const CELL: u64 = 8 << 10;
+
 /// Tetrahedra of a cube around its diagonal, by corners, whose bits are x, y and z.
 const TETRAHEDRA: [[u32; 4]; 6] =
     [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
@@ -34,6 +37,8 @@ impl Reader<'_, '_> {
             return Err(Error::invalid(&at, message)
                 .hint("an sdfgrid has one channel, and two numbers at least along each axis"));
         }
+        let cells = crossing_cells(&lattice).count() as u64;
+        let _making = self.context.budget.reserve(cells * CELL, "the surface of the distances", &at)?;
         let surface = surface(&lattice);
         if surface.triangles.is_empty() {
             return Err(Error::new(
@@ -47,22 +52,29 @@ impl Reader<'_, '_> {
     }
 }
 
+/// The cells with values of both signs at their corners, and those values.
+fn crossing_cells(lattice: &Lattice) -> impl Iterator<Item = ([u32; 3], [f64; 8])> {
+    let [x, y, z] = lattice.size.map(|points| points - 1);
+    let cells = (0..z).flat_map(move |z| (0..y).flat_map(move |y| (0..x).map(move |x| [x, y, z])));
+    let with_corners = cells.map(|cell| {
+        let corners = std::array::from_fn(|corner| {
+            let at = std::array::from_fn(|axis| i64::from(cell[axis] + (corner as u32 >> axis & 1)));
+            f64::from(lattice.cell(at)[0])
+        });
+        (cell, corners)
+    });
+    with_corners.filter(|(_, corners)| {
+        corners.iter().any(|value| *value < 0.0) && corners.iter().any(|value| *value >= 0.0)
+    })
+}
+
 /// The zeros of a lattice whose values are at the corners of cells; values below 0 are inside.
 fn surface(lattice: &Lattice) -> Mesh {
     let cells = lattice.size.map(|points| points - 1);
     let scale = DVec3::from_array(cells.map(|count| 1.0 / f64::from(count * PARTS)));
     let mut vertices: HashMap<[u64; 2], u32> = HashMap::new();
     let mut mesh = Mesh { name: "sdfgrid".into(), ..Mesh::default() };
-    for cell in
-        (0..cells[2]).flat_map(|z| (0..cells[1]).flat_map(move |y| (0..cells[0]).map(move |x| [x, y, z])))
-    {
-        let corners: [f64; 8] = std::array::from_fn(|corner| {
-            let at = std::array::from_fn(|axis| i64::from(cell[axis] + (corner as u32 >> axis & 1)));
-            f64::from(lattice.cell(at)[0])
-        });
-        if corners.iter().all(|value| *value < 0.0) || corners.iter().all(|value| *value >= 0.0) {
-            continue;
-        }
+    for (cell, corners) in crossing_cells(lattice) {
         let value = |point: [u32; 3]| {
             let [x, y, z] =
                 std::array::from_fn(|axis| f64::from(point[axis] - PARTS * cell[axis]) / f64::from(PARTS));

@@ -35,6 +35,9 @@ const KINDS: &[&str] = &[
     "sphere",
 ];
 
+/// Meshes of a model, each with the map from its positions to the model's.
+pub(super) type PlacedMeshes = Vec<(MeshId, DMat4)>;
+
 /// A model that has been read already.
 #[derive(PartialEq, Eq, Hash)]
 pub(super) struct MeshKey {
@@ -237,7 +240,7 @@ impl Reader<'_, '_> {
                 let key = MeshKey { path, index, has_flat_faces, turns_v, attributes };
                 let (meshes, slots) = self.model(&plugin.kind, key, &at)?;
                 self.use_slots(slots);
-                Ok(meshes.into_iter().map(|id| (Geometry::Mesh(id), DMat4::IDENTITY)).collect())
+                Ok(meshes.into_iter().map(|(id, own)| (Geometry::Mesh(id), own)).collect())
             }
         }
     }
@@ -251,8 +254,8 @@ impl Reader<'_, '_> {
         MeshId(self.scene.meshes.len() as u32 - 1)
     }
 
-    /// The meshes of a model file, without its materials.
-    fn model(&mut self, kind: &str, key: MeshKey, at: &Location) -> Result<(Vec<MeshId>, Slots)> {
+    /// The meshes of a model file and where they are in its space, without its materials.
+    fn model(&mut self, kind: &str, key: MeshKey, at: &Location) -> Result<(PlacedMeshes, Slots)> {
         if let Some(known) = self.meshes.get(&key) {
             return Ok(known.clone());
         }
@@ -267,7 +270,7 @@ impl Reader<'_, '_> {
             _ => model::read(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?,
         };
         let MeshKey { has_flat_faces, turns_v, .. } = key;
-        let (mut ids, mut slots) = (Vec::new(), Vec::new());
+        let (mut meshes, mut slots) = (Vec::new(), Vec::new());
         for part in parts {
             let Geometry::Mesh(id) = part.geometry else {
                 self.warn_once(at, "points and lines of models are left out, as in Mitsuba");
@@ -292,10 +295,10 @@ impl Reader<'_, '_> {
             if has_own_normals {
                 self.own_normals.insert(id);
             }
-            ids.push(id);
+            meshes.push((id, part.world_from_object));
         }
-        self.meshes.insert(key, (ids.clone(), slots.clone()));
-        Ok((ids, slots))
+        self.meshes.insert(key, (meshes.clone(), slots.clone()));
+        Ok((meshes, slots))
     }
 
     /// Has textures show the attributes of a mesh where it has them.

@@ -112,7 +112,7 @@ fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
 /// The transform from a space with x to the left, y up and z forward, at `origin`.
 fn look_at(origin: DVec3, target: DVec3, up: Option<DVec3>) -> Option<DMat4> {
     let forward = (target - origin).try_normalize()?;
-    let up = up.unwrap_or_else(|| crate::camera::up_across(forward));
+    let up = up.filter(|up| *up != DVec3::ZERO).unwrap_or_else(|| crate::camera::up_across(forward));
     let left = up.cross(forward).try_normalize()?;
     let up = forward.cross(left);
     Some(DMat4::from_cols(left.extend(0.0), up.extend(0.0), forward.extend(0.0), origin.extend(1.0)))

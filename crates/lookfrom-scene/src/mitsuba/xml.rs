@@ -14,9 +14,10 @@ use roxmltree::{Document, Node, ParsingOptions};
 pub(super) use text::Text;
 
 use super::plugin::{Ids, Plugin, Property, Value};
-use super::{transform, value};
+use super::{transform, value, version1};
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
+use crate::spectrum;
 use crate::suggest::nearest;
 
 /// Elements that are plugins if they have a type.
@@ -225,6 +226,9 @@ impl<'c, 'f> Reading<'c, 'f> {
             let id = self.attribute(node, "id", text)?;
             let mut own = Vec::new();
             self.elements(node, text, includes, depth + 1, &mut own)?;
+            if self.is_old {
+                version1::upgrade(tag, &kind, &kind_at, &mut own);
+            }
             if let Some(second) = repeated(&own) {
                 return Err(Error::invalid(&second.at, format!("`{}` is given twice", second.name))
                     .hint("take one of the two out"));
@@ -272,6 +276,7 @@ impl<'c, 'f> Reading<'c, 'f> {
             "ref" => &["id", "name"],
             "transform" => &["name"],
             "point" | "vector" => &["name", "value", "x", "y", "z"],
+            "spectrum" => &["name", "value", "filename"],
             _ => &["name", "value"],
         };
         self.check_attributes(node, allowed, text)?;
@@ -289,7 +294,8 @@ impl<'c, 'f> Reading<'c, 'f> {
                 if self.folders.len() >= DEEPEST as usize {
                     return Err(Error::new(ErrorKind::Limit, &at, format!("more than {DEEPEST} paths")));
                 }
-                self.folders.push(folder);
+                // The last path is searched first, as in Mitsuba.
+                self.folders.insert(0, folder);
                 return Ok(None);
             }
             "include" => {
@@ -326,6 +332,15 @@ impl<'c, 'f> Reading<'c, 'f> {
                     value::float(&written, &at)
                 };
                 (Value::Vector(DVec3::new(component("x")?, component("y")?, component("z")?)), at.clone())
+            }
+            "spectrum" if node.has_attribute("filename") => {
+                if node.has_attribute("value") {
+                    return Err(Error::invalid(at, "a spectrum has a `value` or a `filename`, not both"));
+                }
+                let (file, at) = self.need(node, "filename", text)?;
+                let path = resolve(&file, &self.folders, self.context);
+                let curve = spectrum::read_spd(&path, self.context).map_err(|error| blame(error, &at))?;
+                (Value::Curve(curve), at)
             }
             _ => {
                 let (written, at) = self.need(node, "value", text)?;
@@ -461,13 +476,13 @@ fn exists(path: &Path, context: &LoadContext<'_>) -> bool {
     context.files.length(path).is_some()
 }
 
-/// The first file of that name in the folders; where there is none, that in the folder of the scene.
+/// The first file of that name in the folders; where there is none, that in the folder of the scene, which is the last.
 pub(super) fn resolve(name: &str, folders: &[PathBuf], context: &LoadContext<'_>) -> PathBuf {
     let paths = folders.iter().map(|folder| folder.join(name));
     paths
         .clone()
         .find(|path| exists(path, context))
-        .or_else(|| paths.clone().next())
+        .or_else(|| paths.clone().next_back())
         .unwrap_or_else(|| name.into())
 }
 

@@ -22,6 +22,11 @@ pub(super) struct Colors {
 }
 
 impl Colors {
+    /// The number of vertices up to the last that has a colour.
+    pub(super) fn count(&self) -> usize {
+        self.written.len()
+    }
+
     /// Adds the numbers of a vertex, which has a colour if there are three or four of them.
     pub(super) fn add(&mut self, vertex: usize, numbers: &[f64]) {
         let color = match *numbers {

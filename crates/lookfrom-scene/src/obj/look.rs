@@ -8,8 +8,9 @@
 //! | `Kd`, `map_Kd` | diffuse; their product, or the image alone if `Kd` is black |
 //! | `Ks`, `Ns`, if `illum` is 2 or more (or absent) and `Ns` > 0 | highlight |
 //! | `illum` 3, 5 | mirror reflection with the colour `Ks` (5: by Fresnel) |
-//! | `d` < 1 | weight of the diffuse colour; the rest is transmitted, tinted by `Tf`, and refracted by `illum` |
-//! | `illum` 4, 6, 7, 9 | glass: mirror reflection `Ks`, refraction by `Ni` (7: by Fresnel) |
+//! | `d` < 1 | weight of the diffuse colour; the rest is transmitted, tinted by `Tf`, and refracted by `Ni` if `illum` is 4 … 9 |
+//! | `illum` 6, 7 with `Ni`, `Tf` or a black `Kd`, without `map_Kd` | glass: all is transmitted as if `d` were 0 |
+//! | `illum` 4, 6, 7 of what transmits light | mirror reflection with the colour `Ks` (7: by Fresnel) |
 //! | `Pm`, `Pr` | a metal: mirror reflection `Kd · Pm · (1 − Pr)²`, the rest a highlight |
 //! | `map_Ns` | its mean multiplies `Ns` |
 //! | `map_d` | alpha of the surface, which `d` does not change in the Whitted model: that is light let through |
@@ -32,6 +33,7 @@ use crate::packed;
 use crate::scene::{MaterialId, Scene};
 use crate::shape::Emission;
 use crate::texture::TextureKind;
+use crate::warning::Warning;
 
 /// The material libraries of a file, and what is converted of them.
 pub(super) struct MaterialLibraries {
@@ -39,6 +41,8 @@ pub(super) struct MaterialLibraries {
     by_name: HashMap<Vec<u8>, usize>,
     images: Images,
     names_libraries: bool,
+    /// The library beside the file with the same stem, until it has been looked for.
+    same_stem: Option<PathBuf>,
     missing: Tally,
     missing_name: String,
 }
@@ -79,6 +83,7 @@ impl MaterialLibraries {
             by_name: HashMap::new(),
             images: Images::default(),
             names_libraries: !libraries.is_empty(),
+            same_stem: Some(packed::unpacked_name(path).with_extension("mtl")),
             missing: Tally::default(),
             missing_name: String::new(),
         };
@@ -97,13 +102,14 @@ impl MaterialLibraries {
                 missing = tried.filter_map(|(name, result)| Some((name, result.err()?))).collect();
             }
             // Libraries are often renamed along with the model, but not in the model's text.
-            let same_stem = packed::unpacked_name(path).with_extension("mtl");
-            let is_replaced = missing.len() == words.len() && looks.read_at(&same_stem, context).is_ok();
+            let replacement = match missing.len() == words.len() {
+                true => looks.read_same_stem(context),
+                false => None,
+            };
             for (name, error) in missing {
-                let instead = if is_replaced {
-                    format!("; {} is used instead", same_stem.display())
-                } else {
-                    String::new()
+                let instead = match &replacement {
+                    Some(same_stem) => format!("; {} is used instead", same_stem.display()),
+                    None => String::new(),
                 };
                 context.warn(at, format!("material library `{name}`: {}{instead}", error.message));
             }
@@ -114,6 +120,12 @@ impl MaterialLibraries {
     fn read_library(&mut self, name: &str, path: &Path, context: &mut LoadContext<'_>) -> Result<()> {
         self.read_at(&beside(path, name), context)
             .or_else(|error| self.read_at(&beside(path, base_name(name)), context).map_err(|_| error))
+    }
+
+    /// Reads the library beside the file with the same stem, once; its name if there is one.
+    fn read_same_stem(&mut self, context: &mut LoadContext<'_>) -> Option<PathBuf> {
+        let library = self.same_stem.take()?;
+        self.read_at(&library, context).is_ok().then_some(library)
     }
 
     fn read_at(&mut self, library: &Path, context: &mut LoadContext<'_>) -> Result<()> {
@@ -137,6 +149,17 @@ impl MaterialLibraries {
         context: &mut LoadContext<'_>,
         scene: &mut Scene,
     ) -> MaterialBinding {
+        if let Some(name) = name
+            && !self.by_name.contains_key(name)
+            && let Some(library) = self.read_same_stem(context)
+        {
+            let message = format!(
+                "the material `{}` is in no library that is named: {} is read, too",
+                shown_name(name),
+                library.display()
+            );
+            context.warnings.push(Warning::notice(file, message));
+        }
         let index = name.and_then(|name| self.by_name.get(name).copied());
         if let (Some(name), None) = (name, index) {
             if self.missing.count() == 0 {
@@ -166,13 +189,23 @@ impl MaterialLibraries {
 fn translate(written: &MtlMaterial, traits: MeshTraits, mut maps: Maps<'_, '_>) -> MaterialBinding {
     let name = shown_name(&written.name);
     warn_of_gain(written, &name, &mut maps);
+    if let Some(illumination @ (6 | 7)) = written.illumination
+        && own_opacity(written) == 1.0
+        && !is_glass(written)
+    {
+        let message = format!(
+            "material `{name}` is opaque: its `illum {illumination}` means glass, but its colour, `d` and `Ni` do not; for glass write \
+             `Ni 1.5`, without `map_Kd`"
+        );
+        maps.context.warnings.push(Warning::notice(&written.at, message));
+    }
     let kind = match physical::is_physical(written) {
         true => MaterialKind::Principled(Box::new(physical::principled(written, traits, &mut maps))),
         false => MaterialKind::Whitted(whitted(written, traits, &mut maps)),
     };
     let is_physical = matches!(kind, MaterialKind::Principled(_));
     let ke = written.emission.unwrap_or(BLACK);
-    let shines = ke != BLACK || (written.emission_map.is_some() && written.emission.is_none());
+    let shines = ke != BLACK || written.emission_map.is_some();
     let emission = shines.then(|| {
         let radiance = color(ke, written.emission_map.as_ref(), 1.0, &mut maps);
         Emission::new(radiance, false)
@@ -253,14 +286,25 @@ pub(super) fn own_opacity(written: &MtlMaterial) -> f32 {
     written.opacity.filter(|&d| d > 0.0 || written.opacity_map.is_none()).unwrap_or(1.0)
 }
 
+/// Whether what is opaque by `d` is glass all the same, by its illumination model. Many programs write 6 or 7 for anything: glass has
+/// an index of refraction, a filter or no colour of its own.
+pub(super) fn is_glass(written: &MtlMaterial) -> bool {
+    let is_meant = written.ior.is_some_and(|ior| ior > 0.0 && ior != 1.0)
+        || written.filter.is_some_and(|filter| filter != BLACK && filter != WHITE)
+        || written.diffuse == Some(BLACK);
+    matches!(written.illumination, Some(6 | 7))
+        && own_opacity(written) == 1.0
+        && is_meant
+        && written.diffuse_map.is_none()
+}
+
 fn whitted(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -> Whitted {
     let illumination = written.illumination.unwrap_or(2);
     let opacity = own_opacity(written);
     let kd = diffuse_constant(written);
     let metallic = written.metallic.unwrap_or(0.0).min(1.0);
-    // The transmitted fraction: given by opacity, or 1 if the illumination model is glass.
-    let is_glass = matches!(illumination, 6 | 7);
-    let passing = if is_glass && opacity == 1.0 { 1.0 } else { 1.0 - opacity };
+    // The transmitted fraction.
+    let passing = if is_glass(written) { 1.0 } else { 1.0 - opacity };
     let covering = (1.0 - passing) * (1.0 - metallic);
 
     let diffuse = diffuse(written, traits, covering, maps);
@@ -270,7 +314,8 @@ fn whitted(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -
     let specular_map = written.specular_map.as_ref();
     let mut specular = if has_highlight { color(ks, specular_map, 1.0, maps) } else { Color::BLACK };
     let mut mirror = match illumination {
-        3..=7 => color(ks, specular_map, 1.0, maps),
+        3 | 5 => color(ks, specular_map, 1.0, maps),
+        4 | 6 | 7 if passing > 0.0 => color(ks, specular_map, 1.0, maps),
         _ => Color::BLACK,
     };
     let filter = written.filter.filter(|&filter| filter != BLACK).unwrap_or(WHITE);
@@ -286,7 +331,7 @@ fn whitted(written: &MtlMaterial, traits: MeshTraits, maps: &mut Maps<'_, '_>) -
         ..Whitted::default()
     };
     // Many programs write `Ni 1` everywhere, which would leave no reflection.
-    whitted.fresnel = illumination == 7 || (illumination == 5 && whitted.ior != 1.0);
+    whitted.fresnel = (illumination == 7 && passing > 0.0) || (illumination == 5 && whitted.ior != 1.0);
     if whitted.fresnel && passing > 0.0 {
         // Fresnel's equations distribute all light between reflection and transmission.
         mirror = Color::Value(if ks == BLACK { WHITE } else { ks });

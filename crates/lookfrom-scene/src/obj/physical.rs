@@ -8,13 +8,13 @@
 //! | `Kd`, `map_Kd` | base colour |
 //! | `Pm`, `Pr` and their maps | metallic, roughness; roughness from `Ns` if there is none |
 //! | `Ni` > 1 | index of refraction |
-//! | `illum` 6, 7 with `d 1` | transmission into a solid |
+//! | `illum` 6, 7 of glass (see `look`) | transmission into a solid |
 //! | `d`, `map_d` | alpha: their product |
 //! | `Ps`, `map_Ps` | a white sheen |
 //! | `Pc`, `Pcr` | clear coat and its roughness |
 //! | `aniso`, `anisor` | anisotropy; 1 is a full turn |
 
-use super::look::{MeshTraits, diffuse, own_opacity, shininess};
+use super::look::{MeshTraits, diffuse, is_glass, own_opacity, shininess};
 use super::maps::Maps;
 use super::mtl::{Map, MtlMaterial};
 use crate::material::{Anisotropy, Color, Ior, Principled, Scalar};
@@ -37,7 +37,7 @@ pub(super) fn principled(written: &MtlMaterial, traits: MeshTraits, maps: &mut M
     let metallic = number(written.metallic_map.as_ref(), unit(written.metallic), maps);
     let roughness = written.roughness.map_or_else(|| rough(shininess(written, maps)), |r| r.min(1.0));
     let roughness = number(written.roughness_map.as_ref(), roughness, maps);
-    let is_glass = matches!(written.illumination, Some(6 | 7)) && own_opacity(written) == 1.0;
+    let is_glass = is_glass(written);
     let sheen = number(written.sheen_map.as_ref(), unit(written.sheen), maps);
     let strength = written.anisotropy.unwrap_or(0.0).clamp(0.0, 1.0);
     let turns = written.anisotropy_rotation.unwrap_or(0.0);

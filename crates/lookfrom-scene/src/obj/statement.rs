@@ -64,11 +64,10 @@ pub(super) struct Statements {
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
 
-/// The largest index of a kind, and its location: indices may precede the elements that they refer to.
-struct Largest {
+/// The largest index of a kind, and where it is: indices may precede the elements that they refer to.
+struct Largest<'a> {
     count: usize,
-    at: Location,
-    written: String,
+    at: Scanner<'a>,
 }
 
 struct Parser<'a> {
@@ -84,7 +83,11 @@ struct Parser<'a> {
     group: usize,
     object: Option<String>,
     smoothing: u32,
-    largest: [Largest; 3],
+    largest: [Largest<'a>; 3],
+    /// The first index of a position that does not exist.
+    first_broken: Option<Error>,
+    /// Faces and lines with such indices.
+    broken: Tally,
     loose: Tally,
     thin: Tally,
     curves: Tally,
@@ -93,14 +96,16 @@ struct Parser<'a> {
     unknown_name: String,
     /// Indices of texture coordinates or normals in a file without any.
     missing: [Tally; 3],
+    /// Indices of texture coordinates or normals out of range.
+    outside: [Tally; 3],
 }
 
 /// Parses the statements of a file.
 ///
 /// # Errors
-/// `Syntax` for malformed numbers, `Invalid` for indices out of range, `Limit` for too many elements.
+/// `Syntax` for malformed numbers, `Invalid` for indices out of range where nothing else is left, `Limit` for too many elements.
 pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>) -> Result<Statements> {
-    let largest = || Largest { count: 0, at: file.clone(), written: String::new() };
+    let largest = || Largest { count: 0, at: Scanner::joining_lines(text) };
     let mut parser = Parser {
         file,
         scanner: Scanner::joining_lines(text),
@@ -114,6 +119,8 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
         object: None,
         smoothing: 0,
         largest: [largest(), largest(), largest()],
+        first_broken: None,
+        broken: Tally::default(),
         loose: Tally::default(),
         thin: Tally::default(),
         curves: Tally::default(),
@@ -121,6 +128,7 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
         unknown: Tally::default(),
         unknown_name: String::new(),
         missing: [Tally::default(); 3],
+        outside: [Tally::default(); 3],
     };
     parser.use_material(None);
     loop {
@@ -133,7 +141,8 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
     parser.positions = Vec::new();
     parser.statements.colors = std::mem::take(&mut parser.colors).linear(file, context);
     parser.drop_missing();
-    parser.check_indices()?;
+    parser.drop_outside();
+    parser.leave_out_broken()?;
     parser.warn(context);
     Ok(parser.statements)
 }
@@ -183,6 +192,7 @@ impl Parser<'_> {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv"
             | b"sp" | b"end" | b"con" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
             | b"shadow_obj" | b"trace_obj" | b"ctech" | b"stech" | b"usemap" | b"maplib" => {}
+            b"#MRGB" => self.polypaint(),
             [b'#', ..] => {}
             other => {
                 if self.unknown.count() == 0 {
@@ -205,6 +215,17 @@ impl Parser<'_> {
         self.colors.add(self.positions.len(), &values[3..count]);
         self.positions.push(DVec3::new(x, y, z));
         Ok(())
+    }
+
+    /// `#MRGB` and colours of the next vertices, as ZBrush writes them: for each a mask, red, green and blue in hexadecimal.
+    fn polypaint(&mut self) {
+        for color in self.scanner.rest_of_line().chunks_exact(8) {
+            let color =
+                std::str::from_utf8(color).ok().and_then(|digits| u32::from_str_radix(digits, 16).ok());
+            let Some(color) = color.filter(|_| self.colors.count() < self.positions.len()) else { return };
+            let [_, rgb @ ..] = color.to_be_bytes();
+            self.colors.add(self.colors.count(), &rgb.map(|channel| f64::from(channel) / 255.0));
+        }
     }
 
     /// Up to N numbers, at least `least`; more than N are ignored.
@@ -247,9 +268,10 @@ impl Parser<'_> {
         let line = self.scanner.line();
         let group = &mut self.statements.groups[self.group];
         let corners = group.corners.len() - start;
-        if corners < 3 {
+        let is_broken = group.corners[start..].iter().any(|corner| corner.position == NONE);
+        if corners < 3 || is_broken {
             group.corners.truncate(start);
-            self.thin.add(line);
+            if is_broken { &mut self.broken } else { &mut self.thin }.add(line);
             return Ok(());
         }
         group.faces.push(Face { corners: corners as u32, line, smoothing: self.smoothing });
@@ -265,6 +287,11 @@ impl Parser<'_> {
                 break;
             }
             let end = self.corner(word)?.position;
+            if end == NONE {
+                self.broken.add(self.scanner.line());
+                previous = None;
+                continue;
+            }
             let lines = &mut self.statements.groups[self.group].lines;
             lines.extend(previous.map(|previous| [previous, end]));
             previous = Some(end);
@@ -308,15 +335,19 @@ impl Parser<'_> {
             return Ok(NONE);
         }
         if value == 0 || (back && value > count) {
-            return Err(self.out_of_range(&self.scanner.at(self.file), &shown(number), kind, count));
+            if kind > 0 {
+                self.outside[kind].add(self.scanner.line());
+            } else if self.first_broken.is_none() {
+                self.first_broken = Some(self.out_of_range(&self.scanner, &shown(number), count));
+            }
+            return Ok(NONE);
         }
         if back {
             return Ok((count - value) as u32);
         }
         // The element may follow later: checked at the end.
         if value > count && value > self.largest[kind].count {
-            self.largest[kind] =
-                Largest { count: value, at: self.scanner.at(self.file), written: shown(number) };
+            self.largest[kind] = Largest { count: value, at: self.scanner.clone() };
         }
         Ok((value - 1).min(NONE as usize - 1) as u32)
     }
@@ -326,9 +357,9 @@ impl Parser<'_> {
         Error::syntax(&self.scanner.at(self.file), message)
     }
 
-    fn out_of_range(&self, at: &Location, written: &str, kind: usize, count: usize) -> Error {
-        let what = ["vertices (v)", "texture coordinates (vt)", "normals (vn)"][kind];
-        Error::invalid(at, format!("index {written} is out of range: there are {count} {what}"))
+    fn out_of_range(&self, at: &Scanner<'_>, written: &str, count: usize) -> Error {
+        let message = format!("index {written} is out of range: there are {count} vertices (v)");
+        Error::invalid(&at.at(self.file), message)
             .hint("indices count from 1; negative ones count back from the last")
     }
 
@@ -356,23 +387,62 @@ impl Parser<'_> {
                 continue;
             }
             largest.count = 0;
-            self.missing[kind].add(largest.at.line);
+            self.missing[kind].add(largest.at.line());
             for corner in self.statements.groups.iter_mut().flat_map(|group| &mut group.corners) {
                 *(if kind == 1 { &mut corner.uv } else { &mut corner.normal }) = NONE;
             }
         }
     }
 
-    fn check_indices(&self) -> Result<()> {
-        let statements = &self.statements;
-        let counts = [statements.positions.len(), statements.uvs.len(), statements.normals.len()];
-        for (kind, count) in counts.into_iter().enumerate() {
-            let largest = &self.largest[kind];
-            if largest.count > count {
-                return Err(self.out_of_range(&largest.at, &largest.written, kind, count));
+    /// Corners lose indices of texture coordinates and normals that are larger than their number.
+    fn drop_outside(&mut self) {
+        let counts = [self.statements.uvs.len(), self.statements.normals.len()];
+        for (kind, count) in (1..).zip(counts) {
+            let Largest { count: largest, at } = &self.largest[kind];
+            if *largest <= count {
+                continue;
+            }
+            for corner in self.statements.groups.iter_mut().flat_map(|group| &mut group.corners) {
+                let index = if kind == 1 { &mut corner.uv } else { &mut corner.normal };
+                if *index != NONE && *index as usize >= count {
+                    *index = NONE;
+                    self.outside[kind].add(at.line());
+                }
             }
         }
-        Ok(())
+    }
+
+    /// Leaves out faces and lines with positions that do not exist.
+    fn leave_out_broken(&mut self) -> Result<()> {
+        let count = self.statements.positions.len();
+        if self.largest[0].count > count {
+            let Largest { count: written, at } = &self.largest[0];
+            let error = self.out_of_range(at, &written.to_string(), count);
+            self.first_broken.get_or_insert(error);
+            let exists = |position: u32| (position as usize) < count;
+            for group in &mut self.statements.groups {
+                let mut start = 0;
+                let mut corners = Vec::with_capacity(group.corners.len());
+                group.faces.retain(|face| {
+                    let own = &group.corners[start..start + face.corners as usize];
+                    start += own.len();
+                    let is_whole = own.iter().all(|corner| exists(corner.position));
+                    if is_whole {
+                        corners.extend_from_slice(own);
+                    } else {
+                        self.broken.add(face.line);
+                    }
+                    is_whole
+                });
+                group.corners = corners;
+                let lines = group.lines.len();
+                group.lines.retain(|ends| ends.iter().all(|&end| exists(end)));
+                self.broken.add_many((lines - group.lines.len()) as u64, 0);
+            }
+        }
+        let is_empty =
+            self.statements.groups.iter().all(|group| group.faces.is_empty() && group.lines.is_empty());
+        self.first_broken.take().filter(|_| is_empty).map_or(Ok(()), Err)
     }
 
     fn warn(&self, context: &mut LoadContext<'_>) {
@@ -386,6 +456,10 @@ impl Parser<'_> {
             let at = file.at(self.missing[kind].first_line(), 0);
             context.warn(&at, format!("faces name {name}, but the file has none: they are ignored"));
         }
+        for (kind, name) in [(1, "texture coordinate"), (2, "normal")] {
+            self.outside[kind].warn(name, "of corners ignored: an index is out of range", file, context);
+        }
+        self.broken.warn("element", "left out: an index of a vertex (v) is out of range", file, context);
         self.curves.warn("curve or surface", "left out: free-form geometry is not supported", file, context);
         self.calls.warn(
             "`call` or `csh` statement",

@@ -96,6 +96,7 @@ pub(super) fn join(shapes: &mut Vec<Shape>) {
             before.material == shape.material
                 && before.emission == shape.emission
                 && before.alpha == shape.alpha
+                && before.sides == shape.sides
                 && before.reverse_orientation == shape.reverse_orientation
                 && before.world_from_object == shape.world_from_object
         };

@@ -1,6 +1,5 @@
 //! Execution of directives.
 
-use std::rc::Rc;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
@@ -78,8 +77,17 @@ impl Reader<'_, '_> {
                 self.begin("Attribute", place)?;
             }
             b"AttributeEnd" => self.end("Attribute", place)?,
-            b"TransformBegin" => self.begin("Transform", place)?,
-            b"TransformEnd" => self.end("Transform", place)?,
+            b"TransformBegin" | b"TransformEnd" => {
+                let word = String::from_utf8_lossy(word);
+                let meant = word.replace("Transform", "Attribute");
+                self.context
+                    .notice(&place.location(), format!("{word} is an old word for {meant}, as in pbrt-v4"));
+                if word.ends_with("Begin") {
+                    self.begin("Attribute", place)?
+                } else {
+                    self.end("Attribute", place)?
+                }
+            }
             b"ReverseOrientation" => {
                 self.in_world_only(word, place)?;
                 self.state.reverse_orientation = !self.state.reverse_orientation;
@@ -318,12 +326,7 @@ impl Reader<'_, '_> {
             let error = place.syntax(format!("{word}End where {begun}Begin, at {at}, is still open"));
             return Err(error.hint(format!("write {begun}End before it")));
         }
-        match word {
-            "Transform" => {
-                (self.state.matrix, self.state.end_matrix) = (opened.state.matrix, opened.state.end_matrix);
-            }
-            _ => self.state = opened.state,
-        }
+        self.state = opened.state;
         if word == "Object" {
             self.object = None;
         }
@@ -340,10 +343,9 @@ impl Reader<'_, '_> {
         // The colour space of rgb values is that of their definition, not that of their use.
         let parameters =
             Parameters::new(String::new(), place.clone(), self.state.space, own, &Inherited::default());
-        let attributes = Rc::make_mut(&mut self.state.attributes[target]);
         for parameter in parameters.into_own() {
             parameter.space.set(Some(self.state.space));
-            attributes.push(Rc::new(parameter));
+            self.state.attributes[target].push(parameter);
         }
         Ok(())
     }

@@ -152,6 +152,8 @@ impl Reader<'_, '_> {
         let start = lexer.here();
         let declaration = lexer.string("a quoted name of an option")?;
         let name = declaration.split_ascii_whitespace().next_back().unwrap_or_default();
+        // As pbrt compares them.
+        let name = &*name.replace(['-', '_'], "").to_ascii_lowercase();
         let Some(&(_, matters)) = OPTIONS.iter().find(|option| option.0 == name) else {
             let error = lexer.place(start).invalid(format!("{name:?} is not a known option"));
             let words = || OPTIONS.iter().map(|option| option.0);

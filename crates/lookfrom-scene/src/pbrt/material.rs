@@ -218,26 +218,18 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// A mix of two materials that are already defined.
+    /// A mix of two named materials, which may be defined later.
     fn mix(&mut self, p: &Parameters) -> Result<MaterialKind> {
         let amount = self.scalar(p, "amount", MaterialKind::MIX_AMOUNT)?;
         let parameter = p.find("materials", &[ParameterType::String])?;
         let Some(parameter) = parameter else {
             let error = p.place.invalid(format!("{} has no \"string materials\"", p.title));
-            return Err(error
-                .hint("name two materials that are defined before: \"string materials\" [ \"A\" \"B\" ]"));
+            return Err(error.hint("name two materials: \"string materials\" [ \"A\" \"B\" ]"));
         };
         let [first, second] = parameter.strings() else {
             return Err(parameter.wrong(format!("two names, found {}", parameter.strings().len())));
         };
-        let made = |name: &str| match self.materials.get(name).filter(|named| named.is_made) {
-            Some(named) => Ok(named.id),
-            None => {
-                let made = self.materials.iter().filter(|(_, named)| named.is_made);
-                let known: Vec<&str> = made.map(|(name, _)| &**name).collect();
-                Err(Self::unknown(&parameter.place, "material", name, known))
-            }
-        };
-        Ok(MaterialKind::Mix { materials: [made(first)?, made(second)?], amount })
+        let materials = [first, second].map(|name| self.material_named(name, &parameter.place));
+        Ok(MaterialKind::Mix { materials, amount })
     }
 }

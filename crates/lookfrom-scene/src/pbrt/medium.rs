@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::Reader;
 use super::lexer::{Lexer, Token};
 use super::params::{ParameterType, Parameters};
 use super::spectra::Meaning::Unbounded;
 use super::text::Place;
+use super::{NamedMedium, Reader};
 use crate::error::Result;
 use crate::grid::{Grid, Placed};
 use crate::material::Color;
@@ -30,6 +30,11 @@ impl Reader<'_, '_> {
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
+        if let Some(named) = self.media.get(&name).filter(|named| named.is_made) {
+            let before = &self.scene.media[named.id.index()].at;
+            let error = p.place.invalid(format!("medium {name:?} is already defined, at {before}"));
+            return Err(error.hint("give one of them another name"));
+        }
         let mut medium = self.even_medium(name.clone(), &kind, p)?;
         medium.variation = match &*kind {
             "uniformgrid" => Some(self.uniform_grid(p, &mut medium)?),
@@ -38,9 +43,11 @@ impl Reader<'_, '_> {
             "nanovdb" => self.nano_vdb(p, &mut medium)?,
             _ => None,
         };
-        let id = MediumId(self.scene.media.len() as u32);
-        self.scene.media.push(medium);
-        self.media.insert(name, id);
+        let id = self.medium_named(&name, &p.place);
+        self.scene.media[id.index()] = medium;
+        if let Some(named) = self.media.get_mut(&name) {
+            named.is_made = true;
+        }
         Ok(())
     }
 
@@ -151,7 +158,7 @@ impl Reader<'_, '_> {
     /// The media on both sides of the next shape.
     pub(super) fn sides(&mut self, place: &Place) -> Result<Option<Sides>> {
         let Some(names) = self.state.media.clone() else { return Ok(None) };
-        let [inside, outside] = [self.medium(&names[0], place)?, self.medium(&names[1], place)?];
+        let [inside, outside] = [0, 1].map(|side| self.medium(&names[side], place));
         // Equal media on both sides need no interface.
         if names[0] == names[1] {
             return Ok(None);
@@ -162,19 +169,25 @@ impl Reader<'_, '_> {
 
     /// The medium around the camera: the outside medium at its definition.
     pub(super) fn medium_around(&mut self, name: &str, camera: &Place) -> Result<Option<MediumId>> {
-        let medium = self.medium(name, camera)?;
+        let medium = self.medium(name, camera);
         self.use_medium(name);
         Ok(medium)
     }
 
     /// A medium by its name; the vacuum has an empty name.
-    fn medium(&self, name: &str, place: &Place) -> Result<Option<MediumId>> {
-        if name.is_empty() {
-            return Ok(None);
+    fn medium(&mut self, name: &str, place: &Place) -> Option<MediumId> {
+        (!name.is_empty()).then(|| self.medium_named(name, place))
+    }
+
+    /// A medium by its name, which may be defined later.
+    fn medium_named(&mut self, name: &str, place: &Place) -> MediumId {
+        if let Some(named) = self.media.get(name) {
+            return named.id;
         }
-        let known = self.media.keys().map(String::as_str);
-        let id = self.media.get(name).ok_or_else(|| Self::unknown(place, "medium", name, known))?;
-        Ok(Some(*id))
+        let id = MediumId(self.scene.media.len() as u32);
+        self.scene.media.push(Medium::clear(name.to_owned(), place.location()));
+        self.media.insert(name.to_owned(), NamedMedium { id, first: place.clone(), is_made: false });
+        id
     }
 
     /// Warns once, where a medium is first used, of an integrator that does not support them.

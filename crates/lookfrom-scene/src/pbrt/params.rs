@@ -266,8 +266,32 @@ pub(super) struct Parameters {
     asked: RefCell<Vec<&'static str>>,
 }
 
-/// Parameters that `Attribute` directives have set.
-pub(super) type Inherited = Rc<Vec<Rc<Parameter>>>;
+/// Parameters that `Attribute` directives have set: the last, and those before it, which states of the graphics share.
+#[derive(Clone, Default)]
+pub(super) struct Inherited(Option<Rc<(Parameter, Inherited)>>);
+
+impl Inherited {
+    pub(super) fn push(&mut self, parameter: Parameter) {
+        let before = std::mem::take(self);
+        self.0 = Some(Rc::new((parameter, before)));
+    }
+
+    /// From the last to the first.
+    fn iter(&self) -> impl Iterator<Item = &Parameter> {
+        let links = std::iter::successors(self.0.as_deref(), |(_, before)| before.0.as_deref());
+        links.map(|(parameter, _)| parameter)
+    }
+}
+
+impl Drop for Inherited {
+    /// One link after the other: a recursion would be as deep as the list is long.
+    fn drop(&mut self) {
+        let mut next = self.0.take();
+        while let Some((_, mut before)) = next.and_then(Rc::into_inner) {
+            next = before.0.take();
+        }
+    }
+}
 
 impl Parameters {
     pub(super) fn new(
@@ -298,9 +322,8 @@ impl Parameters {
             let message = format!("{} has no \"{} {name}\"", self.title, parameter.kind.word());
             return Err(parameter.place.invalid(message).hint(format!("write {}", fitting.join(" or "))));
         }
-        let inherited = self.inherited.iter().rev();
-        let found = inherited.into_iter().find(|p| p.name == name && kinds.contains(&p.kind));
-        found.map(|parameter| parameter.check_length().map(|()| &**parameter)).transpose()
+        let found = self.inherited.iter().find(|p| p.name == name && kinds.contains(&p.kind));
+        found.map(|parameter| parameter.check_length().map(|()| parameter)).transpose()
     }
 
     /// Whether the parameter is present, with any type; it is not marked as read.
@@ -312,7 +335,7 @@ impl Parameters {
     /// The parameter with this name and type, if there is one; one of another type is not an error.
     pub(super) fn of_kind(&self, name: &'static str, kind: ParameterType) -> Result<Option<&Parameter>> {
         let there = |p: &Parameter| p.name == name && p.kind == kind;
-        if self.own.iter().any(there) || self.inherited.iter().any(|parameter| there(parameter)) {
+        if self.own.iter().any(there) || self.inherited.iter().any(there) {
             self.find(name, &[kind])
         } else {
             self.asked.borrow_mut().push(name);
@@ -355,7 +378,7 @@ impl Parameters {
     /// The error that a parameter's value is not as expected.
     pub(super) fn refuse(&self, name: &str, expected: &str) -> Error {
         let own = self.own.iter().rev();
-        let parameter = own.chain(self.inherited.iter().rev().map(|p| &**p)).find(|p| p.name == name);
+        let parameter = own.chain(self.inherited.iter()).find(|p| p.name == name);
         match parameter {
             Some(parameter) => parameter.wrong(expected),
             None => self.place.invalid(format!("{}: expected {expected} as {name:?}", self.title)),

@@ -53,7 +53,7 @@ impl Default for State {
             material: MaterialId(0),
             emission: None,
             media: None,
-            attributes: std::array::from_fn(|_| Rc::default()),
+            attributes: Default::default(),
             space: SRGB,
         }
     }
@@ -61,7 +61,7 @@ impl Default for State {
 
 /// An open block.
 pub(super) struct Opened {
-    /// `Attribute`, `Transform` or `Object`.
+    /// `Attribute` or `Object`.
     pub(super) word: &'static str,
     /// The location of its `Begin`.
     pub(super) place: Place,

@@ -14,38 +14,45 @@ use crate::error::{Error, ErrorKind, Location};
 pub(super) struct Text {
     whole: Location,
     bytes: Reserved<Vec<u8>>,
-    /// The last offset counted to, its line (from 1) and the offset at which that line starts.
-    counted: Cell<(usize, u32, usize)>,
+    /// The last place that was counted to.
+    counted: Cell<Counted>,
 }
+
+#[derive(Clone, Copy)]
+struct Counted {
+    offset: usize,
+    /// From 1.
+    line: u32,
+    /// Characters of the line before it.
+    characters: usize,
+}
+
+/// The beginning of a file.
+const START: Counted = Counted { offset: 0, line: 1, characters: 0 };
 
 impl Text {
     pub(super) fn new(path: &Path, bytes: Reserved<Vec<u8>>) -> Rc<Self> {
-        Rc::new(Self { whole: Location::file(path), bytes, counted: Cell::new((0, 1, 0)) })
+        Rc::new(Self { whole: Location::file(path), bytes, counted: Cell::new(START) })
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The line of an offset, and the offset at which that line starts.
-    fn line(&self, offset: usize) -> (u32, usize) {
-        let (mut from, mut line, mut start) = self.counted.get();
-        if offset < start {
-            (from, line, start) = (0, 1, 0);
-        }
-        let between = self.bytes.get(from..offset).unwrap_or_default();
-        line = line.saturating_add(between.iter().filter(|&&byte| byte == b'\n').count() as u32);
-        if let Some(last) = between.iter().rposition(|&byte| byte == b'\n') {
-            start = from + last + 1;
-        }
-        self.counted.set((offset.max(from), line, start));
-        (line, start)
-    }
-
     fn location(&self, offset: usize) -> Location {
-        let (line, start) = self.line(offset);
-        let before = String::from_utf8_lossy(&self.bytes[start..offset]).chars().count();
-        self.whole.at(line, u32::try_from(before + 1).unwrap_or(0))
+        let counted = self.counted.get();
+        let from = if offset < counted.offset { START } else { counted };
+        let between = &self.bytes[from.offset..offset];
+        let lines = between.iter().filter(|&&byte| byte == b'\n').count() as u32;
+        let line_start = between.iter().rposition(|&byte| byte == b'\n').map(|last| last + 1);
+        // Bytes that begin a character.
+        let characters =
+            between[line_start.unwrap_or(0)..].iter().filter(|&byte| byte & 0xC0 != 0x80).count();
+        let before = if line_start.is_some() { 0 } else { from.characters };
+        let counted =
+            Counted { offset, line: from.line.saturating_add(lines), characters: before + characters };
+        self.counted.set(counted);
+        self.whole.at(counted.line, u32::try_from(counted.characters + 1).unwrap_or(0))
     }
 }
 

@@ -17,6 +17,7 @@ use glam::{DMat4, DVec3, DVec4};
 use lookfrom_scene::camera::Projection;
 use lookfrom_scene::material::{Color, MaterialKind, Scalar};
 use lookfrom_scene::shape::Shape;
+use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::{Mapping, TextureKind};
 use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result, Scene, load};
 
@@ -155,4 +156,46 @@ fn names_of_old_versions_are_understood() {
     assert_eq!(camera.view.lookfrom(), DVec3::Z);
     let Projection::Perspective { fov } = camera.projection else { panic!("{:?}", camera.projection) };
     assert!((fov - 90.0).abs() < 1e-12 && warnings.is_empty(), "{fov} {warnings:?}");
+}
+
+#[test]
+fn properties_of_old_versions_have_other_names() {
+    let text = r#"<scene version="0.5.0"><shape type="cube"><bsdf type="diffuse">
+        <texture name="diffuseReflectance" type="checkerboard"><float name="uscale" value="4"/>
+        <float name="voffset" value="0.25"/></texture></bsdf></shape></scene>"#;
+    let (scene, warnings) = read_of(&files(&[("s/a.xml", text)]), &[]);
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let new = text.replace("0.5.0", "3.0.0").replace("diffuseReflectance", "reflectance").replace(
+        "<float name=\"uscale\" value=\"4\"/>\n        <float name=\"voffset\" value=\"0.25\"/>",
+        "<transform name=\"to_uv\"><translate y=\"0.25\"/><scale x=\"4\" y=\"1\"/></transform>",
+    );
+    let (as_new, warnings) = read_of(&files(&[("s/a.xml", &new)]), &[]);
+    assert!(warnings.is_empty() && new.contains("to_uv"), "{warnings:?}");
+    assert_eq!(scene.textures[0].kind, as_new.expect("a scene").textures[0].kind);
+}
+
+#[test]
+fn spectra_are_read_from_files() {
+    let text = "<scene version=\"3.0.0\"><shape type=\"cube\"><bsdf type=\"diffuse\">\
+                <spectrum name=\"reflectance\" filename=\"grey.spd\"/></bsdf></shape></scene>";
+    let (scene, _) = read_of(&files(&[("s/a.xml", text), ("s/grey.spd", "400 0.25\n700 0.75\n")]), &[]);
+    let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+    let tabulated = Curve::Tabulated { wavelengths: vec![400.0, 700.0], values: vec![0.25, 0.75] };
+    assert_eq!(scene.curves, [tabulated]);
+    let missing = read_of(&files(&[("s/a.xml", text)]), &[]).0.expect_err("no file");
+    assert!(missing.to_string().starts_with("s/a.xml:1:103: s/grey.spd: no such file"), "{missing}");
+}
+
+#[test]
+fn the_last_path_comes_first() {
+    let text = r#"<scene version="3.0.0"><path value="one"/><path value="two"/>
+        <shape type="obj"><string name="filename" value="m.obj"/></shape></scene>"#;
+    let larger = MESH.replace("v 1 0 0", "v 2 0 0");
+    let memory =
+        files(&[("s/a.xml", text), ("s/m.obj", MESH), ("s/one/m.obj", MESH), ("s/two/m.obj", &larger)]);
+    let scene = read_of(&memory, &[]).0.expect("a scene");
+    assert_eq!(scene.meshes[0].positions[1].x, 2.0);
+    // Any direction is up for a zero vector.
+    assert_eq!(matrix("<lookat origin=\"0 0 0\" target=\"0 0 1\" up=\"0 0 0\"/>").z_axis, DVec4::Z);
 }

@@ -1,5 +1,7 @@
 //! What the readers make of good files: meshes, materials, colours, pictures.
 
+mod exporters;
+
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};

@@ -538,6 +538,36 @@ fn media_are_around_the_camera_and_beside_shapes() {
 }
 
 #[test]
+fn names_may_be_used_before_they_are_defined() {
+    let scene = read(
+        "WorldBegin MediumInterface \"fog\" \"\" Material \"mix\" \"string materials\" [ \"a\" \"b\" ] Shape \"sphere\"\n\
+         MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 0.5\n\
+         MakeNamedMaterial \"b\" \"string type\" \"diffuse\" MakeNamedMaterial \"a\" \"string type\" \"conductor\"",
+    );
+    assert_eq!((scene.media.len(), scene.media[0].g), (1, 0.5));
+    assert_eq!(scene.shapes[0].sides, Some(Sides { inside: Some(MediumId(0)), outside: None }));
+    let MaterialKind::Mix { materials, .. } = scene.materials[scene.shapes[0].material.index()].kind else {
+        panic!()
+    };
+    let kind = |id: MaterialId| &scene.materials[id.index()].kind;
+    assert!(matches!(kind(materials[0]), MaterialKind::Conductor { .. }));
+    assert!(matches!(kind(materials[1]), MaterialKind::Diffuse { .. }));
+}
+
+#[test]
+fn old_blocks_are_those_of_attributes() {
+    let text = "WorldBegin TransformBegin Translate 1 0 0 Material \"conductor\" TransformEnd Shape \"sphere\"\n\
+                TransformBegin ReverseOrientation AttributeEnd Shape \"sphere\"";
+    let (scene, warnings) = read_files(&[("a.pbrt", text)]);
+    assert!(scene.shapes.iter().all(|shape| shape.material == MaterialId(0) && !shape.reverse_orientation));
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+    for option in ["\"bool disable-pixel-jitter\" false", "\"integer Seed\" 7"] {
+        read(&format!("Option {option} WorldBegin"));
+    }
+    read("WorldBegin LightSource \"infinite\" \"string filename\" \"\" \"rgb L\" [ 1 1 1 ]");
+}
+
+#[test]
 fn a_scene_without_an_ending_is_known_by_its_words() {
     let (scene, _) =
         read_files(&[("scene", "# a comment\nLookAt 0 0 0 0 0 1 0 1 0\nWorldBegin\nShape \"sphere\"\n")]);

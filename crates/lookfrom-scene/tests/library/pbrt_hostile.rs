@@ -53,6 +53,13 @@ fn includes_of_includes_do_not_multiply_without_end() {
 }
 
 #[test]
+fn parameters_of_deep_attributes_are_shared() {
+    // One list for each level would take 14 GB.
+    let text = format!("WorldBegin {}", "AttributeBegin Attribute \"shape\" \"float a\" 1 ".repeat(60_000));
+    assert_eq!(read(text.as_bytes()).map(drop).map_err(|error| error.kind), Err(ErrorKind::Syntax));
+}
+
+#[test]
 fn deep_attributes_are_refused() {
     let text = format!("WorldBegin {}", "AttributeBegin ".repeat(1_000_000));
     assert_eq!(read(text.as_bytes()).map(drop).map_err(|error| error.kind), Err(ErrorKind::Limit));

@@ -9,6 +9,24 @@ use proptest::prelude::*;
 use super::{error, files, read_of};
 
 #[test]
+fn mixes_of_mixes_under_a_map_are_as_many_as_they_are_written() {
+    let mut elements = String::from("<bsdf type=\"diffuse\" id=\"b0\"/>\n");
+    for k in 1..40 {
+        let inner = k - 1;
+        let mix = format!("<ref id=\"b{inner}\"/><ref name=\"other\" id=\"b{inner}\"/>");
+        elements += &format!(
+            "<bsdf type=\"blendbsdf\" id=\"b{k}\"><float name=\"weight\" value=\"0.5\"/>{mix}</bsdf>\n"
+        );
+    }
+    let texture = "<texture type=\"checkerboard\"/>";
+    elements +=
+        &format!("<shape type=\"cube\"><bsdf type=\"bumpmap\">{texture}<ref id=\"b39\"/></bsdf></shape>");
+    let text = format!("<scene version=\"3.0.0\">{elements}</scene>");
+    let scene = read_of(&files(&[("s/a.xml", &text)]), &[]).0;
+    assert!(scene.map_or(0, |scene| scene.materials.len()) <= 100);
+}
+
+#[test]
 fn errors_have_their_place_and_a_remedy() {
     for (elements, at, message, hint) in [
         (

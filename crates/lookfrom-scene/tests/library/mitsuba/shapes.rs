@@ -43,6 +43,19 @@ fn shapes_have_their_geometry_and_sides() {
     assert_eq!(mesh(2).uvs[0].to_array(), [0.0, 1.0]);
 }
 
+/// Positions far from the origin are relative to their middle, and still where the file has them.
+#[test]
+fn small_meshes_are_where_their_files_have_them() {
+    let text = "<scene version=\"3.0.0\"><shape type=\"obj\"><string name=\"filename\" value=\"far.obj\"/>\
+                <transform name=\"to_world\"><scale value=\"2\"/></transform></shape></scene>";
+    let far = "v 10 -20 0\nv 10.1 -20 0\nv 10 -19.9 0\nf 1 2 3\n";
+    let (read, _) = read_of(&files(&[("s/a.xml", text), ("s/far.obj", far)]), &[]);
+    let read = read.expect("a scene");
+    let bounds = read.shapes[0].bounds(&read.meshes);
+    let is_at = |a: DVec3, b: [f64; 3]| (a - DVec3::from(b)).length() < 1e-5;
+    assert!(is_at(bounds.min, [20.0, -40.0, 0.0]) && is_at(bounds.max, [20.2, -39.8, 0.0]), "{bounds:?}");
+}
+
 #[test]
 fn mirrored_meshes_face_as_their_corners_turn() {
     let reversed = |more: &str| {
