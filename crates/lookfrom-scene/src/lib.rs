@@ -19,6 +19,7 @@ mod composite;
 pub mod contents;
 pub mod count;
 pub mod digest;
+mod disk;
 mod duplicates;
 pub mod error;
 pub mod excerpt;
@@ -76,8 +77,9 @@ pub mod volume;
 pub mod warning;
 
 pub use budget::Budget;
+pub use disk::Disk;
 pub use error::{Error, ErrorKind, Location, Result};
-pub use files::{CameraChoice, Disk, Files, ImportOptions, Limits, LoadContext, Memory};
+pub use files::{CameraChoice, Files, ImportOptions, Limits, LoadContext, Memory};
 pub use inputs::Inputs;
 pub use remedy::Remedy;
 pub use scene::Scene;

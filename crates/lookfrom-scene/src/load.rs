@@ -101,7 +101,7 @@ fn scene_of_model(source: &Source<'_>, context: &mut LoadContext<'_>) -> Result<
     let file = Location::file(source.path);
     let (image, render) = studio::settings_for_models();
     let mut scene = Scene { source_format: SourceFormat::Model, image, render, ..Scene::default() };
-    let parts = model::of_source(source, context, &mut scene)?;
+    let parts = model::of_source(source, true, context, &mut scene)?;
     let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
     // Programs for construction and for printers put parts onto the plane of x and y, and heads of hair look along it.
     let is_custom = matches!(source.format, Some(Format::Stl | Format::Hair));
@@ -160,7 +160,7 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
         #[cfg(not(feature = "gltf"))]
         Some(Format::Gltf) => Err(left_out(path, "glTF", "gltf")),
         Some(Format::Obj | Format::Ply | Format::Stl | Format::Hair | Format::Vdb) => {
-            Ok(Model { parts: model::of_source(&source, context, scene)?, ..Model::default() })
+            Ok(Model { parts: model::of_source(&source, true, context, scene)?, ..Model::default() })
         }
         Some(Format::Pbrt) => Err(of_scene("pbrt")),
         Some(Format::Mitsuba) => Err(of_scene("Mitsuba")),

@@ -32,23 +32,35 @@ pub(crate) const PARSED: u64 = 5;
 /// # Errors
 /// `Unsupported` if neither name nor content is that of a model; otherwise the errors of the format's reader.
 pub fn read(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scene) -> Result<Vec<Part>> {
-    of_source(&Source::open(path, context)?, context, scene)
+    of_source(&Source::open(path, context)?, true, context, scene)
 }
 
-/// As [`read`], of a file that has been read.
+/// As [`read`], without materials and images.
+pub(crate) fn read_geometry(
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    of_source(&Source::open(path, context)?, false, context, scene)
+}
+
+/// As [`read`], of a file that has been read; or without materials and images.
 pub(crate) fn of_source(
     source: &Source<'_>,
+    has_materials: bool,
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
     let Source { path, bytes, format } = source;
     let file = Location::file(path);
-    let read = match format {
-        Some(Format::Obj) => obj::from_bytes,
-        Some(Format::Ply) => ply::from_bytes,
-        Some(Format::Stl) => stl::from_bytes,
-        Some(Format::Hair) => hair::from_bytes,
-        Some(Format::Vdb) => level_set::from_bytes,
+    let read = match (format, has_materials) {
+        (Some(Format::Obj), true) => obj::from_bytes,
+        (Some(Format::Obj), false) => obj::geometry_from_bytes,
+        (Some(Format::Ply), true) => ply::from_bytes,
+        (Some(Format::Ply), false) => ply::geometry_from_bytes,
+        (Some(Format::Stl), _) => stl::from_bytes,
+        (Some(Format::Hair), _) => hair::from_bytes,
+        (Some(Format::Vdb), _) => level_set::from_bytes,
         _ => {
             let message = "neither its name nor its content is that of a model";
             return Err(Error::new(ErrorKind::Unsupported, &file, message)

@@ -39,6 +39,26 @@ pub fn from_bytes(
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Result<Vec<Part>> {
+    read(bytes, path, true, context, scene)
+}
+
+/// As [`from_bytes`], without materials: no libraries and images are read.
+pub(crate) fn geometry_from_bytes(
+    bytes: &[u8],
+    path: &Path,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
+    read(bytes, path, false, context, scene)
+}
+
+fn read(
+    bytes: &[u8],
+    path: &Path,
+    has_materials: bool,
+    context: &mut LoadContext<'_>,
+    scene: &mut Scene,
+) -> Result<Vec<Part>> {
     let file = Location::file(path);
     let text = text::utf8(bytes);
     let mut statements = statement::parse(&text, &file, context)?;
@@ -58,14 +78,16 @@ pub fn from_bytes(
     let (colored, place) = (!statements.colors.is_empty(), statements.place);
     let first = scene.meshes.len();
     let meshes = build::meshes(statements, &file, context)?;
-    let mut libraries = look::MaterialLibraries::read(&meshes.libraries, path, context);
+    let named = if has_materials { &*meshes.libraries } else { &[] };
+    let mut libraries = look::MaterialLibraries::read(named, path, context);
     let mut parts = Vec::new();
     for group in meshes.groups {
         let traits = match &group.elements {
             Elements::Mesh(mesh) => MeshTraits { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
             Elements::Lines(..) => MeshTraits { is_colored: false, unit_of_uv: None },
         };
-        let binding = libraries.binding(group.material.as_deref(), traits, &file, context, scene);
+        let material = group.material.as_deref().filter(|_| has_materials);
+        let binding = libraries.binding(material, traits, &file, context, scene);
         let name = group.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(group.object);
         let part = |geometry, material| Part {
             material,

@@ -267,7 +267,9 @@ impl Reader<'_, '_> {
                 alone.meshes.push(mesh);
                 vec![Part::new(None, Geometry::Mesh(MeshId(0)))]
             }
-            _ => model::read(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?,
+            _ => {
+                model::read_geometry(&key.path, self.context, &mut alone).map_err(|error| blame(error, at))?
+            }
         };
         let MeshKey { has_flat_faces, turns_v, .. } = key;
         let (mut meshes, mut slots) = (Vec::new(), Vec::new());

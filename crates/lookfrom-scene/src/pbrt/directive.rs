@@ -83,9 +83,9 @@ impl Reader<'_, '_> {
                 self.context
                     .notice(&place.location(), format!("{word} is an old word for {meant}, as in pbrt-v4"));
                 if word.ends_with("Begin") {
-                    self.begin("Attribute", place)?
+                    self.begin("Attribute", place)?;
                 } else {
-                    self.end("Attribute", place)?
+                    self.end("Attribute", place)?;
                 }
             }
             b"ReverseOrientation" => {
@@ -173,7 +173,7 @@ impl Reader<'_, '_> {
             }
             b"MakeNamedMedium" => {
                 let (name, parameters) = self.entity(word, place, lexer, Some(3))?;
-                self.make_medium(name, &parameters)?;
+                self.make_medium(&name, &parameters)?;
                 parameters.finish(self.context);
             }
             b"MediumInterface" => self.medium_interface(lexer)?,

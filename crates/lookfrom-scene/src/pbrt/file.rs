@@ -159,7 +159,7 @@ fn mesh(path: &Path, context: &mut LoadContext<'_>) -> Result<Mesh> {
     let parsing = bytes.len() as u64 * PARSED;
     let _parsing = context.budget.reserve(parsing, "the parsed model", &at)?;
     let mut alone = Scene::default();
-    let parts = ply::from_bytes(&bytes, path, context, &mut alone)?;
+    let parts = ply::geometry_from_bytes(&bytes, path, context, &mut alone)?;
     if parts.iter().any(|part| !matches!(part.geometry, Geometry::Mesh(_))) {
         context.warn(&at, "there are points but no faces: nothing is rendered");
     }

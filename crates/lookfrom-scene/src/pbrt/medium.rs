@@ -25,17 +25,17 @@ const KINDS: &[&str] = &["cloud", "homogeneous", "nanovdb", "rgbgrid", "uniformg
 const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 
 impl Reader<'_, '_> {
-    pub(super) fn make_medium(&mut self, name: String, p: &Parameters) -> Result<()> {
+    pub(super) fn make_medium(&mut self, name: &str, p: &Parameters) -> Result<()> {
         let kind = p.string("type")?.unwrap_or_default().to_owned();
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }
-        if let Some(named) = self.media.get(&name).filter(|named| named.is_made) {
+        if let Some(named) = self.media.get(name).filter(|named| named.is_made) {
             let before = &self.scene.media[named.id.index()].at;
             let error = p.place.invalid(format!("medium {name:?} is already defined, at {before}"));
             return Err(error.hint("give one of them another name"));
         }
-        let mut medium = self.even_medium(name.clone(), &kind, p)?;
+        let mut medium = self.even_medium(name.to_owned(), &kind, p)?;
         medium.variation = match &*kind {
             "uniformgrid" => Some(self.uniform_grid(p, &mut medium)?),
             "rgbgrid" => Some(self.rgb_grid(p, &mut medium)?),
@@ -43,9 +43,9 @@ impl Reader<'_, '_> {
             "nanovdb" => self.nano_vdb(p, &mut medium)?,
             _ => None,
         };
-        let id = self.medium_named(&name, &p.place);
+        let id = self.medium_named(name, &p.place);
         self.scene.media[id.index()] = medium;
-        if let Some(named) = self.media.get_mut(&name) {
+        if let Some(named) = self.media.get_mut(name) {
             named.is_made = true;
         }
         Ok(())

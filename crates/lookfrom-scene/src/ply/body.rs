@@ -37,6 +37,8 @@ pub(super) struct Content {
     pub(super) corner_uvs: Vec<Vec2>,
     /// Empty, or one per face; linear.
     pub(super) face_colors: Vec<[f32; 3]>,
+    /// Empty, or the number of each face's texture among those that the header names, from 0.
+    pub(super) face_textures: Vec<u32>,
     pub(super) edges: Edges,
     /// Rows of a text with more values than the header declares.
     pub(super) longer: Tally,
@@ -234,18 +236,22 @@ fn read_faces(
     let columns = [8, 9, 10].map(|slot| element.find(VERTEX[slot]).filter(is_one));
     let has_colors = columns[..if is_gray { 1 } else { 3 }].iter().all(Option::is_some);
     let decode = color_decoder(columns[0].map(|column| element.properties[column].kind));
+    let texture_number = element.find(&["texnumber"]).filter(is_one);
     let (mut face, mut uvs) = (Vec::new(), Vec::new());
     for _ in 0..element.count {
         let mut line = 0;
         let mut place = 0;
         uvs.clear();
         let mut color = [0.0; 3];
+        let mut texture = 0;
         for (index, property) in element.properties.iter().enumerate() {
             match property.kind {
                 PropertyKind::One(scalar) => {
                     let value = reader.value(scalar)?;
                     if let Some(channel) = columns.iter().position(|column| *column == Some(index)) {
                         color[channel] = decode(value);
+                    } else if texture_number == Some(index) {
+                        texture = if value >= 0.0 { value as u32 } else { u32::MAX };
                     }
                 }
                 PropertyKind::List { count, item } if index == indices => {
@@ -279,6 +285,9 @@ fn read_faces(
         if has_colors {
             let color = if is_gray { [color[0]; 3] } else { color };
             content.face_colors.resize(content.faces.len(), color);
+        }
+        if texture_number.is_some() {
+            content.face_textures.resize(content.faces.len(), texture);
         }
         if content.corners.len() as u64 > limits.elements.min(u64::from(u32::MAX) / 4) {
             return Err(Error::new(

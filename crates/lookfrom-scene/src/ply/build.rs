@@ -1,5 +1,6 @@
 //! Meshes, wires and point clouds of PLY elements.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use glam::{Vec2, Vec3};
@@ -59,15 +60,53 @@ pub(super) fn parts(
         return Ok((points::cloud(&content.positions, &content.colors, &file, context, scene), 0));
     }
     make_values_finite(&mut content, &file, context);
-    let (mut mesh, flat) = mesh(content, &file, context);
+    let (mut mesh, textures, flat) = mesh(content, &file, context);
     if mesh.triangles.is_empty() {
         return Ok((Vec::new(), flat));
     }
     mesh.name = file.file.to_string();
-    let material = material(&mesh, header, path, context, scene);
-    let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
-    scene.meshes.push(mesh);
-    Ok((vec![Part { material, ..Part::new(None, geometry) }], flat))
+    let has_many = header.textures.len() > 1 && !mesh.uvs.is_empty();
+    if has_many && textures.is_empty() {
+        let message = format!("{} textures are named: only the first is used", header.textures.len());
+        context.warn(&file, message);
+    }
+    let meshes = match has_many && !textures.is_empty() {
+        true => by_texture(&mesh, &textures),
+        false => vec![(0, mesh)],
+    };
+    let mut parts = Vec::with_capacity(meshes.len());
+    for (texture, mesh) in meshes {
+        let texture = header.textures.get(texture as usize).map(String::as_str);
+        let material = material(&mesh, texture, path, context, scene);
+        let geometry = Geometry::Mesh(MeshId(scene.meshes.len() as u32));
+        scene.meshes.push(mesh);
+        parts.push(Part { material, ..Part::new(None, geometry) });
+    }
+    Ok((parts, flat))
+}
+
+/// A mesh for each texture, of the triangles that have it; by the number of the texture.
+fn by_texture(mesh: &Mesh, textures: &[u32]) -> Vec<(u32, Mesh)> {
+    let mut triangles: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
+    for (triangle, &texture) in mesh.triangles.iter().zip(textures) {
+        triangles.entry(texture).or_default().push(*triangle);
+    }
+    let of_texture = |(texture, mut triangles): (u32, Vec<[u32; 3]>)| {
+        let mut weld = Weld::new();
+        triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(|vertex| weld.id([vertex])));
+        let keys = weld.keys();
+        let mesh = Mesh {
+            name: mesh.name.clone(),
+            positions: select(&mesh.positions, keys),
+            triangles,
+            normals: select(&mesh.normals, keys),
+            uvs: select(&mesh.uvs, keys),
+            colors: select(&mesh.colors, keys),
+            ..Mesh::default()
+        };
+        (texture, mesh)
+    };
+    triangles.into_iter().map(of_texture).collect()
 }
 
 fn make_values_finite(content: &mut Content, file: &Location, context: &mut LoadContext<'_>) {
@@ -83,16 +122,18 @@ fn make_values_finite(content: &mut Content, file: &Location, context: &mut Load
     tally.warn("normal or texture coordinate", "ignored: infinite or not a number", file, context);
 }
 
-fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Mesh, u64) {
-    let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, face_colors, .. } =
-        content;
+/// The mesh, the textures of its triangles (empty if faces have none), and the number of triangles without area.
+fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Mesh, Vec<u32>, u64) {
+    let Content { mut positions, normals, uvs, colors, faces, corners, corner_uvs, .. } = content;
+    let Content { face_colors, face_textures, .. } = content;
     let mut triangulator = Triangulator::new();
     let (mut not_finite, mut flat) = (Tally::default(), Tally::default());
     // Colours of vertices are finer than those of faces.
     let face_colors = if colors.is_empty() { face_colors } else { Vec::new() };
-    // Triangles, as indices of corners, and the colours of their faces.
+    // Triangles, as indices of corners, and the colours and textures of their faces.
     let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(faces.len());
     let mut triangle_colors: Vec<[f32; 3]> = Vec::new();
+    let mut triangle_textures: Vec<u32> = Vec::new();
     let (mut points, mut cut) = (Vec::new(), Vec::new());
     let mut start = 0;
     for (index, face) in faces.iter().enumerate() {
@@ -106,6 +147,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Me
                 if has_area(triangle.map(|i| points[i as usize])) {
                     triangles.push(triangle.map(|i| start as u32 + i));
                     triangle_colors.extend(face_colors.get(index));
+                    triangle_textures.extend(face_textures.get(index));
                 } else {
                     flat.add(face.line);
                 }
@@ -132,7 +174,7 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Me
             *position = Vec3::ZERO;
         }
         let mesh = Mesh { positions, triangles, normals, uvs, colors, ..Mesh::default() };
-        return (mesh, flat.count());
+        return (mesh, triangle_textures, flat.count());
     }
     // A vertex with different texture coordinates or colours in different faces is split.
     let mut weld = Weld::new();
@@ -158,30 +200,27 @@ fn mesh(content: Content, file: &Location, context: &mut LoadContext<'_>) -> (Me
         },
         ..Mesh::default()
     };
-    (mesh, flat.count())
+    (mesh, triangle_textures, flat.count())
 }
 
 /// A vertex, its texture coordinates and its colour, as bits.
 type Key = [u32; 6];
 
-fn select<T: Copy>(values: &[T], keys: &[Key]) -> Vec<T> {
+/// The values of vertices, by the first number of their keys.
+fn select<T: Copy, const N: usize>(values: &[T], keys: &[[u32; N]]) -> Vec<T> {
     keys.iter().filter_map(|key| values.get(key[0] as usize).copied()).collect()
 }
 
-/// A material with the image that the file names, if there are texture coordinates, or else with the vertices' colours.
+/// A material with an image that the file names, if there are texture coordinates, or else with the vertices' colours.
 fn material(
     mesh: &Mesh,
-    header: &Header,
+    texture: Option<&str>,
     path: &Path,
     context: &mut LoadContext<'_>,
     scene: &mut Scene,
 ) -> Option<MaterialId> {
     let at = Location::file(path);
-    if let (Some(name), false) = (header.textures.first(), mesh.uvs.is_empty()) {
-        if header.textures.len() > 1 {
-            context
-                .warn(&at, format!("{} textures are named: only the first is used", header.textures.len()));
-        }
+    if let (Some(name), false) = (texture, mesh.uvs.is_empty()) {
         match read_image(path, name, Encoding::Srgb, context) {
             Ok(image) => {
                 let image = push_image(scene, image);

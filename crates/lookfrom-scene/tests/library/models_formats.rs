@@ -397,6 +397,25 @@ fn ply_pictures_with_coordinates_at_corners() {
     assert_eq!(model.picture(model.look(0).diffuse).0, [[1.0; 3]]);
 }
 
+/// As MeshLab writes what was photographed: a picture for each face.
+#[test]
+fn ply_faces_of_several_pictures_are_several_parts() {
+    let ply = "ply\nformat ascii 1.0\ncomment TextureFile white.ppm\ncomment TextureFile red.ppm\nelement vertex 4\nproperty float x\n\
+        property float y\nproperty float z\nelement face 3\nproperty list uchar int vertex_indices\n\
+        property list uchar float texcoord\nproperty int texnumber\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
+        3 0 1 2 6 0 0 1 0 1 1 1\n3 0 2 3 6 0 0 1 1 0 1 0\n3 0 1 3 6 0 0 1 0 0 1 -1\n";
+    let red = ppm([255, 0, 0]);
+    let model = Model::of(&[("a.ply", ply.as_bytes()), ("white.ppm", WHITE), ("red.ppm", &red)]);
+    assert_eq!(model.warnings, [""; 0]);
+    let texels = |part: usize| model.picture(model.look(part).diffuse).0;
+    assert_eq!((texels(0), texels(1)), (vec![[1.0; 3]], vec![[1.0, 0.0, 0.0]]));
+    assert_eq!((model.parts.len(), model.parts[2].material), (3, None));
+    for part in 0..3 {
+        assert_eq!((model.mesh(part).positions.len(), model.mesh(part).triangles.len()), (3, 1));
+    }
+    assert_eq!(model.mesh(1).positions[2], Vec3::new(1.0, 1.0, 0.0));
+}
+
 #[test]
 fn stl_text_and_binary_weld_the_same() {
     let facets = [

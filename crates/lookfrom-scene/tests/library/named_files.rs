@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use lookfrom_scene::{Error, ErrorKind, Limits, LoadContext, Memory, Scene, load, model};
+use lookfrom_scene::{Disk, Error, ErrorKind, Files as _, Limits, LoadContext, Memory, Scene, load, model};
 
 const OBJ: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 const PLY: &[u8] =
@@ -152,4 +152,20 @@ fn of_very_many_missing_files_some_are_told_of() {
     let error =
         read("a.pbrt", &memory(&[("a.pbrt", format!("WorldBegin\n{pictures}").into_bytes())])).unwrap_err();
     assert_eq!(error.each().count(), 1001);
+}
+
+/// As in scenes that were made where letters have no case and folders are divided by `\\`.
+#[test]
+fn names_from_windows_are_found() {
+    let folder = std::env::temp_dir().join(format!("lookfrom-names-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("Textures")).unwrap();
+    std::fs::write(folder.join("Textures/Wood.obj"), OBJ).unwrap();
+    let read = |name: &str| Disk.read(&folder.join(name), 1 << 20);
+    for name in ["Textures/Wood.obj", "textures/WOOD.OBJ", "Textures\\Wood.obj", "TEXTURES\\wood.obj"] {
+        assert_eq!(read(name).unwrap(), OBJ, "{name}");
+    }
+    for name in ["Textures/Wood", "Textures/Wood.ob", "Texture/Wood.obj", "textures"] {
+        assert_eq!(read(name).unwrap_err().kind, ErrorKind::Io, "{name}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::*;
-use crate::files::{Disk, LoadContext};
+use crate::Disk;
+use crate::files::LoadContext;
 
 /// A grid of 5 × 5 vertices: positions in 12 bits, texture coordinates in 10, normals in 8, joints in bytes; encoded by
 /// Edgebreaker, and triangle by triangle (sequentially).
