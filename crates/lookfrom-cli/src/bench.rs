@@ -7,7 +7,6 @@ use lookfrom::film::Film;
 use lookfrom::render::{Rendered, StopCriteria};
 use lookfrom::session::{MOST_SAMPLES, Options};
 use lookfrom_scene::image::compare::{Sampled, compare};
-use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{Disk, Inputs, LoadContext};
 use serde::Serialize;
 
@@ -87,8 +86,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let rendered = renderer.render_until(&options.stop, options.threads, &());
     let Rendered { film, rays, samples_taken, .. } = rendered.map_err(exit::in_scene(path))?;
     let seconds = report::seconds(started.elapsed()).max(1e-6);
-    let PixelBounds { x0, y0, x1, y1 } = film.area();
-    let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+    let pixels = film.area().pixels();
 
     // The reference.
     let reference = match &arguments.reference {

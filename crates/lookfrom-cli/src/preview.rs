@@ -25,9 +25,7 @@ impl Preview {
     pub(crate) fn start(every: Duration, image: &ImageSettings) -> (Self, Receiver<SoFar>) {
         let (sender, receiver) = sync_channel(0);
         let &ImageSettings { width, height, crop, .. } = image;
-        let PixelBounds { x0, y0, x1, y1 } =
-            crop.unwrap_or(PixelBounds { x0: 0, y0: 0, x1: width, y1: height });
-        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        let pixels = crop.unwrap_or(PixelBounds::of_size(width, height)).pixels();
         let black = vec![[0.0; 3]; width as usize * height as usize];
         let picture = Picture { width, height, pixels: black, alpha: Vec::new() };
         (Self { every, pixels, so_far: Mutex::new((picture, Instant::now())), sender }, receiver)

@@ -108,7 +108,8 @@ impl Numbers<'_> {
 
 fn parse(text: &str, file: &Location) -> Result<Photometry> {
     let mut lines = (1..).zip(text.lines());
-    let tilt = lines.by_ref().find(|(_, line)| line.trim_start().starts_with("TILT="));
+    let is_tilt = |line: &str| line.split_whitespace().collect::<String>().starts_with("TILT=");
+    let tilt = lines.by_ref().find(|(_, line)| is_tilt(line));
     let Some((_, tilt)) = tilt else {
         return Err(Error::syntax(file, "there is no line `TILT=`: it is no photometric file"));
     };
@@ -147,9 +148,15 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
         numbers.next(what)?;
     }
     let vertical = numbers.angles(vertical_count, "vertical angle")?;
-    let horizontal = numbers.angles(horizontal_count, "horizontal angle")?;
+    let mut horizontal = numbers.angles(horizontal_count, "horizontal angle")?;
     let count = vertical_count * horizontal_count;
     let mut intensities = (0..count).map(|_| numbers.next("an intensity")).collect::<Result<Vec<f64>>>()?;
+    // Some programs leave out the last plane, which is the first.
+    let last = horizontal[horizontal_count - 1];
+    if kind == Kind::C && horizontal[0] == 0.0 && last > 270.0 && last < 360.0 {
+        horizontal.push(360.0);
+        intensities.extend_from_within(..vertical_count);
+    }
     if intensities.iter().any(|intensity| *intensity < 0.0) {
         return Err(Error::invalid(file, "an intensity is below 0"));
     }
@@ -261,6 +268,15 @@ mod tests {
 
     fn near(a: f64, b: f64) -> bool {
         (a - b).abs() < 1e-9
+    }
+
+    #[test]
+    fn the_last_plane_may_be_left_out() {
+        let rows = "4 1 8 1 2 1 6 1";
+        let planes =
+            of(&format!("IES\nTILT = NONE\n1 1000 1 2 4 1 1 0 0 0 1 1 40\n0 180\n0 90 180 300\n{rows}\n"))
+                .unwrap();
+        assert!(near(planes.intensity(0.0, 330.0), 0.625) && near(planes.intensity(0.0, 359.999_999_999), 0.5));
     }
 
     #[test]

@@ -261,9 +261,9 @@ fn visit(scene: &Scene, see: &mut dyn FnMut(DVec3)) {
     for shape in &scene.shapes {
         visit_shape(scene, shape, see);
     }
+    let objects = bounds_of_objects(scene);
     for instance in &scene.instances {
-        let shapes = &scene.objects[instance.object.index()].shapes;
-        visit_instance(instance, bounds_of(scene, shapes), see);
+        visit_instance(instance, objects[instance.object.index()], see);
     }
 }
 
@@ -277,6 +277,11 @@ fn visit_shape(scene: &Scene, shape: &Shape, see: &mut dyn FnMut(DVec3)) {
     } else {
         corners(shape.bounds(&scene.meshes)).into_iter().for_each(see);
     }
+}
+
+/// The bounding box of each object, in its own space: there may be many instances of it.
+fn bounds_of_objects(scene: &Scene) -> Vec<Bounds> {
+    scene.objects.iter().map(|object| bounds_of(scene, &object.shapes)).collect()
 }
 
 /// Visits the corners of an object's bounds, transformed by an instance.

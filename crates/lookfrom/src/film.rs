@@ -209,11 +209,11 @@ impl Film {
 
     /// Whether sums of an area can be added.
     fn check_same(&self, area: PixelBounds, layout: Layout) -> Result<()> {
-        let PixelBounds { x0, y0, x1, y1 } = area;
-        if x0 >= x1 || y0 >= y1 {
+        if area.is_empty() {
             return Ok(());
         }
-        if common(self.area, area) != area {
+        if self.area.intersection(area) != area {
+            let PixelBounds { x0, y0, x1, y1 } = area;
             let mine = self.area;
             return Err(invalid(format!(
                 "pixels {x0},{y0},{x1},{y1} cannot be added to a film of the pixels {},{},{},{}",
@@ -263,8 +263,8 @@ impl Film {
 
     /// Makes an area, which contains its own and is within the picture, that of the film.
     pub fn enlarge(&mut self, area: PixelBounds) {
-        self.area =
-            union(self.area, common(area, PixelBounds { x0: 0, y0: 0, x1: self.width, y1: self.height }));
+        let whole = PixelBounds::of_size(self.width, self.height);
+        self.area = self.area.union(area.intersection(whole));
     }
 
     /// Forgets the sums of rows, of which nothing is wanted any more, as far as whole blocks end within them.
@@ -305,24 +305,8 @@ impl Film {
 
 /// The pixels of a film for these settings.
 fn area_of(image: &ImageSettings) -> PixelBounds {
-    let whole = PixelBounds { x0: 0, y0: 0, x1: image.width, y1: image.height };
-    common(whole, image.crop.unwrap_or(whole))
-}
-
-/// The intersection of two rectangles; if it is empty, the empty rectangle at the origin.
-fn common(a: PixelBounds, b: PixelBounds) -> PixelBounds {
-    let (x0, x1) = (a.x0.max(b.x0), a.x1.min(b.x1));
-    let (y0, y1) = (a.y0.max(b.y0), a.y1.min(b.y1));
-    if x0 < x1 && y0 < y1 {
-        PixelBounds { x0, y0, x1, y1 }
-    } else {
-        PixelBounds { x0: 0, y0: 0, x1: 0, y1: 0 }
-    }
-}
-
-/// The smallest rectangle around two.
-pub(crate) fn union(a: PixelBounds, b: PixelBounds) -> PixelBounds {
-    PixelBounds { x0: a.x0.min(b.x0), y0: a.y0.min(b.y0), x1: a.x1.max(b.x1), y1: a.y1.max(b.y1) }
+    let whole = PixelBounds::of_size(image.width, image.height);
+    whole.intersection(image.crop.unwrap_or(whole))
 }
 
 fn invalid(message: String) -> Error {

@@ -120,8 +120,7 @@ impl Picture {
 
     pub(super) fn of_film(file: &FilmFile, developed: Developed) -> Self {
         let film = Arc::new(file.film.clone());
-        let area = film.area();
-        let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
+        let pixels = film.area().pixels();
         let told = Told {
             samples: film.ledger().total() / pixels.max(1),
             reason: "film".to_owned(),

@@ -89,7 +89,7 @@ pub enum By {
     Standard,
     /// pbrt-v4's for textures: the data window, and the exposure stays.
     PbrtTexture,
-    /// pbrt-v4's for lights: the same, and white keeps its colour.
+    /// pbrt-v4's for lights, and Mitsuba's for all pictures: the same, and white keeps its colour.
     PbrtLight,
 }
 
@@ -218,8 +218,8 @@ fn kept(image: Image, mut memory: Reservation, context: &mut LoadContext<'_>) ->
     image
 }
 
-/// The opacity (alpha) of an image in grey, if it has one that is not 1 everywhere. `encoding` is as in [`read_encoded`];
-/// the opacity of EXR, KTX2 and PFM is ignored.
+/// The opacity (alpha) of an image in grey, if it has one that is not 1 everywhere, by the rules of pbrt-v4: grey PNG files and those
+/// with palettes have none. `encoding` is as in [`read_encoded`].
 ///
 /// # Errors
 /// As [`read`].
@@ -230,10 +230,21 @@ pub fn read_opacity(
 ) -> Result<Option<Image>> {
     let at = Location::file(path);
     let bytes = context.read(path)?;
-    if bytes.starts_with(&openexr::MAGIC)
-        || bytes.starts_with(KTX2_MAGIC)
+    if bytes.starts_with(&openexr::MAGIC) {
+        let reading = Reading { by: By::PbrtTexture, ..Reading::new(encoding) };
+        let Floats { width, height, alpha, memory, .. } =
+            openexr::decode_rgb(&bytes, &at, &reading, context)?;
+        let texels: Vec<_> = alpha.into_iter().map(|alpha| [alpha; 3]).collect();
+        let image = |texels| Image::from_linear(path.display().to_string(), width, height, texels);
+        return Ok((!texels.is_empty()).then(|| kept(image(texels), memory, context)));
+    }
+    // The colour type in the header of a PNG file, of RGBA.
+    const RGBA: u8 = 6;
+    let is_png = bytes.starts_with(b"\x89PNG");
+    if bytes.starts_with(KTX2_MAGIC)
         || is_pfm(&bytes)
         || radiance::is(&bytes)
+        || is_png && bytes.get(25) != Some(&RGBA)
     {
         return Ok(None);
     }
@@ -394,7 +405,7 @@ fn wrong(error: &ImageError, bytes: &[u8], at: &Location, limits: &Limits) -> Er
     }
 }
 
-/// Portable float map: `PF` (colour) or `Pf` (grey), width, height, a scale whose sign gives the byte order, then
+/// Portable float map: `PF` (colour) or `Pf` (grey), width, height, a factor whose sign gives the byte order, then
 /// 32-bit numbers, bottom row first.
 fn decode_pfm(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<Floats> {
     let bad = |message: String| {
@@ -428,9 +439,10 @@ fn decode_pfm(bytes: &[u8], at: &Location, context: &LoadContext<'_>) -> Result<
         )));
     }
     let memory = room([width, height], size_of::<[f32; 3]>() as u64, at, context)?;
+    let factor = if scale.is_finite() && scale != 0.0 { scale.abs() } else { 1.0 };
     let number = |b: &[u8]| {
         let b = [b[0], b[1], b[2], b[3]];
-        if scale < 0.0 { f32::from_le_bytes(b) } else { f32::from_be_bytes(b) }
+        factor * if scale < 0.0 { f32::from_le_bytes(b) } else { f32::from_be_bytes(b) }
     };
     let rows = rest[..row * height as usize].chunks_exact(row).rev();
     let texels = rows

@@ -11,7 +11,7 @@ use super::Reader;
 use super::plugin::{Plugin, Property, Value};
 use super::xml::blame;
 use crate::error::{ErrorKind, Result};
-use crate::image;
+use crate::image::{self, By, Encoding, Reading};
 use crate::material::{Color, Scalar};
 use crate::model::surface::push_image;
 use crate::scene::{CurveId, ImageId, TextureId};
@@ -264,9 +264,9 @@ impl Reader<'_, '_> {
         if let Some(&id) = self.images.get(&key) {
             return Ok(id);
         }
-        let read =
-            if raw { image::read_data(&key.0, self.context) } else { image::read(&key.0, self.context) };
-        let image = read.map_err(|error| match error.kind {
+        let encoding = if raw { Encoding::Linear } else { Encoding::Srgb };
+        let reading = Reading { by: By::PbrtLight, ..Reading::new(encoding) };
+        let image = image::read_as(&key.0, &reading, self.context).map_err(|error| match error.kind {
             ErrorKind::Io => blame(error, &at),
             _ => error,
         })?;

@@ -311,7 +311,7 @@ impl Reader<'_, '_> {
 
     /// The image of an area light, over the uv of its shape.
     pub(super) fn shown_picture(&mut self, name: &str, place: &Place) -> Result<Color> {
-        let image = self.picture(name, "sRGB", place)?;
+        let image = self.emitted_picture(name, place)?;
         let kind = TextureKind::Image {
             image,
             mapping: Mapping::UV,

@@ -197,6 +197,65 @@ pub struct PixelBounds {
     pub y1: u32,
 }
 
+impl PixelBounds {
+    /// No pixels.
+    pub const EMPTY: Self = Self { x0: 0, y0: 0, x1: 0, y1: 0 };
+
+    /// All pixels of a picture.
+    pub fn of_size(width: u32, height: u32) -> Self {
+        Self { x0: 0, y0: 0, x1: width, y1: height }
+    }
+
+    /// Columns and rows; 0 where it ends before it begins.
+    pub fn size(self) -> [u32; 2] {
+        [self.x1.saturating_sub(self.x0), self.y1.saturating_sub(self.y0)]
+    }
+
+    /// The number of pixels.
+    pub fn pixels(self) -> u64 {
+        let [width, height] = self.size();
+        u64::from(width) * u64::from(height)
+    }
+
+    /// Whether it has no pixels.
+    pub fn is_empty(self) -> bool {
+        self.size().contains(&0)
+    }
+
+    /// Whether a pixel is in it.
+    pub fn contains(self, x: u32, y: u32) -> bool {
+        (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
+    }
+
+    /// The number of a pixel in it, row by row.
+    pub fn index(self, x: u32, y: u32) -> usize {
+        (y - self.y0) as usize * (self.x1 - self.x0) as usize + (x - self.x0) as usize
+    }
+
+    /// The pixels of both; [`Self::EMPTY`] where there are none.
+    #[must_use]
+    pub fn intersection(self, other: Self) -> Self {
+        let both = Self {
+            x0: self.x0.max(other.x0),
+            y0: self.y0.max(other.y0),
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+        };
+        if both.is_empty() { Self::EMPTY } else { both }
+    }
+
+    /// The smallest rectangle around both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            x0: self.x0.min(other.x0),
+            y0: self.y0.min(other.y0),
+            x1: self.x1.max(other.x1),
+            y1: self.y1.max(other.y1),
+        }
+    }
+}
+
 /// The tone mapping from linear light to [0, 1], before the sRGB curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tonemap {

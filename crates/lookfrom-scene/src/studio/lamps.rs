@@ -25,26 +25,30 @@ const DEEPEST: u32 = 16;
 pub fn has_lamps(scene: &Scene) -> bool {
     let radius = scene.bounds().radius();
     let sphere = 4.0 * std::f64::consts::PI * radius * radius;
+    // There may be many instances of an object.
+    let areas =
+        scene.objects.iter().map(|object| object.shapes.iter().map(|shape| area(scene, shape)).collect());
+    let areas: Vec<Vec<f64>> = areas.collect();
     let instanced = scene.instances.iter().flat_map(|instance| {
         // Areas grow by the square of the mean scale.
         let scale = instance.world_from_object.determinant().abs().cbrt();
-        scene.objects[instance.object.index()].shapes.iter().map(move |shape| (shape, scale * scale))
+        let object = instance.object.index();
+        let shapes = scene.objects[object].shapes.iter().zip(&areas[object]);
+        shapes.map(move |(shape, area)| (shape, scale * scale * area))
     });
-    let shapes = scene.shapes.iter().map(|shape| (shape, 1.0)).chain(instanced);
+    let shapes = scene.shapes.iter().map(|shape| (shape, area(scene, shape))).chain(instanced);
     let mut means = Means { scene, of_images: vec![None; scene.images.len()] };
     let (mut flux, mut lamps) = (0.0, 0.0);
-    for (shape, growth) in shapes.clone() {
+    for (shape, area) in shapes.clone() {
         let Some(emission) = &shape.emission else { continue };
         let [r, g, b] = means.of(&emission.radiance, DEEPEST);
         let radiance = f64::from(r.max(g).max(b));
         if radiance > PAPER {
-            let area = growth * area(scene, shape);
             flux += radiance * area;
             lamps += area;
         }
     }
-    flux > LIT * sphere
-        && lamps < SMALL * shapes.map(|(shape, growth)| growth * area(scene, shape)).sum::<f64>()
+    flux > LIT * sphere && lamps < SMALL * shapes.map(|(_, area)| area).sum::<f64>()
 }
 
 /// Means of colours; those of images are computed once.

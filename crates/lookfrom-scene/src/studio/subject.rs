@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{corners, visit_instance};
 use crate::scene::{Bounds, Scene};
 use crate::shape::Geometry;
-use crate::studio::bounds_of;
+use crate::studio::bounds_of_objects;
 
 /// The least size of a ground that is left out of the framing, in sizes of the subject.
 const LARGER: f64 = 3.0;
@@ -47,8 +47,9 @@ pub(super) fn on_ground(scene: &Scene, whole: Bounds, up: DVec3) -> Option<Bound
             }
         }
     }
+    let objects = bounds_of_objects(scene);
     for instance in &scene.instances {
-        let object = bounds_of(scene, &scene.objects[instance.object.index()].shapes);
+        let object = objects[instance.object.index()];
         visit_instance(instance, object, &mut |corner| subject = subject.with(corner));
     }
     let stands = || {

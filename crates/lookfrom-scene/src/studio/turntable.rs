@@ -11,7 +11,7 @@ use super::viewpoint::{target, up_of_camera};
 use super::{Viewpoint, aspect, basis, bounds_of, corners, sane, visit_instance, visit_shape};
 use crate::camera::{Camera, View};
 use crate::material::MaterialKind;
-use crate::scene::{Bounds, Instance, Scene, SourceFormat};
+use crate::scene::{Bounds, Instance, Object, Scene, SourceFormat};
 use crate::shape::{Geometry, Shape};
 
 /// The ratio of sizes above which a flat item counts as a backdrop or an endless floor: its radius over that of the bounds
@@ -84,23 +84,22 @@ impl Turntable {
 #[derive(Clone, Copy)]
 enum Item<'a> {
     Shape(&'a Shape),
-    Instance(&'a Instance),
+    /// With the bounding box of the visible shapes of its object, in their space.
+    Instance(&'a Instance, Bounds),
 }
 
 impl Item<'_> {
     fn visit(self, scene: &Scene, see: &mut dyn FnMut(DVec3)) {
         match self {
             Self::Shape(shape) => visit_shape(scene, shape, see),
-            Self::Instance(instance) => visit_instance(instance, visible_of_object(scene, instance), see),
+            Self::Instance(instance, object) => visit_instance(instance, object, see),
         }
     }
 
     fn bounds(self, scene: &Scene) -> Bounds {
         match self {
             Self::Shape(shape) => shape.bounds(&scene.meshes),
-            Self::Instance(instance) => {
-                visible_of_object(scene, instance).transformed(&instance.world_from_object)
-            }
+            Self::Instance(instance, object) => object.transformed(&instance.world_from_object),
         }
     }
 
@@ -120,18 +119,11 @@ impl Item<'_> {
                 }
                 _ => false,
             },
-            Self::Instance(instance) => {
-                let Bounds { min, max } = visible_of_object(scene, instance);
+            Self::Instance(_, Bounds { min, max }) => {
                 (max - min).min_element() <= FLAT * (max - min).max_element()
             }
         }
     }
-}
-
-/// The bounding box of the visible shapes of an object, in its own space.
-fn visible_of_object(scene: &Scene, instance: &Instance) -> Bounds {
-    let shapes = &scene.objects[instance.object.index()].shapes;
-    bounds_of(scene, shapes.iter().filter(|shape| !is_hidden(scene, shape)))
 }
 
 fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
@@ -141,13 +133,17 @@ fn bounds(scene: &Scene, items: &[Item<'_>]) -> Bounds {
 /// The subject of the image. If nothing else is left, all items are.
 fn visible(scene: &Scene) -> Vec<Item<'_>> {
     let shapes = scene.shapes.iter().map(Item::Shape);
-    let all: Vec<Item<'_>> = shapes.chain(scene.instances.iter().map(Item::Instance)).collect();
+    let of_object =
+        |object: &Object| bounds_of(scene, object.shapes.iter().filter(|shape| !is_hidden(scene, shape)));
+    let objects: Vec<Bounds> = scene.objects.iter().map(of_object).collect();
+    let instances = scene.instances.iter().map(|one| Item::Instance(one, objects[one.object.index()]));
+    let all: Vec<Item<'_>> = shapes.chain(instances).collect();
     let shown: Vec<Item<'_>> = all
         .iter()
         .copied()
         .filter(|item| match item {
             Item::Shape(shape) => !is_hidden(scene, shape),
-            Item::Instance(_) => !item.bounds(scene).is_empty(),
+            Item::Instance(..) => !item.bounds(scene).is_empty(),
         })
         .collect();
     if shown.is_empty() {

@@ -112,6 +112,10 @@ fn light_is_kept_as_it_is() {
         .collect();
     let pfm = image::encode_pfm(40, 33, &texels).expect("PFM");
     assert_eq!(texels_of(&read_as("a.pfm", &pfm, None).expect("PFM").0), texels);
+    // The third number of the head is a factor.
+    let twice: Vec<u8> =
+        [b"Pf\n2 1\n-2.0\n".as_slice(), &1.5_f32.to_le_bytes(), &0.25_f32.to_le_bytes()].concat();
+    assert_eq!(texels_of(&read_as("a.pfm", &twice, None).expect("PFM").0), [[3.0; 3], [0.5; 3]]);
 
     let planes = [0, 1, 2].map(|c| texels.iter().map(|texel| texel[c]).collect::<Vec<f32>>());
     let depth: Vec<f32> = (0..40 * 33).map(|i| i as f32).collect();

@@ -232,3 +232,23 @@ fn subsampled_chroma_is_told() {
          than pixels\n  help: the file is whole; save it with the channels R, G and B, each with a value for every pixel"
     );
 }
+
+/// The opacity is the channel A of the layer that has the colours; one that is 1 everywhere is none.
+#[test]
+fn opacities_are_read() {
+    let with = |name: &'static str, alpha: [f32; 2]| {
+        let mut channels = rgb(&RGB, 1.0, 2);
+        channels.push((name, alpha.to_vec()));
+        let bytes = file([2, 1], None, vec![part(None, [0, 0], [2, 1], &channels)]);
+        read(&bytes, &Reading::new(Curve::Srgb)).unwrap().0
+    };
+    let image = with("A", [0.25, 1.0]);
+    assert_eq!((image.has_alpha(), image.alpha(0), image.alpha(1)), (true, 0.25, 1.0));
+    assert!(!with("A", [1.0, 1.0]).has_alpha() && !with("mask.A", [0.25, 1.0]).has_alpha());
+    // pbrt's numbers of such a picture are its opacity.
+    let channels = [rgb(&RGB, 1.0, 1), vec![("A", vec![0.25])]].concat();
+    let bytes = file([1, 1], None, vec![part(None, [0, 0], [1, 1], &channels)]);
+    let files = Memory([("a.exr".into(), bytes)].into());
+    let opacity = image::read_opacity(Path::new("a.exr"), &mut LoadContext::new(&files), Curve::Srgb);
+    assert_eq!(opacity.unwrap().unwrap().texel(0), [0.25; 3]);
+}

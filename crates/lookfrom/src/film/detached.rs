@@ -46,8 +46,7 @@ impl Detached {
     /// Adds the sums of the tile that they were detached for.
     pub(crate) fn add(&mut self, tile: &FilmTile) {
         let Self { size, area, blocks } = self;
-        let columns = area.x1.saturating_sub(area.x0) as usize;
-        let index = |x: u32, y: u32| (y - area.y0) as usize * columns + (x - area.x0) as usize;
+        let index = |x: u32, y: u32| area.index(x, y);
         let mut left = &mut blocks[..];
         for_each_plane!([&] tile => theirs; {
             if !theirs.is_empty() {

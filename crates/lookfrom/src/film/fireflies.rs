@@ -75,7 +75,7 @@ impl Film {
                 let excess = light.map(|light| f64::from(light) * (1.0 - kept));
                 *light = light.map(|light| (f64::from(light) * kept) as f32);
                 let around = around(area, x, y, RADIUS);
-                let share = 1.0 / (f64::from(around.x1 - around.x0) * f64::from(around.y1 - around.y0));
+                let share = 1.0 / around.pixels() as f64;
                 for y in around.y0..around.y1 {
                     for x in around.x0..around.x1 {
                         let sums = &mut spread[(y - first) as usize][x as usize];
@@ -121,7 +121,7 @@ impl Film {
             x1,
             y1: (rows.end + RADIUS).min(y1),
         };
-        let mut pixels = Vec::with_capacity((area.x1 - area.x0) as usize * (area.y1 - area.y0) as usize);
+        let mut pixels = Vec::with_capacity(area.pixels() as usize);
         for y in area.y0..area.y1 {
             self.row(y, x0, x1, |pixel| pixels.push([pixel.luminance(), pixel.standard_error()]));
         }
@@ -140,8 +140,7 @@ struct Known {
 
 impl Known {
     fn at(&self, [x, y]: [u32; 2]) -> [f64; 2] {
-        let PixelBounds { x0, y0, x1, .. } = self.area;
-        self.pixels[(y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize]
+        self.pixels[self.area.index(x, y)]
     }
 
     /// The other pixels at most `radius` away along each axis.

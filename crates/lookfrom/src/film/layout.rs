@@ -161,10 +161,8 @@ impl Layout {
             + self.light_paths as u64 * LIGHT_PATHS
             + (self.buckets + self.unsigned_buckets()) as u64 * BUCKET;
         let developed = DEVELOPED + u64::from(self.alpha) * OPACITY;
-        let PixelBounds { x0, y0, x1, y1 } = area;
-        let pixels = u64::from(x1.saturating_sub(x0)) * u64::from(y1.saturating_sub(y0));
         let picture = u64::from(width) * u64::from(height);
-        pixels.saturating_mul(summed).saturating_add(picture.saturating_mul(developed))
+        area.pixels().saturating_mul(summed).saturating_add(picture.saturating_mul(developed))
     }
 }
 

@@ -148,13 +148,13 @@ impl SampleLedger {
 
     /// The sum of all goals, and the largest; `None` if no pixel has one.
     pub(crate) fn goals(&self) -> Option<(u64, u32)> {
-        let goals = self.entries().filter_map(|(area, entry)| Some((pixels(area), entry.goal?)));
+        let goals = self.entries().filter_map(|(area, entry)| Some((area.pixels(), entry.goal?)));
         goals.map(|(pixels, goal)| (pixels * u64::from(goal), goal)).reduce(|a, b| (a.0 + b.0, a.1.max(b.1)))
     }
 
     /// Number of samples of all pixels together.
     pub fn total(&self) -> u64 {
-        self.entries().map(|(area, entry)| pixels(area) * u64::from(entry.count())).sum()
+        self.entries().map(|(area, entry)| area.pixels() * u64::from(entry.count())).sum()
     }
 
     /// The largest number of samples of a pixel.
@@ -172,7 +172,7 @@ impl SampleLedger {
 
     /// The smallest rectangle around all pixels that have samples; `None` if there are none.
     pub fn bounds(&self) -> Option<PixelBounds> {
-        self.entries().map(|(area, _)| area).reduce(super::union)
+        self.entries().map(|(area, _)| area).reduce(PixelBounds::union)
     }
 
     /// The samples of all pixels of an area if they are the same.
@@ -291,10 +291,6 @@ fn insert(all: &mut Vec<Range<u32>>, samples: Range<u32>) {
         }
     }
     *all = joined;
-}
-
-fn pixels(area: PixelBounds) -> u64 {
-    u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0)
 }
 
 #[cfg(test)]

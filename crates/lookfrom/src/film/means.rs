@@ -2,11 +2,11 @@
 
 use lookfrom_scene::settings::PixelBounds;
 
+use super::Film;
 use super::picture::{Picture, composited};
 use super::plane::Plane;
 use super::stored::Sums;
 use super::weighted::{Weighted, WeightedPixel, Weights};
-use super::{Film, common};
 use crate::aov::{Aovs, DenoiserFeatures};
 use crate::core::hash;
 use crate::core::parallel;
@@ -94,9 +94,9 @@ impl Film {
 
     /// The means of the pixels of a rectangle, black outside of [`Film::area`]: a picture of its size.
     pub fn picture_of(&self, part: PixelBounds) -> Picture {
-        let (width, height) = (part.x1.saturating_sub(part.x0), part.y1.saturating_sub(part.y0));
+        let [width, height] = part.size();
         let mut pixels = vec![[0.0; 3]; width as usize * height as usize];
-        let PixelBounds { x0, y0, x1, y1 } = common(part, self.area);
+        let PixelBounds { x0, y0, x1, y1 } = part.intersection(self.area);
         if x0 < x1 {
             parallel::for_chunks_mut(&mut pixels, width as usize, |row, pixels| {
                 let y = part.y0 + row as u32;

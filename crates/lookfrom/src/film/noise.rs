@@ -19,7 +19,7 @@ impl Film {
         for y in y0..y1 {
             self.row(y, x0, x1, |pixel| sum += pixel.luminance());
         }
-        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        let pixels = self.area.pixels();
         if pixels == 0 { 0.0 } else { sum / pixels as f64 }
     }
 
@@ -27,14 +27,15 @@ impl Film {
     /// luminance of the whole is `mean`: see the head of this file. Infinite if a pixel has fewer than two samples, 0
     /// for an empty area or a black picture.
     pub fn relative_error(&self, area: PixelBounds, mean: f64) -> f64 {
-        let PixelBounds { x0, y0, x1, y1 } = super::common(self.area, area);
+        let area = self.area.intersection(area);
+        let PixelBounds { x0, y0, x1, y1 } = area;
         let mut sum = 0.0;
         for y in y0..y1 {
             self.row(y, x0, x1, |pixel| {
                 sum += pixel.relative_error(mean);
             });
         }
-        let pixels = u64::from(x1 - x0) * u64::from(y1 - y0);
+        let pixels = area.pixels();
         if pixels == 0 { 0.0 } else { sum / pixels as f64 }
     }
 }

@@ -81,7 +81,7 @@ impl<T: Sums> Plane<T> {
             let mine = &mut self.blocks[index(self.width, place)];
             match mine.is_empty() {
                 true => *mine = block,
-                false => merge::<T>(mine, &block, count(inside([self.width, self.height], place))),
+                false => merge::<T>(mine, &block, inside([self.width, self.height], place).pixels() as usize),
             }
         }
     }
@@ -91,7 +91,7 @@ impl<T: Sums> Plane<T> {
         let columns = self.width.div_ceil(SIDE);
         let size = [self.width, self.height];
         for ((number, mine), theirs) in (0..).zip(&mut self.blocks).zip(&other.blocks) {
-            merge::<T>(mine, theirs, count(inside(size, [number % columns, number / columns])));
+            merge::<T>(mine, theirs, inside(size, [number % columns, number / columns]).pixels() as usize);
         }
     }
 
@@ -121,10 +121,6 @@ fn inside([width, height]: [u32; 2], [column, row]: [u32; 2]) -> PixelBounds {
     PixelBounds { x0, y0, x1: width.min(x0 + SIDE), y1: height.min(y0 + SIDE) }
 }
 
-fn count(PixelBounds { x0, y0, x1, y1 }: PixelBounds) -> usize {
-    (x1 - x0) as usize * (y1 - y0) as usize
-}
-
 /// The number of blocks that an area touches.
 pub(super) fn count_of_blocks(area: PixelBounds) -> usize {
     touched(area).count()
@@ -140,10 +136,10 @@ pub(super) fn change<T: Sums>(
     let (mut sums, mut bytes) = (Vec::new(), Vec::new());
     for (place, block) in touched(area).zip(blocks) {
         let all = inside(size, place);
-        unpack(block, count(all), &mut sums);
+        unpack(block, all.pixels() as usize, &mut sums);
         for y in area.y0.max(all.y0)..area.y1.min(all.y1) {
             for x in area.x0.max(all.x0)..area.x1.min(all.x1) {
-                each(x, y, &mut sums[((y - all.y0) * (all.x1 - all.x0) + x - all.x0) as usize]);
+                each(x, y, &mut sums[all.index(x, y)]);
             }
         }
         pack(&sums, &mut bytes);

@@ -68,7 +68,7 @@ impl FilmTile {
 
     /// A black tile with the sums of a layout.
     pub(super) fn with_layout(area: PixelBounds, layout: Layout) -> Result<Self> {
-        let count = u64::from(area.x1.saturating_sub(area.x0)) * u64::from(area.y1.saturating_sub(area.y0));
+        let count = area.pixels();
         if count > MOST_PIXELS {
             return Err(too_large(format!("{count} pixels; at most {MOST_PIXELS} are possible")));
         }
@@ -281,9 +281,7 @@ impl FilmTile {
     }
 
     pub(super) fn index(&self, x: u32, y: u32) -> Option<usize> {
-        let PixelBounds { x0, y0, x1, y1 } = self.area;
-        let inside = (x0..x1).contains(&x) && (y0..y1).contains(&y);
-        inside.then(|| (y - y0) as usize * (x1 - x0) as usize + (x - x0) as usize)
+        self.area.contains(x, y).then(|| self.area.index(x, y))
     }
 
     pub(super) fn index_inside(&self, x: u32, y: u32) -> usize {
@@ -293,9 +291,7 @@ impl FilmTile {
 
     /// The indices of the pixels of columns `from` to `to` (exclusive) of row `y`. They must be inside.
     pub(super) fn row(&self, y: u32, from: u32, to: u32) -> Range<usize> {
-        let PixelBounds { x0, y0, x1, .. } = self.area;
-        let start = (y - y0) as usize * (x1 - x0) as usize;
-        start + (from - x0) as usize..start + (to - x0) as usize
+        self.area.index(from, y)..self.area.index(to, y)
     }
 }
 

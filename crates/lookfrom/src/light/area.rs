@@ -50,6 +50,8 @@ pub struct AreaLight {
     pub coat: Option<FloatTexture>,
     /// The shape that emits light; of one that moves where it is when the shutter opens.
     pub shape: LightShape,
+    /// The origin of render space in the world, in which textures have their places.
+    pub(crate) origin: DVec3,
     /// Its motion, if it moves.
     pub(crate) motion: Option<LightMotion>,
 }
@@ -236,7 +238,7 @@ impl AreaLight {
         let light_point = self.sample_point(from, u)?;
         let LightPoint { point, normal, wi, pdf, .. } = light_point;
         let front = normal.dot(wi.as_dvec3()) < 0.0;
-        let at = self.texture_point(&light_point);
+        let at = TexturePoint { is_inside: !front, ..self.texture_point(&light_point) };
         let there = self.alpha.map_or(1.0, |alpha| textures.float(alpha, &at).clamp(0.0, 1.0));
         let cos = || self.shading_normal(&light_point).dot(wi.as_dvec3()) as f32;
         let li = self.emitted(textures, &at, front, cos, mode) * there;
@@ -248,9 +250,10 @@ impl AreaLight {
         !self.radiance.color.varies() && self.alpha.or(self.coat).is_none()
     }
 
-    /// The inputs of an emission texture; the position in the world is not among them.
+    /// The inputs of an emission texture.
     fn texture_point(&self, point: &LightPoint) -> TexturePoint<'_> {
-        let at = TexturePoint { uv: point.uv, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
+        let world = self.origin + DVec3::from_array(point.point.position);
+        let at = TexturePoint { uv: point.uv, world, n: point.normal.as_vec3(), ..TexturePoint::NOWHERE };
         let is_even = self.alpha.is_none()
             && !self.coat.is_some_and(FloatTexture::varies)
             && !self.radiance.color.varies();

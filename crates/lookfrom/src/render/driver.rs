@@ -14,13 +14,13 @@ use std::time::Duration;
 use lookfrom_scene::settings::{Allocation, PixelBounds, RenderSettings};
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
-use super::parts::{TilePart, area, divided, parts, rows, tiles};
+use super::parts::{TilePart, divided, parts, rows, tiles};
 use super::progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 use super::{Batch, Rays, Renderer};
 use crate::core::clock::Stopwatch;
 use crate::core::parallel;
 use crate::film::allocation::{self, LEAST_MEAN};
-use crate::film::{Film, FilmTile, union};
+use crate::film::{Film, FilmTile};
 
 /// Maximum number of samples per pixel between two evaluations of the stop criteria.
 const LONGEST_ROUND: u32 = 64;
@@ -96,7 +96,7 @@ impl Renderer {
             );
         }
         let tiles = tiles(film.area());
-        let all: u64 = tiles.iter().map(area).sum();
+        let all: u64 = tiles.iter().map(|tile| tile.pixels()).sum();
         let end = self.settings.samples;
         let work = Work {
             renderer: self,
@@ -227,7 +227,7 @@ impl Work<'_> {
 
     /// Adds the samples of a part, unless it is cancelled meanwhile; returns whether they are added.
     fn part(&self, TilePart { areas, samples }: &TilePart) -> Result<bool> {
-        let Some(around) = areas.iter().copied().reduce(union) else { return Ok(true) };
+        let Some(around) = areas.iter().copied().reduce(PixelBounds::union) else { return Ok(true) };
         let mut tile = FilmTile::for_image(around, self.renderer.image())?;
         let mut batch = locked(&self.batches).pop().unwrap_or_default();
         let rays = self.rays_of_part(&mut batch, areas, samples.clone(), &mut tile)?;
@@ -247,7 +247,8 @@ impl Work<'_> {
             guard.1 += rays;
             (guard.1.total(), None)
         };
-        let of_part = areas.iter().map(area).sum::<u64>() * u64::from(samples.end - samples.start);
+        let of_part =
+            areas.iter().map(|tile| tile.pixels()).sum::<u64>() * u64::from(samples.end - samples.start);
         self.progress.tile(TileDone {
             area: around,
             samples: samples.clone(),
@@ -268,13 +269,14 @@ impl Work<'_> {
         samples: Range<u32>,
         tile: &mut FilmTile,
     ) -> Result<Option<Rays>> {
-        let pixels: u64 = areas.iter().map(area).sum();
+        let pixels: u64 = areas.iter().map(|tile| tile.pixels()).sum();
         let mut rays = Rays::default();
         let mut piece = |areas: &[PixelBounds], samples: Range<u32>| -> Result<bool> {
             if self.progress.cancelled() {
                 return Ok(false);
             }
-            let count = areas.iter().map(area).sum::<u64>() * u64::from(samples.end - samples.start);
+            let count =
+                areas.iter().map(|tile| tile.pixels()).sum::<u64>() * u64::from(samples.end - samples.start);
             let started = Stopwatch::start();
             rays += self.renderer.render_pixels(batch, areas, samples, tile)?;
             let cost = started.elapsed().as_nanos() as u64 / count.max(1);
@@ -325,13 +327,13 @@ impl Work<'_> {
     fn decide(&self, noise: Option<f64>) -> Option<(u64, u32)> {
         let mut guard = locked(&self.film);
         let film = &mut guard.0;
-        let PixelBounds { x0, y0, x1, .. } = film.area();
+        let area = film.area();
         let most = self.renderer.settings.samples;
         let goals = match noise {
             Some(noise) => film.allocation_for_error(noise, FEWEST_SAMPLES.min(most), most),
             None => Some(film.allocation(most)),
         }?;
-        film.ledger_mut().set_goals(|[x, y]| goals[((y - y0) * (x1 - x0) + x - x0) as usize]);
+        film.ledger_mut().set_goals(|[x, y]| goals[area.index(x, y)]);
         film.ledger().goals()
     }
 }

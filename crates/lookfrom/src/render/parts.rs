@@ -54,11 +54,6 @@ pub(super) fn tiles(area: PixelBounds) -> Vec<PixelBounds> {
     .collect()
 }
 
-/// Number of pixels of a rectangle.
-pub(super) fn area(tile: &PixelBounds) -> u64 {
-    u64::from(tile.x1 - tile.x0) * u64::from(tile.y1 - tile.y0)
-}
-
 /// The rows of an area.
 pub(super) fn rows(area: &PixelBounds) -> impl Iterator<Item = PixelBounds> + use<> {
     let area = *area;

@@ -18,7 +18,7 @@ use lookfrom_scene::{Budget, Error, ErrorKind, Limits, Location, Remedy, Result}
 use super::layers;
 use super::provenance::{FORMAT, PREFIX, Provenance, Texts};
 use super::{Developed, Development, encode, finish, header};
-use crate::film::{Film, Layout, MOST_PIXELS, SampleId, SampleLedger, StoredRows, union};
+use crate::film::{Film, Layout, MOST_PIXELS, SampleId, SampleLedger, StoredRows};
 
 /// A film and its provenance, as a file has them.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +99,7 @@ impl FilmFile {
     pub fn room_for(&self, other: Option<&Self>, budget: &Budget, path: &Path) -> Result<Reservation> {
         let film = &self.film;
         let what = format!("the merged film of {} × {} pixels", film.width(), film.height());
-        let area = other.map_or(film.area(), |other| union(film.area(), other.film.area()));
+        let area = other.map_or(film.area(), |other| film.area().union(other.film.area()));
         budget.reserve(film.memory_of(area), &what, &Location::file(path))
     }
 }

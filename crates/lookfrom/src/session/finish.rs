@@ -74,9 +74,7 @@ impl std::ops::Deref for Finished {
 impl Finished {
     /// Mean number of samples per pixel, rounded down.
     pub fn samples_taken(&self) -> u64 {
-        let area = self.rendered.film.area();
-        let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
-        self.rendered.samples_taken / pixels.max(1)
+        self.rendered.samples_taken / self.rendered.film.area().pixels().max(1)
     }
 }
 

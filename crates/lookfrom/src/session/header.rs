@@ -131,8 +131,7 @@ pub(super) fn finished(
     is_denoised: bool,
 ) -> Vec<(String, String)> {
     let (area, ledger) = (film.area(), film.ledger());
-    let pixels = u64::from(area.x1 - area.x0) * u64::from(area.y1 - area.y0);
-    let mean = (ledger.total() / pixels.max(1)).to_string();
+    let mean = (ledger.total() / area.pixels().max(1)).to_string();
     let (samples, mean) = match ledger.uniform(area).as_deref() {
         Some([samples]) if samples.start == 0 => (samples.end.to_string(), None),
         Some([samples]) => (format!("{}..{}", samples.start, samples.end), None),

@@ -4,10 +4,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use lookfrom_scene::Scene;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::digest::{Digest, Digested};
 use lookfrom_scene::settings::{Allocation, RenderSettings};
-use lookfrom_scene::{ImportOptions, Scene, Variables};
 
 use super::{Options, Provenance, Session, header};
 
@@ -22,18 +22,11 @@ pub(super) struct Identity {
     has_goal: bool,
 }
 
-/// Import options in the words that films have always known them by: without a time it was 0, at which nothing moved.
-fn as_ever(import: &ImportOptions) -> String {
-    let ImportOptions { animation, at, shutter, variant, scene, camera, subdivision, instanced_lights } =
-        import;
-    let begun = if *at == Some(0.0) { " begun" } else { "" };
-    let subdivided = if *subdivision > 0 { format!(" subdivided {subdivision}") } else { String::new() };
-    let lit = if *instanced_lights { " instanced lights" } else { "" };
-    let open = shutter.map_or_else(String::new, |frames| format!(" open {frames:?}"));
-    let at = at.unwrap_or(0.0);
-    format!(
-        "ImportOptions {{ animation: {animation:?}, at: {at:?}, variant: {variant:?}, scene: {scene:?}, camera: {camera:?} }}{begun}{subdivided}{lit}{open}"
-    )
+/// A scene in memory as an input: the digest of its text. (Writing to a digest does not fail.)
+fn inputs_of(scene: &Scene) -> Vec<(String, String)> {
+    let mut digest = Digest::default();
+    let _ = write!(digest, "{scene:?}");
+    vec![("scene".to_owned(), digest.finish())]
 }
 
 impl Identity {
@@ -46,17 +39,12 @@ impl Identity {
 
     /// The identity of a scene in memory.
     pub(super) fn of_scene(scene: &Scene, options: &Options) -> Self {
-        let mut digest = Digest::default();
-        // Writing to a digest does not fail.
-        let _ = write!(digest, "{scene:?}");
-        Self::new(vec![("scene".to_owned(), digest.finish())], options)
+        Self::new(inputs_of(scene), options)
     }
 
     /// The identity with the same options of a scene that has been changed.
     pub(super) fn with_scene(&self, scene: &Scene) -> Self {
-        let mut digest = Digest::default();
-        let _ = write!(digest, "{scene:?}");
-        Self { inputs: vec![("scene".to_owned(), digest.finish())], ..self.clone() }
+        Self { inputs: inputs_of(scene), ..self.clone() }
     }
 
     fn new(inputs: Vec<(String, String)>, options: &Options) -> Self {
@@ -80,20 +68,11 @@ impl Identity {
             ref variables,
             ..
         } = options;
-        // Only where there are any: films that are older know of no view and no variables.
-        let view = match options.chooses_view() || framed.is_some() {
-            true => format!(" {view:?} {azimuth:?} {elevation:?} {framed:?}"),
-            false => String::new(),
-        };
-        let import = as_ever(import);
-        let variables = match *variables != Variables::default() {
-            true => format!(" {variables:?}"),
-            false => String::new(),
-        };
+        let view = (view, azimuth, elevation, framed);
         Self {
             inputs,
             options: format!(
-                "{up:?} {rotate_environment:?} {floor} {import} {environment:?}{view}{variables}"
+                "{up:?} {rotate_environment:?} {floor} {import:?} {environment:?} {view:?} {variables:?}"
             ),
             has_goal: options.stop.time.is_none() || options.samples.is_some(),
         }
@@ -103,38 +82,14 @@ impl Identity {
     pub(super) fn provenance(&self, session: &Session) -> Provenance {
         let settings =
             RenderSettings { samples: 0, allocation: Allocation::Uniform, ..session.settings().clone() };
-        // Named portals, lights that are seen and media with an end need no words: films that are older know of no others.
-        let settings = format!("{settings:?}");
-        let settings = ["portals: Named, ", "endless_media: false, ", ", hide_lights: false"]
-            .into_iter()
-            .fold(settings, |settings, words| settings.replace(words, ""));
         let camera = Camera { at: lookfrom_scene::Location::default(), ..session.camera.clone() };
         let turn = session.turntable.as_ref().map(|turning| turning.degrees);
         let mut digest = Digest::default();
-        // A camera that sees all has no words for it, either.
-        let camera = format!("{camera:?}").replace("clip: None, ", "");
-        let _ = write!(digest, "{} {settings} {camera} {turn:?}", self.options);
+        let _ = write!(digest, "{} {settings:?} {camera:?} {turn:?}", self.options);
         let common = header::header(session);
         let development = session.development();
         let mut provenance = Provenance::new(common, self.inputs.clone(), digest.finish(), development);
         provenance.goal = self.has_goal.then(|| session.first_sample..session.settings().samples);
         provenance
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn films_that_are_older_are_known_again() {
-        let none = ImportOptions::default();
-        let before = "ImportOptions { animation: None, at: 0.0, variant: None, scene: None, camera: First }";
-        assert_eq!(as_ever(&none), before);
-        let later = ImportOptions { at: Some(1.5), animation: Some("Run".to_owned()), ..none.clone() };
-        let before =
-            "ImportOptions { animation: Some(\"Run\"), at: 1.5, variant: None, scene: None, camera: First }";
-        assert_eq!(as_ever(&later), before);
-        assert_ne!(as_ever(&ImportOptions { at: Some(0.0), ..none.clone() }), as_ever(&none));
     }
 }

@@ -85,7 +85,7 @@ impl World {
         let need_footprints = need_footprints(&scene.materials, &textures);
         let in_use = materials_in_use(&scene);
         let grains = grains(&scene.materials, &need_footprints);
-        let mut compiler = Compiler::new(&scene, warnings, Lights::new(&textures), grains);
+        let mut compiler = Compiler::new(&scene, warnings, Lights::new(&textures, origin), grains);
 
         // Shapes that are not instanced.
         let mut in_world = Group::default();
@@ -110,7 +110,7 @@ impl World {
         )?;
         let Instancing { objects, placed, .. } = instancing;
         for light in &scene.lights {
-            compiler.lights.add(light, origin);
+            compiler.lights.add(light);
         }
         let Compiler { lights, shapes, alphas, medium_interfaces, vertex_data, .. } = compiler;
         let bounds = scene.bounds();

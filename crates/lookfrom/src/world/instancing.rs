@@ -1,6 +1,6 @@
 //! Objects and their instances, on the way to the tree of a world.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::DMat4;
@@ -33,12 +33,12 @@ impl<'a> Instancing<'a> {
         let placed = Vec::with_capacity(scene.instances.len());
         let mut objects = Self { scene, labels, objects: Vec::new(), placed };
         let mut groups = Vec::new();
+        let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
+        let grained = scene.instances.iter().filter(|instance| instance.material.is_some_and(is_grained));
+        let grained: HashSet<usize> = grained.map(|instance| instance.object.index()).collect();
         for index in 0..scene.objects.len() {
             compiler.is_in_object = true;
-            compiler.has_instance_grain = scene.instances.iter().any(|instance| {
-                let is_grained = |id: MaterialId| compiler.grains.get(id.index()).is_some_and(|grain| *grain);
-                instance.object.index() == index && instance.material.is_some_and(is_grained)
-            });
+            compiler.has_instance_grain = grained.contains(&index);
             let mut group = Group::default();
             for shape in objects.shapes(index).filter(|(shape, _)| shape.emission.is_none()) {
                 compiler.place(shape, &DMat4::IDENTITY, None, &mut group)?;

@@ -20,6 +20,11 @@ use crate::light::{
 };
 use crate::shading::texture::{SpectrumTexture, SpectrumType, TexturePoint, Textures};
 
+/// Places on each side of the square of texture coordinates at which the power of a picture is measured, and its brightness, by which lights
+/// are chosen.
+const PLACES_OF_POWER: u32 = 512;
+const PLACES_OF_BRIGHTNESS: u32 = 16;
+
 /// A world's lights, while they are collected.
 pub(super) struct Lights<'a> {
     pub(super) lights: Vec<Light>,
@@ -28,11 +33,14 @@ pub(super) struct Lights<'a> {
     pub(super) brightness: Vec<f32>,
     pub(super) ambient: [f32; 3],
     pub(super) textures: &'a Textures,
+    /// The origin of render space in the world.
+    pub(super) origin: DVec3,
 }
 
 impl<'a> Lights<'a> {
-    pub(super) fn new(textures: &'a Textures) -> Self {
-        Self { lights: Vec::new(), names: Vec::new(), brightness: Vec::new(), ambient: [0.0; 3], textures }
+    pub(super) fn new(textures: &'a Textures, origin: DVec3) -> Self {
+        let (lights, names, brightness) = (Vec::new(), Vec::new(), Vec::new());
+        Self { lights, names, brightness, ambient: [0.0; 3], textures, origin }
     }
 
     /// Adds a light of a brightness and returns its index.
@@ -59,7 +67,7 @@ impl<'a> Lights<'a> {
         let total = power.total.map(|power| {
             let luminance = match of_curve {
                 Some(_) => 1.0,
-                None => self.mean_over_places(&self.illuminant(color), math::luminance),
+                None => self.mean_over_places(PLACES_OF_POWER, &self.illuminant(color), math::luminance),
             };
             Total { power, of_white, luminance }
         });
@@ -73,29 +81,30 @@ impl<'a> Lights<'a> {
     /// The largest of the three components of an emission spectrum, in the mean over its texture.
     pub(super) fn brightness_of(&self, emission_spectrum: &EmissionSpectrum) -> f32 {
         emission_spectrum.scale
-            * self.mean_over_places(&emission_spectrum.color, |rgb| rgb.into_iter().fold(0.0, f32::max))
+            * self.mean_over_places(PLACES_OF_BRIGHTNESS, &emission_spectrum.color, |rgb| {
+                rgb.into_iter().fold(0.0, f32::max)
+            })
     }
 
-    /// The mean of a measure of a colour over a grid of texture coordinates.
-    fn mean_over_places(&self, color: &SpectrumTexture, measure: impl Fn([f32; 3]) -> f32) -> f32 {
-        const SIDE: u32 = 16;
+    /// The mean of a measure of a colour over a grid of texture coordinates, of as many places on each side.
+    fn mean_over_places(&self, side: u32, color: &SpectrumTexture, measure: impl Fn([f32; 3]) -> f32) -> f32 {
         let at = |uv: [f32; 2]| {
             let point = TexturePoint { uv: uv.into(), ..TexturePoint::NOWHERE };
             measure(self.textures.rgb(color, &point))
         };
         match color.varies() {
             true => {
-                let places = (0..SIDE * SIDE).map(|k| [k % SIDE, k / SIDE]);
-                let sum: f32 = places.map(|place| at(place.map(|i| (i as f32 + 0.5) / SIDE as f32))).sum();
-                sum / (SIDE * SIDE) as f32
+                let places = (0..side * side).map(|k| [k % side, k / side]);
+                let value = |place: [u32; 2]| at(place.map(|i| (i as f32 + 0.5) / side as f32));
+                (places.map(|place| f64::from(value(place))).sum::<f64>() / f64::from(side * side)) as f32
             }
             false => at([0.5; 2]),
         }
     }
 
-    /// Adds a light of the scene; `origin` is the origin of render space in the world.
-    pub(super) fn add(&mut self, written: &Written, origin: DVec3) {
-        let power = &written.power;
+    /// Adds a light of the scene.
+    pub(super) fn add(&mut self, written: &Written) {
+        let (power, origin) = (&written.power, self.origin);
         // The scene's intensities are those of Whitted's I_j: π times as much in radiometric units, unless the total
         // power is given.
         let whitted = |emission_spectrum: EmissionSpectrum| EmissionSpectrum {

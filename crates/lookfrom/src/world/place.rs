@@ -337,6 +337,7 @@ impl Compiler<'_> {
             two_sided,
             coat: coat.filter(|amount| !amount.is(0.0)),
             shape: shape_of_light,
+            origin: self.lights.origin,
             motion: self.light_motion.clone(),
         };
         let brightness = match light.mean_of_pattern() {

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::support::forms::{Random, forms, ray, shape, shining, world};
+use crate::support::{Compiled, scene};
 use glam::{DMat4, DVec3, Vec3};
 use lookfrom::light::{AreaLight, Light};
 use lookfrom::world::World;
@@ -222,5 +223,28 @@ fn what_shines_is_linked_to_its_light() {
             }
         }
         assert!(met > 5, "{what}");
+    }
+}
+
+/// Light whose colour depends on the place, as sampled and as found by paths: of cubes in the world, far from its origin.
+#[test]
+fn textures_of_places_shine_where_they_are_seen() {
+    let cubes = "{ type = \"checker\", even = 8, odd = 0, space = \"world\", size = 0.5 }";
+    for form in [
+        "[[sphere]]\ncenter = [100.3, 1.4, 0]\nradius = 1",
+        "[[disk]]\ncenter = [100.3, 1.1, 0]\nnormal = [0.1, -1, 0]\nradius = 1",
+        "[[quad]]\ncorner = [99.3, 1.1, -1]\nedge_u = [2, 0, 0]\nedge_v = [0, 0.1, 2]",
+    ] {
+        let mean = |integrator: &str| {
+            let text = format!(
+                "[image]\nwidth = 8\nheight = 8\n[render]\nintegrator = \"{integrator}\"\nsamples = 512\ndepth = 1\n\
+                 [camera]\nlookfrom = [100.3, 0.3, 4]\nlookat = [100.3, 0, 0]\nfov = 30\n[materials.m]\ntype = \"diffuse\"\n\
+                 [[plane]]\nmaterial = \"m\"\n{form}\nmaterial = \"m\"\nemission = {cubes}\ntwo_sided = true\n"
+            );
+            let pixels = Compiled::new(scene(&text)).film().picture().pixels;
+            pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / pixels.len() as f64
+        };
+        let (sampled, found) = (mean("path"), mean("random_walk"));
+        assert!((sampled / found - 1.0).abs() < 0.06, "{form}: {sampled} {found}");
     }
 }

@@ -73,6 +73,7 @@ pub(in crate::image) fn decode_rgb(
     let mut to_rec709 =
         chromaticities.filter(|_| !reading.is_data()).and_then(|colors| colors.rec709(keeps_white));
     let part = &mut parts[part];
+    let alpha = take_alpha(part, kind);
     let mut take = |index: usize| std::mem::take(&mut part.channels[index].1);
     let planes = |[r, g, b]: [Vec<f32>; 3]| -> Vec<[f32; 3]> {
         r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect()
@@ -94,7 +95,25 @@ pub(in crate::image) fn decode_rgb(
             texels
         }
     };
-    Ok(Floats { width, height, texels, alpha: Vec::new(), to_rec709, memory })
+    Ok(Floats { width, height, texels, alpha, to_rec709, memory })
+}
+
+/// The opacity of the layer that has colours; none where it is 1 everywhere.
+fn take_alpha(part: &mut Part, colors: ColorChannels) -> Vec<f32> {
+    let (ColorChannels::Rgb([first, ..])
+    | ColorChannels::LuminanceChroma([first, ..])
+    | ColorChannels::Xyz([first, ..])
+    | ColorChannels::Gray(first)) = colors;
+    let layer_of = |name: &str| name.rsplit_once('.').map(|(layer, _)| layer.to_owned());
+    let layer = layer_of(&part.channels[first].0);
+    let is_alpha = |name: &str| {
+        let own = name.rsplit('.').next().unwrap_or_default();
+        layer_of(name) == layer && ["a", "alpha"].iter().any(|known| known.eq_ignore_ascii_case(own))
+    };
+    let found =
+        part.channels.iter_mut().enumerate().find(|(index, (name, _))| *index != first && is_alpha(name));
+    let alpha = found.map(|(_, (_, values))| std::mem::take(values)).unwrap_or_default();
+    if alpha.iter().all(|&alpha| alpha == 1.0) { Vec::new() } else { alpha }
 }
 
 /// Colours of luminance Y and the chroma RY = (R − Y) / Y, BY = (B − Y) / Y.

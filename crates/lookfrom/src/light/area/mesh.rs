@@ -20,7 +20,7 @@ use crate::core::parallel;
 use crate::core::vector::Vector;
 use crate::core::warp;
 use crate::light::toward;
-use crate::primitive::Mesh;
+use crate::primitive::{Mesh, SurfacePoint};
 use crate::shading::texture::TexturePoint;
 
 /// Triangles of a smaller approximate solid angle are sampled by area: distances and angles vary little over them, and
@@ -97,9 +97,11 @@ impl MeshLight {
         Some(Self { choice, asked: None, mesh, triangles, area, is_flat, brightness: None })
     }
 
-    /// A mesh with textured emission, whose brightness at a point is `emission_spectrum`. None for one without area.
+    /// A mesh with textured emission, whose brightness at a point is `emission_spectrum`; `origin` is that of render space in the world.
+    /// None for one without area.
     pub fn patterned(
         mesh: Arc<Mesh>,
+        origin: DVec3,
         emission_spectrum: &(dyn Fn(&TexturePoint) -> f32 + Sync),
     ) -> Option<Self> {
         let area = area(&mesh)?;
@@ -108,8 +110,10 @@ impl MeshLight {
         let places: Vec<Vec2> = (0..places).map(|k| spread(k, places)).collect();
         let power = |index: usize| {
             let own = mesh.area(index);
-            let sum: f64 =
-                places.iter().map(|place| brightness(&mesh, index, *place, emission_spectrum)).sum();
+            let sum: f64 = places
+                .iter()
+                .map(|place| brightness((&mesh, origin), index, *place, emission_spectrum))
+                .sum();
             if own.is_finite() { own / area * sum / places.len() as f64 } else { 0.0 }
         };
         let powers: Vec<f64> = parallel::collect(count, power);
@@ -277,14 +281,17 @@ fn spread(k: usize, count: usize) -> Vec2 {
 
 /// The brightness of an emission texture at a point of a triangle.
 fn brightness(
-    mesh: &Mesh,
+    (mesh, origin): (&Mesh, DVec3),
     index: usize,
     place: Vec2,
     emission_spectrum: &(dyn Fn(&TexturePoint) -> f32 + Sync),
 ) -> f64 {
     let uvs = mesh.corner_uvs(index);
     let uv = (1.0 - place.x - place.y) * uvs[0] + place.x * uvs[1] + place.y * uvs[2];
-    let at = mesh.completed(TexturePoint { uv, ..TexturePoint::NOWHERE }, index, place.x, place.y);
+    let SurfacePoint { point, ng, .. } = mesh.point(index, place.x, place.y);
+    let world = origin + DVec3::from_array(point.position);
+    let at = TexturePoint { uv, world, n: ng.as_vec3(), ..TexturePoint::NOWHERE };
+    let at = mesh.completed(at, index, place.x, place.y);
     f64::from(emission_spectrum(&at).max(0.0))
 }
 

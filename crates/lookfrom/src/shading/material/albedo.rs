@@ -3,12 +3,14 @@
 //! A look-up of base colours, as in Cycles and Open Image Denoise, not an integral over directions: the reflection
 //! of a coat is left out, glass is white, a metal has its reflectance at normal incidence.
 
+use std::cell::Cell;
+
 use lookfrom_simd::{Float, Real};
 
-use super::{Material, MaterialKind, Metal, SubsurfaceMedium};
+use super::{Material, MaterialKind, Metal};
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::fresnel;
-use crate::shading::texture::{SpectrumTexture, TexturePoint, Textures};
+use crate::shading::texture::{FloatTexture, SpectrumTexture, TexturePoint, Textures};
 
 /// Linear Rec. 709, at least 0; white where a surface has no colour of its own.
 #[inline]
@@ -18,7 +20,10 @@ pub fn albedo(
     material: &Material,
     point: &TexturePoint,
 ) -> [f32; 3] {
-    material.albedo.unwrap_or_else(|| shown(of_kind(&material.kind, materials, textures, point)))
+    material.albedo.unwrap_or_else(|| {
+        let color = |texture: &SpectrumTexture| Spectrum::from_rgb(textures.rgb(texture, point));
+        shown(of_kind(&material.kind, materials, &color, &|texture| textures.float(texture, point)))
+    })
 }
 
 impl Material {
@@ -44,54 +49,24 @@ pub(crate) fn of_coefficients<R: Real>([diffuse, mirror, transmission]: [Spectru
 
 /// The albedo of a kind of material that has the same colours everywhere; `None` where they may vary.
 pub(super) fn constant(kind: &MaterialKind, textures: &Textures) -> Option<[f32; 3]> {
-    let varies = match kind {
-        MaterialKind::Whitted(k) => k.diffuse.varies() || k.mirror.varies() || k.transmission.varies(),
-        MaterialKind::Diffuse { reflectance } | MaterialKind::CoatedDiffuse { reflectance, .. } => {
-            reflectance.varies()
-        }
-        MaterialKind::Plastic(plastic) => plastic.reflectance.varies(),
-        MaterialKind::DiffuseTransmission { reflectance, transmittance, .. } => {
-            reflectance.varies() || transmittance.varies()
-        }
-        MaterialKind::Conductor { metal, specular_reflectance, .. } => {
-            metal.varies() || specular_reflectance.varies()
-        }
-        MaterialKind::CoatedConductor { metal, .. } => metal.varies(),
-        MaterialKind::Subsurface(below) => match &below.medium {
-            SubsurfaceMedium::Coefficients { absorption, scattering } => {
-                absorption.varies() || scattering.varies()
-            }
-            SubsurfaceMedium::Reflectance { reflectance, .. } => reflectance.varies(),
-        },
-        MaterialKind::Hair(hair) => hair.varies(),
-        MaterialKind::Measured(_) => false,
-        MaterialKind::Mix { .. } => true,
-        MaterialKind::Principled(look) => look.base_color.varies(),
-        MaterialKind::Disney(look) => look.base_color.varies(),
-        MaterialKind::OpenPbr(look) => {
-            look.base_color.varies()
-                || look.base_weight.varies()
-                || look.subsurface_weight.varies()
-                || look.subsurface_color.varies()
-        }
-        MaterialKind::Unlit { albedo, .. } => albedo.varies(),
-        MaterialKind::Dielectric { .. }
-        | MaterialKind::TintedDielectric { .. }
-        | MaterialKind::ThinDielectric { .. }
-        | MaterialKind::ShadowCatcher { .. }
-        | MaterialKind::Interface => false,
+    // The materials of a mix are not known here.
+    if matches!(kind, MaterialKind::Mix { .. }) {
+        return None;
+    }
+    let (point, varies) = (&TexturePoint::NOWHERE, Cell::new(false));
+    let color = |texture: &SpectrumTexture| {
+        varies.set(varies.get() || texture.varies());
+        Spectrum::from_rgb(textures.rgb(texture, point))
     };
-    (!varies).then(|| shown(of_kind(kind, &[], textures, &TexturePoint::NOWHERE)))
+    let float = |texture: FloatTexture| {
+        varies.set(varies.get() || texture.varies());
+        textures.float(texture, point)
+    };
+    let albedo = of_kind(kind, &[], &color, &float);
+    (!varies.get()).then(|| shown(albedo))
 }
 
 impl Metal {
-    fn varies(&self) -> bool {
-        match self {
-            Self::Reflectance(reflectance) => reflectance.varies(),
-            Self::Indices { eta, k } => eta.varies() || k.varies(),
-        }
-    }
-
     /// At normal incidence.
     fn reflectance(&self, color: impl Fn(&SpectrumTexture) -> Spectrum) -> Spectrum {
         match self {
@@ -105,13 +80,13 @@ fn shown(color: Spectrum) -> [f32; 3] {
     color.rgb().map(|c| c.max(0.0))
 }
 
+/// The albedo of a kind of material, by the values of colours and numbers at a point.
 fn of_kind(
     kind: &MaterialKind,
     materials: &[Material],
-    textures: &Textures,
-    point: &TexturePoint,
+    color: &impl Fn(&SpectrumTexture) -> Spectrum,
+    float: &impl Fn(FloatTexture) -> f32,
 ) -> Spectrum {
-    let color = |texture: &SpectrumTexture| Spectrum::from_rgb(textures.rgb(texture, point));
     match kind {
         MaterialKind::Whitted(k) => {
             let coefficients = [color(&k.diffuse), color(&k.mirror), color(&k.transmission)];
@@ -130,19 +105,19 @@ fn of_kind(
         }
         MaterialKind::CoatedConductor { metal, .. } => metal.reflectance(color),
         MaterialKind::Subsurface(below) => below.effective_albedo(color),
-        MaterialKind::Hair(hair) => hair.reflectance(textures, point),
+        MaterialKind::Hair(hair) => hair.reflectance(color, float),
         MaterialKind::Measured(tables) => Spectrum::from_rgb(tables.albedo()),
         MaterialKind::Mix { materials: parts, amount } => {
             let [first, second] =
-                parts.map(|part| of_kind(&materials[part as usize].kind, materials, textures, point));
-            let amount = textures.float(*amount, point).clamp(0.0, 1.0);
+                parts.map(|part| of_kind(&materials[part as usize].kind, materials, color, float));
+            let amount = float(*amount).clamp(0.0, 1.0);
             first * (1.0 - amount) + second * amount
         }
         MaterialKind::Principled(look) => color(&look.base_color),
         MaterialKind::Disney(look) => color(&look.base_color),
         MaterialKind::OpenPbr(look) => {
-            let part = textures.float(look.subsurface_weight, point).clamp(0.0, 1.0);
-            let base = color(&look.base_color) * textures.float(look.base_weight, point).clamp(0.0, 1.0);
+            let part = float(look.subsurface_weight).clamp(0.0, 1.0);
+            let base = color(&look.base_color) * float(look.base_weight).clamp(0.0, 1.0);
             base * (1.0 - part) + color(&look.subsurface_color) * part
         }
         MaterialKind::Unlit { albedo, .. } => color(albedo),

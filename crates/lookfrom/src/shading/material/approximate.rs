@@ -141,9 +141,12 @@ fn as_principled(look: &OpenPbr) -> Principled {
 fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let number = |scalar: Scalar| textures.float(scalar.into(), &TexturePoint::NOWHERE);
     let roughness = look.roughness;
+    // A body absorbs light wherever a path is in it, also if its surface is metal at that corner.
+    let absorption = if look.is_solid { look.absorption } else { [0.0; 3] };
     if number(look.metallic) > 0.5 {
         let roughness = Roughness::of_alphas(squared(roughness), squared(roughness));
-        return metallic(&Metal::Reflectance(look.base_color), Color::gray(1.0), &roughness, textures);
+        let metal = metallic(&Metal::Reflectance(look.base_color), Color::gray(1.0), &roughness, textures);
+        return Whitted { absorption, ..metal };
     }
     let plain = Whitted {
         diffuse: Color::BLACK,
@@ -153,7 +156,7 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     if number(look.transmission) > 0.5 {
         let transmission = look.base_color;
         return match look.is_solid {
-            true => Whitted { transmission, fresnel: true, absorption: look.absorption, ..plain },
+            true => Whitted { transmission, fresnel: true, absorption, ..plain },
             false => Whitted { transmission, mirror: Color::gray(COAT), ior: 1.0, ..plain },
         };
     }
@@ -163,7 +166,6 @@ fn principled(look: &Principled, textures: &Textures) -> Whitted {
     let mirror = if shininess > 1e4 { Color::gray(COAT) } else { Color::BLACK };
     // A broad highlight is also faint.
     let specular = Color::gray(0.2 * number(look.specular).min(1.0) * (shininess / 50.0).min(1.0));
-    let absorption = if look.is_solid { look.absorption } else { [0.0; 3] };
     Whitted { diffuse: look.base_color, specular, shininess, mirror, absorption, ..plain }
 }
 

@@ -7,9 +7,7 @@ use super::{Compiler, Evaluator};
 use crate::core::elementary::exp;
 use crate::core::spectrum::Spectrum;
 use crate::shading::bsdf::hair::Hair;
-use crate::shading::texture::{
-    FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, TexturePoint, Textures, spectrum_of,
-};
+use crate::shading::texture::{FloatTexture, SpectralMode, SpectrumTexture, SpectrumType, spectrum_of};
 
 /// Fibres of hair or fur, see [`lookfrom_scene::material::Hair`].
 #[derive(Clone, Debug)]
@@ -79,28 +77,19 @@ impl Compiler<'_> {
 }
 
 impl HairMaterial {
-    /// The colour of the light that many such fibres reflect together, in RGB.
-    pub(super) fn reflectance(&self, textures: &Textures, point: &TexturePoint) -> Spectrum {
-        let beta_n = textures.float(self.beta_n, point);
-        let of_absorption =
-            |absorption: Spectrum| absorption.map(|lane| exp(-(lane.max(0.0).sqrt() * Hair::spread(beta_n))));
-        match &self.pigment {
-            Pigment::Reflectance(color) => Spectrum::from_rgb(textures.rgb(color, point)),
-            Pigment::Absorption(color) => of_absorption(Spectrum::from_rgb(textures.rgb(color, point))),
-            Pigment::Melanin(amounts) => {
-                let amounts = amounts.map(|amount| textures.float(amount, point));
-                of_absorption(Spectrum::from_rgb(absorption_of_melanins(amounts)))
-            }
-        }
-    }
-
-    /// Whether [`Self::reflectance`] may vary.
-    pub(super) fn varies(&self) -> bool {
-        match &self.pigment {
-            Pigment::Reflectance(color) => color.varies(),
-            Pigment::Absorption(color) => color.varies() || self.beta_n.varies(),
-            Pigment::Melanin(_) => true,
-        }
+    /// The colour of the light that many such fibres reflect together, in RGB, by the values of colours and numbers.
+    pub(super) fn reflectance(
+        &self,
+        color: impl Fn(&SpectrumTexture) -> Spectrum,
+        float: impl Fn(FloatTexture) -> f32,
+    ) -> Spectrum {
+        let absorption = match &self.pigment {
+            Pigment::Reflectance(reflectance) => return color(reflectance),
+            Pigment::Absorption(absorption) => color(absorption),
+            Pigment::Melanin(amounts) => Spectrum::from_rgb(absorption_of_melanins(amounts.map(&float))),
+        };
+        let spread = Hair::spread(float(self.beta_n));
+        absorption.map(|lane| exp(-(lane.max(0.0).sqrt() * spread)))
     }
 }
 

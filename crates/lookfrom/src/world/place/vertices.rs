@@ -54,13 +54,13 @@ impl Compiler<'_> {
         placed.binding.vertex_data = placed.has_vertex_data().then_some(self.vertex_data.len() as u32);
         placed.binding.light = Some(self.next_light());
         let mut placed = Arc::new(placed);
-        let textures = self.lights.textures;
+        let (textures, origin) = (self.lights.textures, self.lights.origin);
         let light = self.area_light(placing, |_| {
             let light = match shape.emission.map(|emission| emission.radiance) {
                 Some(pattern @ Color::Texture(_)) => {
                     let pattern = textures.spectrum_texture(pattern, SpectrumType::Illuminant);
                     let alpha = shape.alpha.map(FloatTexture::from);
-                    MeshLight::patterned(placed.clone(), &|at| {
+                    MeshLight::patterned(placed.clone(), origin, &|at| {
                         let brightest = textures.rgb(&pattern, at).into_iter().fold(0.0, f32::max);
                         brightest * alpha.map_or(1.0, |alpha| textures.float(alpha, at))
                     })
