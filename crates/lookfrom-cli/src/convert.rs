@@ -28,6 +28,10 @@ fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
         let message = "--turn turns a picture, not the scene: give --lookfrom and --rotate-environment";
         return Err(Failure::Usage(message.to_owned()));
     }
+    if arguments.overrides.samples.as_ref().is_some_and(|samples| samples.start > 0) {
+        let message = "--samples FROM..BEFORE is for a part of a picture; a scene has a number of samples: --samples BEFORE";
+        return Err(Failure::Usage(message.to_owned()));
+    }
     if !arguments.force {
         check_new(output)?;
         check_new(&place.join(name))?;

@@ -1,6 +1,6 @@
 //! `lookfrom develop`: pictures of films and of other linear pictures, without rendering.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use lookfrom::film::Picture;
 use lookfrom::session::{Developed, Development, FilmFile, FilmParts, Fireflies};
@@ -24,6 +24,9 @@ pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
         Ok(targets) => targets,
         Err(failure) => return failure.report(),
     };
+    if let Err(failure) = keep_pictures(&arguments.pictures, &targets) {
+        return failure.report();
+    }
     let mut code = DONE;
     for (path, target) in arguments.pictures.iter().zip(&targets) {
         if let Err(failure) = develop(path, target, arguments) {
@@ -34,6 +37,13 @@ pub(crate) fn run(arguments: &DevelopArguments) -> u8 {
         }
     }
     code
+}
+
+/// Refuses to overwrite pictures of the call, before any is written.
+fn keep_pictures(pictures: &[PathBuf], targets: &[Target]) -> Result<(), Failure> {
+    let inputs = Inputs::default();
+    pictures.iter().for_each(|path| inputs.note_input(path, &path.display().to_string(), &Disk));
+    targets.iter().try_for_each(|target| target.keep_inputs(&inputs))
 }
 
 fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result<(), Failure> {

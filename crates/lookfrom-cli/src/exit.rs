@@ -86,14 +86,19 @@ impl From<Error> for Failure {
 /// Turns an error into a failure of the scene at `path`; an error without a location gets the file as its location.
 pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
     move |mut error| {
+        let mut is_usage = false;
         for at in std::iter::once(&mut error.at).chain(error.more.iter_mut().map(|error| &mut error.at)) {
             if at.file.is_empty() {
                 *at = Location::file(path);
             } else if *at.file == *OPTIONS {
                 at.file = "the command line".into();
+                is_usage = true;
             }
         }
-        error.into()
+        match is_usage {
+            true => Failure::Usage(error.to_string()),
+            false => error.into(),
+        }
     }
 }
 
@@ -153,8 +158,16 @@ fn say_in_color(lines: &str) {
 /// # Errors
 /// `Output` where it cannot be written for another reason.
 pub(crate) fn answer(line: &str) -> Result<(), Failure> {
+    answer_bytes(format!("{line}\n").as_bytes())
+}
+
+/// As [`answer`], bytes as they are.
+///
+/// # Errors
+/// As [`answer`].
+pub(crate) fn answer_bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
-    match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::Output(format!("cannot write to stdout: {error}")))
         }

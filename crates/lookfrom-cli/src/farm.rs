@@ -70,7 +70,9 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
         let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
         written.map_err(|error| Failure::Output(format!("cannot write {}: {error}", path.display())))?;
     }
-    let next = next.replace("FOLDER", &folder.display().to_string());
+    let shown = folder.display().to_string();
+    let is_plain = shown.chars().all(|c| c.is_alphanumeric() || "/._-".contains(c));
+    let next = next.replace("FOLDER", &if is_plain { shown } else { quoted(&shown) });
     say(&format!(
         "{}: {} × {} = {}\n  next: {next}",
         folder.display(),

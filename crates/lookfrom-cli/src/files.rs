@@ -1,7 +1,6 @@
 //! `lookfrom files`: all files that a scene is read from, for packing and for job descriptions.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::digest::{Digested, FileDigest};
@@ -9,7 +8,7 @@ use lookfrom_scene::{Budget, Disk, LoadContext, load};
 use serde::Serialize;
 
 use crate::args::{FilesArguments, VariableArguments};
-use crate::exit::{DONE, Failure, answer};
+use crate::exit::{DONE, Failure, answer, answer_bytes};
 use crate::report::bytes;
 use lookfrom_scene::json;
 
@@ -39,10 +38,7 @@ fn list(arguments: &FilesArguments) -> Result<(), Failure> {
     }
     for (path, digest) in files {
         if arguments.null {
-            let mut stdout = std::io::stdout().lock();
-            let written =
-                stdout.write_all(path.as_os_str().as_encoded_bytes()).and_then(|()| stdout.write_all(&[0]));
-            written.map_err(|error| Failure::Output(format!("cannot write to stdout: {error}")))?;
+            answer_bytes(&[path.as_os_str().as_encoded_bytes(), &[0]].concat())?;
         } else if arguments.json {
             answer(&json::line(&InputFile::from((path, digest))))?;
         } else {

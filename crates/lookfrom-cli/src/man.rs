@@ -1,11 +1,9 @@
 //! `lookfrom man`: manual pages.
 
-use std::io::Write;
-
 use clap_mangen::Man;
 use lookfrom_scene::suggest::nearest;
 
-use crate::exit::{DONE, Failure};
+use crate::exit::{DONE, Failure, answer_bytes};
 use crate::help;
 
 /// Prints the page of the whole command, or of one of its subcommands, in roff.
@@ -32,11 +30,7 @@ fn page(of: Option<&str>) -> Result<(), Failure> {
         }
     };
     let mut text = Vec::new();
-    let written = Man::new(found).render(&mut text).and_then(|()| std::io::stdout().write_all(&text));
-    match written {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Output(format!("cannot write to stdout: {error}")))
-        }
-        _ => Ok(()),
-    }
+    // Writing to memory does not fail.
+    let _ = Man::new(found).render(&mut text);
+    answer_bytes(&text)
 }

@@ -84,6 +84,15 @@ impl<'a> Call<'a> {
                 "--film needs an .exr: -o NAME.exr; make other pictures of it by lookfrom develop".to_owned(),
             );
         }
+        if keep.film && is_piped {
+            return usage("a film needs a file; -o - is stdout".to_owned());
+        }
+        if keep.film && arguments.write_every.is_some() {
+            return usage(
+                "--film keeps the picture so far, with its samples, by --checkpoint; --write-every would replace it by a picture alone"
+                    .to_owned(),
+            );
+        }
         if keep.film && matches!(call.series, Series::Views(_) | Series::Frames { .. }) {
             return usage(
                 "--film is for single pictures and turntables: give --view or --at in calls of their own"

@@ -19,6 +19,8 @@ mod _lookfrom {
     #[pymodule_export]
     use crate::pictures::command::{keyword_list, run_command};
     #[pymodule_export]
+    use crate::pictures::replace::replace_files;
+    #[pymodule_export]
     use crate::pictures::{Film, Page, Picture, SceneError, Session};
     #[pymodule_export]
     use crate::rays::Tree;

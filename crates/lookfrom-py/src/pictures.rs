@@ -9,6 +9,7 @@ mod labels;
 mod page;
 mod parts;
 mod picture;
+pub(crate) mod replace;
 mod session;
 mod view;
 

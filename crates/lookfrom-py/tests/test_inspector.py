@@ -47,6 +47,11 @@ def test_fields_have_their_types() -> None:
         session.inspect(32, 0)
     with pytest.raises(IndexError, match="there is no sample 2"):
         session.inspect(0, 0, 2)
+    for place in [(-1, 0), (0, -1), (0, 0, -1), (1 << 40, 0), (0, 1 << 80)]:
+        with pytest.raises(IndexError, match="counted from 0"):
+            session.inspect(*place)
+    with pytest.raises(IndexError, match=r"there is no pixel \(-1, 0\)"):
+        session.inspect_pixel(-1, 0)
 
 
 def test_the_whole_pixel_is_the_picture() -> None:
@@ -67,6 +72,23 @@ def test_text_drawing_and_tables() -> None:
     table = inspection.to_dataframe()
     assert isinstance(table, pandas.DataFrame) and table.loc[1, "material"] == "grey"
     assert len(session.inspect_pixel(16, 16).to_dataframe()) == 2
+
+
+def test_inspections_stay_those_of_their_session() -> None:
+    session = lookfrom.Session(mesh_scene(), size=32, samples=2, keep=True)
+    expected = session.inspect(16, 16, 1)
+    text, svg = expected.text, expected.svg
+    for change in (
+        lambda: session.set_material("grey", type="diffuse", reflectance=0.1),
+        lambda: session.set(lookfrom=(0, 0, 9), lookat=(0, 0, 0)),
+        lambda: session.set(size=8, samples=1),
+    ):
+        inspection = session.inspect(4, 4)
+        before = session.inspect(4, 4).text
+        change()
+        assert inspection.text == before
+        # The one of before all changes, with whose pixel and sample there is none in the end.
+        assert expected.text == text and expected.svg == svg
 
 
 def test_json_is_that_of_the_schema() -> None:

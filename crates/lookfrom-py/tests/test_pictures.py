@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import multiprocessing
+import os
 import pickle
 import signal
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -275,6 +278,106 @@ def test_films_add_up_bit_for_bit(ball: Path) -> None:
         lookfrom.Film.merge([])
 
 
+def test_films_are_developed_otherwise_or_say_why_not() -> None:
+    film = lookfrom.render(BALL, film=True, fireflies="median", samples=8).film
+    plain = lookfrom.render(BALL, film=True, samples=8).film
+    transparent = lookfrom.render(BALL, film=True, background="transparent").film
+    assert film is not None and plain is not None and transparent is not None
+    assert film.develop().header["fireflies"] == "median"
+    off = film.develop(fireflies="off")
+    assert "fireflies" not in off.header and off.header == plain.develop().header
+    assert (off.linear == plain.develop().linear).all()
+    assert plain.develop(fireflies="median").header["fireflies"] == "median"
+    assert (transparent.develop(background="white").srgb[0, 0, :3] == 255).all()
+    assert (film.develop(background="environment").linear == film.develop().linear).all()
+    assert film.develop(samples=None, exposure=1, tonemap="filmic", denoise=True).size == (48, 32)  # type: ignore[typeddict-item]
+    for options, message in [
+        ({"size": 16}, "size needs another render; the development of a film has background, denoise"),
+        ({"samples": 16}, "samples needs another render"),
+        ({"exposure": 1, "lookfrom": (1, 2, 3)}, "lookfrom needs another render"),
+        ({"time": 3}, "time needs another render"),
+        ({"threads": 1}, "threads needs another render"),
+        ({"exposure": "auto"}, 'exposure is "auto", which needs the scene'),
+        ({"background": "white"}, "background cannot become #ffffff: the film has no alpha"),
+        ({"background": "transparent"}, "background cannot become transparent: the film has no alpha"),
+        ({"exposed": 1}, "there is no option exposed"),
+        ({"tonemap": "none"}, "tonemap is"),
+    ]:
+        with pytest.raises(lookfrom.Error, match=message):
+            film.develop(**options)  # type: ignore[arg-type]
+    with pytest.raises(lookfrom.Error, match="background cannot become environment: the film has no env"):
+        transparent.develop(background="environment")
+
+
+@contextlib.contextmanager
+def _full_disk() -> Iterator[None]:
+    """What is written fails after 64 bytes of a file."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    # Otherwise it is a signal that ends the process.
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (64, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def test_files_that_cannot_be_written_stay_as_they_were(tmp_path: Path) -> None:
+    picture = lookfrom.render(BALL, film=True)
+    film = picture.film
+    assert film is not None
+    scene = lookfrom.Scene(BALL)
+    scene.mesh(np.eye(3), [[0, 1, 2]])
+    picture.save(tmp_path / "a.png")
+    film.save(tmp_path / "film.exr")
+    scene.save(tmp_path / "scene.toml")
+    before = _contents(tmp_path)
+    assert sorted(before) == ["a.png", "film.exr", "scene-0.npy", "scene-1.npy", "scene.toml"]
+    scene.data["sphere"] = [{**scene.data["sphere"][0], "radius": 0.25}]
+    scene.data["mesh"][0]["positions"] = 2 * scene.data["mesh"][0]["positions"]
+    with _full_disk():
+        with pytest.raises(OSError, match=r"a\.png"):
+            picture.save(tmp_path / "a.png")
+        with pytest.raises(lookfrom.SceneError, match=r"film\.exr"):
+            film.save(tmp_path / "film.exr")
+        with pytest.raises(OSError, match="scene"):
+            scene.save(tmp_path / "scene.toml")
+    assert _contents(tmp_path) == before
+    for name in ("none/a.png", "a.png/b.png"):
+        with pytest.raises((FileNotFoundError, NotADirectoryError)) as caught:
+            picture.save(tmp_path / name)
+        assert Path(caught.value.filename) == tmp_path / name
+    scene.save(tmp_path / "scene.toml")
+    assert lookfrom.Scene.load(tmp_path / "scene.toml").data["sphere"][0]["radius"] == 0.25
+    assert sorted(_contents(tmp_path)) == sorted(before)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links and permissions are those of Unix")
+def test_links_and_permissions_of_replaced_files_stay(tmp_path: Path) -> None:
+    picture = lookfrom.render(BALL)
+    (tmp_path / "real").mkdir()
+    for target in ("there.png", "new.png"):
+        (tmp_path / target).symlink_to(Path("real") / target)
+    (tmp_path / "real/there.png").write_bytes(b"old")
+    (tmp_path / "real/there.png").chmod(0o640)
+    for target in ("there.png", "new.png"):
+        picture.save(tmp_path / target)
+        assert (tmp_path / target).is_symlink()
+        assert (tmp_path / "real" / target).read_bytes() == picture.encode("png")
+    assert (tmp_path / "real/there.png").stat().st_mode & 0o777 == 0o640
+    assert sorted(_contents(tmp_path / "real")) == ["new.png", "there.png"]
+    # What is no file is written to.
+    (tmp_path / "null.png").symlink_to("/dev/null")
+    picture.save(tmp_path / "null.png")
+    assert Path("/dev/null").is_char_device()
+
+
 def test_progress_is_told_and_can_stop() -> None:
     told: list[tuple[int, int]] = []
     lookfrom.Session(BALL, samples=4096, time=0.5).render(
@@ -303,6 +406,45 @@ def test_ctrl_c_stops_and_keeps_the_picture() -> None:
         session.render()
     assert time.monotonic() - started < 20
     assert caught.value.picture.linear.max() > 0  # type: ignore[attr-defined]
+
+
+def _waited(attempt: Callable[[], Any]) -> Any:
+    """The result of an attempt that succeeds within 20 seconds."""
+    for _ in range(400):
+        with contextlib.suppress(OSError):
+            return attempt()
+        time.sleep(0.05)
+    return attempt()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with names")
+def test_ctrl_c_ends_every_command(tmp_path: Path) -> None:
+    # A scene that never comes.
+    os.mkfifo(tmp_path / "scene.toml")
+    command = [sys.executable, "-m", "lookfrom", "info", "scene.toml"]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL) as child:
+        try:
+            # The pipe can be opened once the command waits for it.
+            pipe = _waited(lambda: os.open(tmp_path / "scene.toml", os.O_WRONLY | os.O_NONBLOCK))
+            child.send_signal(signal.SIGINT)
+            assert child.wait(timeout=10) == -signal.SIGINT
+            os.close(pipe)
+        finally:
+            child.kill()
+
+
+def test_ctrl_c_keeps_the_picture_of_the_command(ball: Path) -> None:
+    words = ["ball.toml", "--samples=4000000", "--write-every=1s", "-o", "a.png"]
+    command = [sys.executable, "-m", "lookfrom", "render", *words]
+    with subprocess.Popen(command, cwd=ball.parent, stderr=subprocess.DEVNULL) as child:
+        try:
+            # After the first preview.
+            _waited((ball.parent / "a.png").unlink)
+            child.send_signal(signal.SIGINT)
+            child.wait(timeout=60)
+        finally:
+            child.kill()
+    assert child.returncode == 130 and (ball.parent / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_sessions_are_safe_with_threads() -> None:
@@ -394,3 +536,19 @@ def test_a_page_is_served() -> None:
         assert page.url in page._repr_html_()
     with pytest.raises(OSError):
         urllib.request.urlopen(page.url, timeout=2)
+
+
+def test_a_page_of_bytes_stays_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tempfile
+
+    # Where temporary folders are made.
+    (tmp_path / "inner").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "inner"))
+    cube = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    for name in ("../evil.obj", "a/../../evil.obj", str(tmp_path / "evil.obj")):
+        with pytest.raises(lookfrom.Error, match="one within a folder is expected"):
+            lookfrom.show(cube, name=name, browser=False)
+    assert [path.name for path in tmp_path.rglob("*")] == ["inner"]
+    with lookfrom.show(cube, name="models/cube.obj", browser=False):
+        (file,) = (path for path in tmp_path.rglob("*") if path.is_file())
+        assert file.read_bytes() == cube and file.parts[-2:] == ("models", "cube.obj")

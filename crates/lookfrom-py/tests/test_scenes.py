@@ -153,6 +153,26 @@ def test_colours_of_vertices_paint() -> None:
     assert middle[0] > 0.3 and middle[1] == 0
 
 
+def test_colours_of_bytes_are_those_of_screens() -> None:
+    shown = np.array([[200, 100, 50], [0, 255, 10], [1, 2, 3], [128, 128, 128]], np.uint8)
+    light = lookfrom.linear(shown)
+    scene, expected = lookfrom.Scene(), lookfrom.Scene()
+    scene.mesh(VERTICES, FACES, colors=shown)
+    expected.mesh(VERTICES, FACES, colors=light)
+    assert scene == expected and (scene.data["mesh"][0]["colors"] == light).all()
+    # Also in a dictionary, as a file and as text.
+    plain = copy.deepcopy(expected.data)
+    plain["mesh"][0]["colors"] = shown
+    assert lookfrom.Scene(plain) == expected
+    assert lookfrom.Scene(plain)._in_memory() == expected._in_memory()
+    assert lookfrom.Scene.from_toml(lookfrom.Scene(plain).to_toml()) == expected
+    scene.points(VERTICES, 0.1, colors=shown)
+    expected.points(VERTICES, 0.1, colors=light)
+    assert scene == expected
+    scene.light(type="environment", color=1)
+    assert lookfrom.render(scene, size=16, samples=1).linear.max() < 1.1
+
+
 def test_colours_of_screens_become_light() -> None:
     expected = [1, 0.21404114, 0]
     for color in ("#ff8000", [255, 128, 0, 9], [1, 128 / 255, 0], [1, 128 / 255, 0, 0.5]):

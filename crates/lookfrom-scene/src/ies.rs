@@ -276,7 +276,9 @@ mod tests {
         let planes =
             of(&format!("IES\nTILT = NONE\n1 1000 1 2 4 1 1 0 0 0 1 1 40\n0 180\n0 90 180 300\n{rows}\n"))
                 .unwrap();
-        assert!(near(planes.intensity(0.0, 330.0), 0.625) && near(planes.intensity(0.0, 359.999_999_999), 0.5));
+        assert!(
+            near(planes.intensity(0.0, 330.0), 0.625) && near(planes.intensity(0.0, 359.999_999_999), 0.5)
+        );
     }
 
     #[test]

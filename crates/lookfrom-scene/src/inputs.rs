@@ -67,7 +67,8 @@ impl Inputs {
         self.register().own_outputs.iter().find(|input| input.reader == reader).cloned()
     }
 
-    fn note_input(&self, path: &Path, reader: &str, files: &dyn Files) {
+    /// Adds a file that `reader` will read, before it does.
+    pub fn note_input(&self, path: &Path, reader: &str, files: &dyn Files) {
         let identities = files.identities(path);
         let mut register = self.register();
         let input = || Input { path: path.to_owned(), reader: reader.to_owned() };

@@ -113,7 +113,7 @@ pub(crate) struct MergeArguments {
     pub(crate) output: Option<PathBuf>,
 
     /// Write nothing, but print the names of films that are missing, damaged or of another picture, a line each
-    #[arg(long)]
+    #[arg(long, conflicts_with = "output")]
     pub(crate) check: bool,
 
     /// Print nothing but errors

@@ -34,6 +34,7 @@ fn nothing_is_overwritten_that_is_not_to_be() {
     let stage = Stage::new("convert-force");
     stage.write("other.toml", "mine");
     stage.run("convert scene.toml -o other.toml").fails(2, &["other.toml exists already", "--force"]);
+    stage.run("convert scene.toml -o new.toml --samples 4..8").fails(2, &["--samples BEFORE"]);
     std::fs::create_dir(stage.path("taken")).unwrap();
     stage.run("convert scene.toml -o taken.toml").fails(2, &["taken exists already"]);
     stage.run("convert scene.toml -o scene.toml --force").fails(3, &["it is the scene itself"]);

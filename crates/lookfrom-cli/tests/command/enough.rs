@@ -91,6 +91,9 @@ fn the_picture_is_there_before_the_end() {
     child.wait().unwrap();
     assert_eq!(pictures.len(), 2, "the picture was not written again");
     stage.run("render scene.toml -o - --write-every 1s").fails(2, &["--write-every"]);
+    // A film in a file is kept by its checkpoints, which a preview would replace.
+    stage.run("render scene.toml -o f.exr --film --write-every 1s").fails(2, &["--checkpoint"]);
+    stage.run("render scene.toml -o - --format exr --film --time 10m").fails(2, &["a film needs a file"]);
 }
 
 #[test]

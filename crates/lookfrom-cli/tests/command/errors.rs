@@ -143,7 +143,7 @@ fn options_that_make_no_sense() {
 #[test]
 fn a_camera_that_cannot_see() {
     let stage = Stage::new("blind");
-    stage.run("render scene.toml --lookfrom 0,0.5,0").fails(1, &["the command line: ", "same point"]);
+    stage.run("render scene.toml --lookfrom 0,0.5,0").fails(2, &["the command line: ", "same point"]);
 }
 
 #[test]

@@ -38,6 +38,7 @@ fn a_damaged_part_is_named_and_rendered_again() {
     bytes[middle] ^= 4;
     std::fs::write(stage.path("part-2.exr"), bytes).unwrap();
     stage.run("merge part-1.exr part-2.exr -o merged.exr").fails(1, &["part-2.exr: this file is damaged"]);
+    stage.run("merge part-1.exr part-2.exr --check -o whole.exr").fails(2, &["--check"]);
     let check = stage.run("merge part-1.exr part-2.exr part-3.exr --check");
     assert_eq!(String::from_utf8_lossy(&check.stdout), "part-2.exr\npart-3.exr\n");
     assert_eq!(check.code, Some(1));
@@ -130,6 +131,11 @@ fn films_are_developed_without_rendering() {
     assert!(stage.bytes("plain.png") == stage.bytes("same.png"));
     stage.run("develop plain.exr -o x.png --denoise").fails(2, &["plain.exr is no film"]);
     stage.run("develop a.exr -o x.png --background white").fails(2, &["no alpha"]);
+    // A picture of the call is not overwritten before it is read, nor after.
+    std::fs::copy(stage.path("a.exr"), stage.path("1.exr")).unwrap();
+    let before = stage.bytes("1.exr");
+    stage.run("develop a.exr 1.exr -o {n}.exr").fails(3, &["1.exr", "it is the scene itself"]);
+    assert!(stage.bytes("1.exr") == before && !stage.names().contains(&"2.exr".to_owned()));
 }
 
 #[test]

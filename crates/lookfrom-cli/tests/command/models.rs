@@ -366,3 +366,10 @@ fn lights_of_a_file_are_exposed() {
     assert!(!brightest("model.obj", "").1.contains("the exposure is"));
     assert!(brightest("model.obj", "--exposure auto").1.contains("the exposure is"));
 }
+
+#[test]
+fn what_suits_any_model_is_no_matter_of_gltf() {
+    let stage = Stage::new("models-subdivided");
+    stage.done("render model.obj --subdivide 1 --strict --size 8 --samples 1 -q -o a.png");
+    stage.run("render model.obj --up 0,0,0 --size 8 -o b.png").fails(2, &["up is zero"]);
+}

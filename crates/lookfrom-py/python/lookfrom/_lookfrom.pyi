@@ -1,5 +1,6 @@
 """The compiled module. Its users are the other modules of this package, which check what they pass."""
 
+import os
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, final
 
@@ -8,7 +9,18 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, HitArrays
 
-__all__ = ["Error", "Film", "Page", "Picture", "SceneError", "Session", "Tree", "keyword_list", "run_command"]
+__all__ = [
+    "Error",
+    "Film",
+    "Page",
+    "Picture",
+    "SceneError",
+    "Session",
+    "Tree",
+    "keyword_list",
+    "replace_files",
+    "run_command",
+]
 
 class Error(ValueError): ...
 
@@ -52,6 +64,7 @@ _Words: TypeAlias = list[tuple[str, str | None]]
 
 def run_command(arguments: Sequence[str]) -> int: ...
 def keyword_list() -> list[tuple[str, str, bool]]: ...
+def replace_files(files: Sequence[tuple[str | os.PathLike[str], bytes]]) -> None: ...
 
 @final
 class Session:
@@ -67,6 +80,7 @@ class Session:
     def set_material(self, name: str, text: str) -> None: ...
     def set_lights(self, text: str) -> None: ...
     def set_poses(self, poses: list[tuple[int, list[list[float]]]]) -> None: ...
+    def snapshot(self) -> Session: ...
     def inspect(self, x: int, y: int, sample: int | None) -> str: ...
     def inspect_text(self, x: int, y: int, sample: int) -> str: ...
     def inspect_svg(self, x: int, y: int, sample: int) -> str: ...

@@ -132,9 +132,11 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a file in the format of its extension: .png, .jpg, .webp, .exr (with layers; with film=True the film), .hdr,
-        .pfm, .ppm, .gif. Raises Error for another one, and OSError where the file cannot be written."""
-        path = Path(path)
-        path.write_bytes(self._native.encode(path.suffix[1:]))
+        .pfm, .ppm, .gif. A file that was there stays until the new one is on the disk.
+
+        Raises Error for another extension, and OSError where the file cannot be written.
+        """
+        _lookfrom.replace_files([(path, self._native.encode(Path(path).suffix[1:]))])
 
     def encode(self, extension: str) -> bytes:
         """The bytes of a file in the format of an extension, such as "png"."""
@@ -177,7 +179,11 @@ class Film:
         return Film(merged)
 
     def develop(self, **options: Unpack[Options]) -> Picture:
-        """The picture, as it was to be developed, or with another exposure, tonemap, background, denoise or fireflies."""
+        """The picture, as it was to be developed, or with another exposure, tonemap, background, denoise or fireflies.
+
+        Raises Error for other options, for exposure="auto", which needs the scene, and for a background that the film cannot
+        have: one of environment has no alpha, and others have no environment.
+        """
         return Picture(self._native.develop(words(options)))
 
     def resume(self, *, samples: int | None = None, threads: int | None = None) -> Picture:
@@ -200,7 +206,8 @@ class Film:
         return Picture(_lookfrom.Session(scene, {}, typed, False).render(self._native, None))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the film, with its picture, as an .exr. Raises SceneError where it cannot be written."""
+        """Writes the film, with its picture, as an .exr. A file that was there stays until the new one is on the disk. Raises
+        SceneError where it cannot be written."""
         self._native.save(os.fspath(path))
 
     @property

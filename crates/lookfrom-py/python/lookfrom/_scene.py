@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _toml
 from ._colors import linear
-from ._lookfrom import Error
+from ._lookfrom import Error, replace_files
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -39,7 +39,7 @@ class Scene:
 
     data: a dictionary of the tables of a scene file: `{"camera": {...}, "materials": {"red": {...}}, "sphere": [{...}], ...}`.
         The scene keeps a copy of it. Lists of meshes (positions, triangles, normals, uvs, colors) and images (a texture's or
-        light's `file`) may be arrays.
+        light's `file`) may be arrays; colours and images of uint8 are sRGB.
     folder: the folder to which names of files are relative; the current one by default.
 
     Everything is in `data`, which may be changed at will; what a renderer makes of it is told when it is opened, by Session or
@@ -83,13 +83,13 @@ class Scene:
         return _toml.document(_written(self.data))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a .toml file; arrays are .npy, .ppm and .pfm files beside it, named after it."""
+        """Writes a .toml file; arrays are .npy, .ppm and .pfm files beside it, named after it. Files that were there stay until
+        all new ones are on the disk. Raises OSError where they cannot be written."""
         path = Path(path)
         files: dict[str, bytes] = {}
         text = _toml.document(_with_files(self.data, path.stem, files))
-        for name, content in files.items():
-            (path.parent / name).write_bytes(content)
-        path.write_text(text, encoding="utf-8")
+        beside = [(path.parent / name, content) for name, content in files.items()]
+        replace_files([*beside, (path, text.encode())])
 
     def add(self, kind: str, **words: Any) -> dict[str, Any]:
         """Adds a table to a list of tables, such as a `sphere`, `mesh`, `light` or `instance`, and returns it."""
@@ -131,8 +131,8 @@ class Scene:
         vertices: shape (n, 3). They are rounded to float32 around their middle, which is kept as `translate`, so that a mesh far
             from the origin keeps its details; not where `words` has a transform.
         faces: shape (m, 3), integers.
-        normals, uvs, colors: one for each vertex: shapes (n, 3), (n, 2), (n, 3); colours are linear, for the texture
-            "vertex_color". Without a material, a mesh with colours is painted by them.
+        normals, uvs, colors: one for each vertex: shapes (n, 3), (n, 2), (n, 3); colours are linear, or sRGB of
+            uint8, for the texture "vertex_color". Without a material, a mesh with colours is painted by them.
         words: further words of `[[mesh]]`, such as material="red".
         """
         positions = np.asarray(vertices, np.float64).reshape(-1, 3)
@@ -162,9 +162,11 @@ class Scene:
     def points(
         self, points: ArrayLike, radius: float, *, colors: ArrayLike | None = None, **words: Any
     ) -> None:
-        """Adds a point cloud as spheres; colors: linear, shape (n, 3), each of which becomes a material."""
+        """Adds a point cloud as spheres; colors: linear, or sRGB of uint8, shape (n, 3), each of which becomes a material."""
         centers = np.asarray(points, np.float64).reshape(-1, 3)
-        painted = None if colors is None else np.asarray(colors, np.float64).reshape(-1, 3)
+        painted: NDArray[np.float64] | None = None
+        if colors is not None:
+            painted = _numbers("colors", np.asarray(colors)).astype(np.float64).reshape(-1, 3)
         if painted is not None and len(painted) != len(centers):
             raise Error(f"colors has {len(painted)} rows, but there are {len(centers)} points")
         for index, center in enumerate(centers):
@@ -204,7 +206,13 @@ def _rows(name: str, value: ArrayLike) -> NDArray[Any]:
     if kind is np.uint32:
         if array.dtype.kind == "f" or (array.size > 0 and (array.min() < 0 or array.max() >= 2**32)):
             raise Error(f"{name} must be integers from 0 to 2**32 - 1")
-    return array.astype(kind)
+    return _numbers(name, array).astype(kind)
+
+
+def _numbers(key: str, array: NDArray[Any]) -> NDArray[Any]:
+    """The numbers of an array as the scene format has them: linear light, where colours of uint8 are sRGB."""
+    is_encoded = key == "colors" and array.dtype == np.uint8 and array.shape[1:] == (3,)
+    return linear(array) if is_encoded else array
 
 
 def _middle(positions: NDArray[np.float64]) -> NDArray[np.float64] | None:
@@ -228,7 +236,7 @@ def _map(item: Any, array: Any, key: str = "") -> Any:
 
 
 def _plain(data: Mapping[str, Any]) -> Any:
-    return _map(data, lambda _, array: array.tolist())
+    return _map(data, lambda key, array: _numbers(key, array).tolist())
 
 
 def _written(data: Mapping[str, Any]) -> Any:
@@ -237,7 +245,7 @@ def _written(data: Mapping[str, Any]) -> Any:
             raise Error(
                 "an image that is an array cannot be written into a text: Scene.save writes it as a file"
             )
-        return array.tolist()
+        return _numbers(key, array).tolist()
 
     return _map(data, written)
 

@@ -209,13 +209,16 @@ class Session:
 
         Raises IndexError for a pixel or sample that the picture does not have.
         """
-        text = self._native.inspect(x, y, sample)
-        lines = (self._native.inspect_text, self._native.inspect_svg)
+        # Text and drawing are made when they are asked for: of the session as it is now.
+        native = self._native.snapshot()
+        text = _report(native, x, y, sample)
+        lines = (native.inspect_text, native.inspect_svg)
         return from_json(Inspection, text, *(lambda line=line: line(x, y, sample) for line in lines))
 
     def inspect_pixel(self, x: int, y: int) -> PixelInspection:
-        """All samples of a pixel, and how far each is from the others."""
-        return from_json(PixelInspection, self._native.inspect(x, y, None))
+        """All samples of a pixel, and how far each is from the others. Raises IndexError for a pixel that the picture does not
+        have."""
+        return from_json(PixelInspection, _report(self._native, x, y, None))
 
     @property
     def size(self) -> tuple[int, int]:
@@ -295,6 +298,16 @@ def _source(scene: Any, name: str) -> tuple[str, dict[str, bytes]]:
     raise TypeError(
         f"a scene is a name, a Scene, a dictionary, a mesh of trimesh or the bytes of a file, but not {type(scene).__name__}"
     )
+
+
+def _report(native: _lookfrom.Session, x: int, y: int, sample: int | None) -> str:
+    """The report on a sample of a pixel as JSON, or on all (None)."""
+    try:
+        return native.inspect(x, y, sample)
+    except OverflowError:
+        # Numbers below 0, and of more than 32 bits.
+        missing = f"pixel ({x}, {y})" if sample is None else f"sample {sample} of a pixel ({x}, {y})"
+        raise IndexError(f"there is no {missing}: columns, rows and samples are counted from 0") from None
 
 
 def _finished(render: Callable[[], _lookfrom.Picture]) -> Picture:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _lookfrom
+from ._lookfrom import Error
 from ._scene import Scene
 from ._session import _source
 from ._words import words
@@ -65,17 +66,22 @@ def show(
     port: 0 for any that is free.
     browser: whether to open the page in the user's browser; by default not in Jupyter, where the returned page shows itself.
 
-    Raises Error for options that make no sense, and OSError where the port is in use. What is wrong with the scene is shown
-    on the page.
+    Raises Error for options that make no sense, and for a name of bytes that is no path within a folder; OSError where the port
+    is in use. What is wrong with the scene is shown on the page.
     """
     folder: tempfile.TemporaryDirectory[str] | None = None
     if isinstance(scene, Scene) and scene.folder != Path():
         raise ValueError("a scene with a folder refers to files there: save it there, and show that file")
     path, files = _source(scene, name)
+    for file in files:
+        if Path(file).anchor or ".." in Path(file).parts:
+            raise Error(f'name is {file!r}, but one within a folder is expected, such as "models/cube.obj"')
     if files:
         folder = tempfile.TemporaryDirectory(prefix="lookfrom-")
         for file, content in files.items():
-            (Path(folder.name) / file).write_bytes(content)
+            target = Path(folder.name) / file
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
         path = os.path.join(folder.name, path)
     page = Page(_lookfrom.Page(path, words(options), port), folder)
     if browser or (browser is None and not _is_in_jupyter()):

@@ -2,21 +2,22 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use lookfrom::scene::files::FileId;
 use lookfrom::scene::{Disk, Files, Memory, Result};
 
-/// Files in memory, by their names, and all others on disk.
+/// Files in memory, by their names, and all others on disk. Copies share them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Overlay(Memory);
+pub(super) struct Overlay(Arc<Memory>);
 
 impl Overlay {
     pub(super) fn new(files: HashMap<PathBuf, Vec<u8>>) -> Self {
-        Self(Memory(files))
+        Self(Arc::new(Memory(files)))
     }
 
     fn of(&self, path: &Path) -> &dyn Files {
-        if self.0.0.contains_key(path) { &self.0 } else { &Disk }
+        if self.0.0.contains_key(path) { &*self.0 } else { &Disk }
     }
 }
 

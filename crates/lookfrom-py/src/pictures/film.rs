@@ -3,15 +3,21 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use lookfrom::scene::settings::Background;
 use lookfrom::scene::{Budget, Disk, Error, ErrorKind, LoadContext, Location, Result as SceneResult};
-use lookfrom::session::{Exposure, FilmFile, Fireflies};
+use lookfrom::session::{Exposure, FilmFile};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use super::command::{Words, asked};
 use super::error::raised;
 use super::picture::Picture;
+use super::replace::replace;
+use crate::error::Error as Nonsense;
 use crate::parallel;
+
+/// The options of a film's development.
+const OF_DEVELOPMENT: [&str; 5] = ["background", "denoise", "exposure", "fireflies", "tonemap"];
 
 /// The film of a picture.
 #[pyclass(frozen, module = "lookfrom._lookfrom")]
@@ -56,25 +62,47 @@ impl Film {
     /// Writes the file, with its picture.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let saved = parallel::in_pool(py, 0, || {
-            std::fs::write(&path, written(&self.file)?)
-                .map_err(|error| Error::new(ErrorKind::Io, &Location::file(&path), error.to_string()))
+            replace(&[(&path, &written(&self.file)?)])
+                .map_err(|(path, error)| Error::new(ErrorKind::Io, &Location::file(path), error.to_string()))
         });
         saved.map_err(|error| raised(py, &error, &Disk))
     }
 
     /// The picture, developed as it was to be, or otherwise.
     fn develop(&self, py: Python<'_>, words: Words) -> PyResult<Picture> {
-        let asked = asked(words)?;
+        let names: Vec<String> = words.iter().map(|(name, _)| name.clone()).collect();
+        let options = asked(words)?.options;
+        if let Some(name) = names.iter().find(|name| !OF_DEVELOPMENT.contains(&name.as_str())) {
+            let known = OF_DEVELOPMENT.join(", ");
+            let message = format!("{name} needs another render; the development of a film has {known}");
+            return Err(Nonsense::new_err(message));
+        }
         let file = &self.file;
         let mut development = file.provenance.development;
-        let options = asked.options;
-        if let Some(Exposure::Stops(stops)) = options.exposure {
-            development.exposure = stops;
+        match options.exposure {
+            None => {}
+            Some(Exposure::Stops(stops)) => development.exposure = stops,
+            Some(_) => {
+                let message =
+                    "exposure is \"auto\", which needs the scene; for a film it is a number of stops";
+                return Err(Nonsense::new_err(message));
+            }
+        }
+        if let Some(background) = options.background.filter(|other| *other != development.background) {
+            let reason = match (development.background, background) {
+                (Background::Environment, _) => "the film has no alpha",
+                (_, Background::Environment) => "the film has no environment any more",
+                _ => "",
+            };
+            if !reason.is_empty() {
+                return Err(Nonsense::new_err(format!("background cannot become {background}: {reason}")));
+            }
+            development.background = background;
         }
         development.tonemap = options.tonemap.unwrap_or(development.tonemap);
-        development.background = options.background.unwrap_or(development.background);
         development.denoise = options.denoise.unwrap_or(development.denoise);
-        if options.fireflies != Fireflies::Keep {
+        // Without this word, a session has the filter off.
+        if names.iter().any(|name| name == "fireflies") {
             development.fireflies = options.fireflies;
         }
         Ok(Picture::of_film(file, parallel::in_pool(py, 0, || file.develop(&development))))

@@ -178,6 +178,11 @@ impl Session {
         self.exchange(py, |session| session.set_poses(poses))
     }
 
+    /// The session as it is now, which no later change of this one changes.
+    fn snapshot(&self) -> Self {
+        Self { files: self.files.clone(), typed: self.typed.clone(), inner: Mutex::new(self.now()) }
+    }
+
     /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).
     fn inspect(&self, py: Python<'_>, x: u32, y: u32, sample: Option<u32>) -> PyResult<String> {
         let session = self.checked(x, y, sample)?;

@@ -92,7 +92,7 @@ fn unsuitable(scene: &mut Scene, file: &Path, options: &Options) -> Vec<String> 
     if scene.bounds().is_empty() {
         messages.push("this scene has no geometry: the picture shows only the background".to_owned());
     }
-    let mut of_gltf = ImportOptions { instanced_lights: false, ..options.import.clone() };
+    let mut of_gltf = ImportOptions { instanced_lights: false, subdivision: 0, ..options.import.clone() };
     // The camera of any file can be ignored, and any scene may have a clock.
     if of_gltf.camera == CameraChoice::None {
         of_gltf.camera = CameraChoice::First;

@@ -11,21 +11,21 @@ use crate::core::vector::Vector;
 
 /// The types in the table's rows.
 pub(crate) mod types {
-    pub(crate) use super::super::conductor::Conductor;
-    pub(crate) use super::super::dielectric::Dielectric;
-    pub(crate) use super::super::diffuse::{Diffuse, DiffuseTransmission};
-    pub(crate) use super::super::disney::Disney;
-    pub(crate) use super::super::hair::Hair;
-    pub(crate) use super::super::layered::Layered;
-    pub(crate) use super::super::measured::Measured;
-    pub(crate) use super::super::normalized_fresnel::NormalizedFresnel;
-    pub(crate) use super::super::open_pbr::OpenPbrSurface;
-    pub(crate) use super::super::plastic::Plastic;
-    pub(crate) use super::super::principled::Principled;
-    pub(crate) use super::super::subsurface::Subsurface;
-    pub(crate) use super::super::thin_dielectric::ThinDielectric;
-    pub(crate) use super::super::tinted::TintedDielectric;
-    pub(crate) use super::super::whitted::WhittedCoefficients;
+    pub(crate) use crate::shading::bsdf::conductor::Conductor;
+    pub(crate) use crate::shading::bsdf::dielectric::Dielectric;
+    pub(crate) use crate::shading::bsdf::diffuse::{Diffuse, DiffuseTransmission};
+    pub(crate) use crate::shading::bsdf::disney::Disney;
+    pub(crate) use crate::shading::bsdf::hair::Hair;
+    pub(crate) use crate::shading::bsdf::layered::Layered;
+    pub(crate) use crate::shading::bsdf::measured::Measured;
+    pub(crate) use crate::shading::bsdf::normalized_fresnel::NormalizedFresnel;
+    pub(crate) use crate::shading::bsdf::open_pbr::OpenPbrSurface;
+    pub(crate) use crate::shading::bsdf::plastic::Plastic;
+    pub(crate) use crate::shading::bsdf::principled::Principled;
+    pub(crate) use crate::shading::bsdf::subsurface::Subsurface;
+    pub(crate) use crate::shading::bsdf::thin_dielectric::ThinDielectric;
+    pub(crate) use crate::shading::bsdf::tinted::TintedDielectric;
+    pub(crate) use crate::shading::bsdf::whitted::WhittedCoefficients;
 }
 
 use types::*;

@@ -131,7 +131,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "error grid json motion parallel plural stamps suggest variables",
             "budget camera material warning",
             "contents files",
-            "digest inputs packed spectrum texture",
+            "digest disk inputs packed spectrum texture",
             "excerpt image measured medium",
             "atmosphere lens light settings",
             "shape",
