@@ -30,8 +30,8 @@ export function fragment(view, pixel, sample, ray) {
     return parameters.toString().replaceAll("%2C", ",").replaceAll("%2F", "/");
 }
 
-/** Twelve digits place the eye to a micrometre on a continent. @param {number} x */
-const rounded = (x) => Number(x.toPrecision(12));
+/** Thirteen digits place the eye to a micrometre on a continent. @param {number} x */
+const rounded = (x) => Number(x.toPrecision(13));
 
 /** @param {string} text @param {string} separator @param {number} length */
 function numbers(text, separator, length) {

@@ -31,7 +31,7 @@ pub(crate) mod types {
 use types::*;
 
 /// A scattering function of one class, as the integrators and the inspector know it besides its values
-/// ([`LaneBsdf`](super::lanes::LaneBsdf)). Directions are those of [`Bsdf`].
+/// ([`LaneBsdf`]). Directions are those of [`Bsdf`].
 pub trait ScatteringFunction {
     /// The set of lobes that it has.
     fn lobes(&self) -> Lobes;
