@@ -9,7 +9,7 @@ use lookfrom_scene::{Inputs, load};
 
 use crate::args::ConvertArguments;
 use crate::exit::{self, DONE, Failure};
-use crate::output::{folder_or_here, replace_file};
+use crate::output::{folder_or_here, keep_inputs, replace_file};
 use crate::pipe::Piped;
 use crate::prepare::{self, prepare};
 use crate::report::bytes;
@@ -78,8 +78,12 @@ fn check_new(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes the files, each whole or not at all, and then the document that names them.
+/// Writes the files, each whole or not at all, and then the document that names them; none where one would replace an input.
 fn put(written: &Written, place: &Path, output: &Path, inputs: &Inputs) -> Result<(), Failure> {
+    keep_inputs(output, inputs, "-o")?;
+    for (name, _) in &written.files {
+        keep_inputs(&place.join(name), inputs, "-o")?;
+    }
     for (name, bytes) in &written.files {
         replace_file(&place.join(name), bytes, inputs, "-o")?;
     }

@@ -14,9 +14,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use lookfrom::session::check_parts;
 use lookfrom_scene::plural::counted;
 
-use crate::args::{FarmArguments, Scheduler};
+use crate::args::{Common, FarmArguments, Scheduler};
 use crate::exit::{DONE, Failure, say};
 use crate::{files, film};
 
@@ -85,9 +86,11 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
-    let inputs = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?
-        .into_iter()
-        .map(|(path, _)| path);
+    let (loaded, inputs) = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?;
+    let common = Common { threads: None, strict: false, memory: arguments.memory };
+    let render = arguments.overrides.options(&common, None);
+    check_parts(loaded, &render, arguments.parts)?;
+    let inputs = inputs.into_iter().map(|(path, _)| path);
     let environment = arguments.overrides.model.environment.iter().cloned();
     let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
     let mut options = film::arguments(matches);
@@ -101,13 +104,6 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
     let memory = matches.get_raw("memory").into_iter().flatten();
     options.extend(memory.map(|size| format!("--memory={}", size.to_string_lossy())));
     if let Some(samples) = &arguments.overrides.samples {
-        if samples.end - samples.start < arguments.parts {
-            return Err(Failure::Usage(format!(
-                "{} in {} parts: each part needs at least one",
-                counted(samples.end - samples.start, "sample"),
-                arguments.parts
-            )));
-        }
         options.push(format!("--samples={}..{}", samples.start, samples.end));
     }
     let start = arguments.overrides.model.turn.unwrap_or(0.0);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use lookfrom_scene::digest::{Digested, FileDigest};
-use lookfrom_scene::{Budget, Disk, LoadContext, load};
+use lookfrom_scene::{Budget, Disk, LoadContext, Scene, load};
 use serde::Serialize;
 
 use crate::args::{FilesArguments, VariableArguments};
@@ -34,7 +34,7 @@ impl From<(PathBuf, FileDigest)> for InputFile {
 fn list(arguments: &FilesArguments) -> Result<(), Failure> {
     let mut files: BTreeMap<PathBuf, FileDigest> = BTreeMap::new();
     for scene in &arguments.scenes {
-        files.extend(read(scene, &arguments.variables, &arguments.memory.budget())?);
+        files.extend(read(scene, &arguments.variables, &arguments.memory.budget())?.1);
     }
     for (path, digest) in files {
         if arguments.null {
@@ -56,15 +56,15 @@ pub(crate) fn in_words(paths: &[PathBuf]) -> String {
     paths.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The files of a scene, with their digests.
+/// A scene, and its files with their digests.
 pub(crate) fn read(
     scene: &Path,
     variables: &VariableArguments,
     budget: &Budget,
-) -> Result<Vec<(PathBuf, FileDigest)>, Failure> {
+) -> Result<(Scene, Vec<(PathBuf, FileDigest)>), Failure> {
     let files = Digested::new(&Disk);
     let mut context = LoadContext { variables: variables.variables(), ..LoadContext::within(budget, &files) };
     (context.import.at, context.import.shutter) = (variables.at, variables.shutter);
-    load::scene(scene, &mut context)?;
-    Ok(files.digests(Path::new("")))
+    let scene = load::scene(scene, &mut context)?;
+    Ok((scene, files.digests(Path::new(""))))
 }

@@ -232,7 +232,8 @@ pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<
     )))
 }
 
-/// Writes a temporary file beside `path` and renames it to `path`. Missing folders are created.
+/// Writes a temporary file beside `path` and renames it to `path`. Missing folders are created. A symbolic link to a file stays,
+/// and so do the permissions of what is replaced.
 ///
 /// # Errors
 /// `Output` where it cannot be written or would overwrite an input; `option` as for [`keep_inputs`].
@@ -255,19 +256,25 @@ pub(crate) fn replace_file_by(
     write: impl FnOnce(&mut BufWriter<File>) -> Result<(), String>,
 ) -> Result<(), Failure> {
     keep_inputs(path, inputs, option)?;
-    let folder = folder_or_here(path.parent());
-    let partial = folder.join(partial(path));
+    let linked = fs::canonicalize(path).ok().filter(|target| target.is_file());
+    let target = linked.as_deref().unwrap_or(path);
+    let folder = folder_or_here(target.parent());
+    let partial = folder.join(partial(target));
     let text = |error: std::io::Error| error.to_string();
     let written = || {
         fs::create_dir_all(folder).map_err(text)?;
         let file = OpenOptions::new().write(true).create(true).truncate(true).open(&partial).map_err(text)?;
         // Some file systems have no locks.
         let _ = file.try_lock();
+        if let Some(old) = linked.as_ref().and_then(|target| fs::metadata(target).ok()) {
+            // Some have no permissions.
+            let _ = file.set_permissions(old.permissions());
+        }
         let mut file = BufWriter::with_capacity(1 << 20, file);
         write(&mut file)?;
         let file = file.into_inner().map_err(|error| error.to_string())?;
         file.sync_all().map_err(text)?;
-        fs::rename(&partial, path).map_err(text)?;
+        fs::rename(&partial, target).map_err(text)?;
         // The new name is on disk only when the folder is; systems that cannot sync folders need not.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         remove_left_partials(folder);

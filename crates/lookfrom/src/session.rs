@@ -68,6 +68,7 @@ use identity::Identity;
 pub use options::{Fireflies, MOST_SAMPLES, OPTIONS, Options};
 pub use outliers::{Outlier, Outliers};
 use prepare::Prepared;
+pub use prepare::check_parts;
 pub use provenance::Provenance;
 pub use running::Running;
 pub use series::Series;

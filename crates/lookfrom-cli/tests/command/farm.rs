@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use super::stage::Stage;
+use super::stage::{SCENE, Stage};
 
 /// Runs the script of a job, as a scheduler would.
 fn job(stage: &Stage, arguments: &[&str]) -> String {
@@ -89,6 +89,13 @@ fn every_scheduler_gets_its_files() {
     let inputs: serde_json::Value =
         serde_json::from_slice(&stage.bytes("openjd/asset_references.json")).unwrap();
     assert_eq!(inputs["assetReferences"]["inputs"]["filenames"].as_array().unwrap().len(), 1);
-    stage.run("farm slurm scene.toml --parts 4 --samples 3 -o x").fails(2, &["3 samples in 4 parts"]);
+    stage.run("farm slurm scene.toml --parts 4 --samples 3 -o x").fails(2, &["part 1 of 4", "no sample"]);
+    stage.write("few.toml", &SCENE.replace("samples = 4", "samples = 3"));
+    stage.run("farm slurm few.toml --parts 4 -o x").fails(2, &["part 1 of 4", "no sample"]);
+    stage.run("farm slurm few.toml --parts 3 --allocation adaptive -o x").fails(2, &["adaptive"]);
+    // Of models, whose number of samples depends on the size of the picture.
+    stage.run("farm slurm model.obj --parts 17 --size 400 -o x").fails(2, &["part 1 of 17", "0..11"]);
+    stage.done("farm slurm model.obj --parts 11 --size 400 -o y");
+    assert!(!stage.path("x").exists());
     stage.run("farm slurm missing.toml -o x").fails(1, &["missing.toml: no such file"]);
 }

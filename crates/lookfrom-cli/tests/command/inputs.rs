@@ -59,6 +59,24 @@ fn a_file_is_the_same_by_any_name() {
 }
 
 #[test]
+#[cfg(unix)]
+fn links_and_permissions_of_what_is_replaced_stay() {
+    use std::os::unix::fs::PermissionsExt;
+    let stage = Stage::new("inputs-links");
+    stage.write("real.png", "old");
+    let real = stage.path("real.png");
+    std::fs::set_permissions(&real, std::fs::Permissions::from_mode(0o640)).unwrap();
+    std::os::unix::fs::symlink("real.png", stage.path("link.png")).unwrap();
+    stage.done(&format!("render scene.toml {SMALL} -o link.png"));
+    assert!(stage.path("link.png").is_symlink() && stage.bytes("real.png").starts_with(b"\x89PNG"));
+    assert_eq!(std::fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+    // What is no file is not replaced.
+    std::os::unix::fs::symlink("/dev/null", stage.path("null.png")).unwrap();
+    stage.done(&format!("render scene.toml {SMALL} -o null.png"));
+    assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
+}
+
+#[test]
 fn every_kind_of_input_stays() {
     let stage = Stage::new("inputs-kinds");
     let picture = encode_png(1, 1, &[9, 9, 9]).unwrap();

@@ -171,6 +171,17 @@ fn told(lacks_camera: bool, lacks_lights: bool) -> Option<&'static str> {
     }
 }
 
+/// Checks that a picture of a scene can be made in this many parts, each with its [`part`](Options::part).
+///
+/// # Errors
+/// `Request` where a part would have no sample, for an adaptive picture, and where the options do not suit the scene's settings.
+pub fn check_parts(mut scene: Scene, options: &Options, parts: u32) -> Result<()> {
+    options.apply_to_settings(&mut scene.image, &mut scene.render)?;
+    decide_settings(&mut scene, options);
+    // No part is smaller than the first.
+    Options { part: Some([1, parts]), ..options.clone() }.range(&scene.render).map(drop)
+}
+
 /// Chooses defaults for samples and denoising.
 fn decide_settings(scene: &mut Scene, options: &Options) {
     let is_model = scene.source_format != SourceFormat::Scene;
