@@ -21,16 +21,14 @@ pub(super) fn upgrade(class: &str, kind: &str, at: &Location, properties: &mut V
                 };
                 let number = properties.iter().find_map(is_it);
                 properties.retain(|property| is_it(property).is_none());
-                number.map(|number| (number, default)).unwrap_or((default, default))
+                number.unwrap_or(default)
             };
-            let offset = [take("uoffset", 0.0), take("voffset", 0.0)];
-            let scale = [take("uscale", 1.0), take("vscale", 1.0)];
-            if offset.iter().chain(&scale).all(|(number, default)| number == default) {
-                return;
+            let offset = DVec3::new(take("uoffset", 0.0), take("voffset", 0.0), 0.0);
+            let scale = DVec3::new(take("uscale", 1.0), take("vscale", 1.0), 1.0);
+            if offset != DVec3::ZERO || scale != DVec3::ONE {
+                let to_uv = DMat4::from_scale(scale) * DMat4::from_translation(offset);
+                properties.push(Property::new("to_uv", at.clone(), Value::Transform(to_uv)));
             }
-            let moved = DMat4::from_translation(DVec3::new(offset[0].0, offset[1].0, 0.0));
-            let to_uv = DMat4::from_scale(DVec3::new(scale[0].0, scale[1].0, 1.0)) * moved;
-            properties.push(Property::new("to_uv", at.clone(), Value::Transform(to_uv)));
         }
         _ => {}
     }

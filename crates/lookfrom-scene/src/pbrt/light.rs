@@ -104,7 +104,7 @@ impl Reader<'_, '_> {
                 .map(Some)?,
             _ => return Err(p.refuse("portal", &format!("4 corners, found {}", portal.len()))),
         };
-        let (sky, color) = match (p.string("filename")?.filter(|name| !name.is_empty()), written) {
+        let (sky, color) = match (p.file_name()?, written) {
             (Some(_), Some(_)) => {
                 let error = p.refuse("L", "it without \"filename\"");
                 return Err(error.hint("take one of the two out; \"float scale\" makes a picture brighter"));
@@ -129,7 +129,7 @@ impl Reader<'_, '_> {
     /// The image of a light: environment maps have to be square.
     fn light_picture(&mut self, p: &Parameters, is_square: bool) -> Result<ImageId> {
         let parameter = p.find("filename", &[ParameterType::String])?;
-        let Some(name) = p.string("filename")?.filter(|name| !name.is_empty()) else {
+        let Some(name) = p.file_name()? else {
             return Err(p
                 .place
                 .invalid(format!("{} has no \"string filename\"", p.title))
@@ -157,7 +157,7 @@ impl Reader<'_, '_> {
         }
         let color = self.light_color(p, "L")?;
         let file = p.find("filename", &[ParameterType::String])?;
-        let radiance = match (p.string("filename")?.filter(|name| !name.is_empty()), color) {
+        let radiance = match (p.file_name()?, color) {
             (Some(_), Some(_)) => {
                 let error = p.refuse("L", "it without \"filename\"");
                 return Err(error.hint("take one of the two out; \"float scale\" makes a picture brighter"));

@@ -11,7 +11,7 @@ use crate::measured::Measured;
 impl Reader<'_, '_> {
     /// The material of a file; of several materials of one file the tables are shared.
     pub(super) fn measured(&mut self, p: &Parameters) -> Result<MaterialKind> {
-        let Some(file) = p.string("filename")?.filter(|file| !file.is_empty()) else {
+        let Some(file) = p.file_name()? else {
             let error = p.place.invalid("the material has no \"filename\"");
             return Err(error.hint("give \"string filename\" the name of a .bsdf or .binary file"));
         };

@@ -40,7 +40,7 @@ impl Reader<'_, '_> {
 
     pub(super) fn ply_mesh(&mut self, p: &Parameters) -> Result<Geometry> {
         let parameter = p.find("filename", &[ParameterType::String])?;
-        let Some(name) = p.string("filename")?.filter(|name| !name.is_empty()) else {
+        let Some(name) = p.file_name()? else {
             let error = p.place.invalid(format!("{} has no \"string filename\"", p.title));
             return Err(error.hint("name a .ply or .ply.gz file"));
         };

@@ -417,6 +417,11 @@ impl Parameters {
         Ok(parameter.single(parameter.strings())?.first().map(String::as_str))
     }
 
+    /// The file of `filename`; an empty name is none, as in pbrt.
+    pub(super) fn file_name(&self) -> Result<Option<&str>> {
+        Ok(self.string("filename")?.filter(|name| !name.is_empty()))
+    }
+
     /// A word of a fixed set.
     pub(super) fn choice<T: Copy>(
         &self,

@@ -95,7 +95,7 @@ fn a_window_is_found() {
     assert!(noise_of_found < 0.5 * noise, "{noise_of_found}, not far below {noise}");
 }
 
-/// How a picture is developed has nothing to do with what was learned; its size has.
+/// A guide is learned for the rays of a picture, so again for another size, but not for another development (exposure, denoising).
 #[test]
 fn what_is_developed_otherwise_is_not_learned_again() {
     let text = text("path", "rgb", "zenith = [1, 2, 6]\nhorizon = [3, 3, 3]", false, "auto");

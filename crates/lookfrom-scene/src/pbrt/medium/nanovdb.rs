@@ -18,7 +18,7 @@ impl Reader<'_, '_> {
     pub(super) fn nano_vdb(&mut self, p: &Parameters, medium: &mut Medium) -> Result<Option<Variation>> {
         let scale = p.float_where("Lescale", 1.0, "a number of at least 0", |v| v >= 0.0)?;
         let name = p.string("gridname")?.unwrap_or("density");
-        let Some(file) = p.string("filename")?.filter(|file| !file.is_empty()) else {
+        let Some(file) = p.file_name()? else {
             return Err(p.place.invalid("the medium has no \"filename\""));
         };
         let path = self.resolve(file);

@@ -1,4 +1,4 @@
-//! What programs write into OBJ and MTL files beside, or against, the manual.
+//! OBJ and MTL files of other programs: extensions of Wavefront's specification, and violations of it.
 
 use super::*;
 
