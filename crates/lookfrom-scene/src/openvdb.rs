@@ -1,7 +1,7 @@
 //! Reader for OpenVDB's files (Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology").
 //!
-//! Files with the versions 219 to 226 of the format (OpenVDB 1 to 13), of which one grid is read: a tree of `float` or `double`, also stored as
-//! `half`, that is a fog volume, a level set or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
+//! Files with the versions 219 to 226 of the format (OpenVDB 1 to 13), of which one grid is read: a tree of `float`, `double` or `half`, the first two also
+//! stored as `half`, that is a fog volume, a level set or of no class, with a linear map. The layout is that of `io/Archive.cc`, `io/Compression.h` and the
 //! `readTopology` and `readBuffers` of `tree/`. Statistics are not read: bounds are those of the active values.
 
 mod cursor;

@@ -6,11 +6,12 @@ use crate::error::{ErrorKind, Result};
 use crate::volume::bytes::Bytes;
 
 /// Types of trees, and the bytes of their numbers: of single ones, and of those in arrays.
-const TYPES: [(&str, Precision); 4] = [
+const TYPES: [(&str, Precision); 5] = [
     ("Tree_float_5_4_3", Precision { single: 4, array: 4 }),
     ("Tree_float_5_4_3_HalfFloat", Precision { single: 4, array: 2 }),
     ("Tree_double_5_4_3", Precision { single: 8, array: 8 }),
     ("Tree_double_5_4_3_HalfFloat", Precision { single: 8, array: 2 }),
+    ("Tree_half_5_4_3", Precision { single: 2, array: 2 }),
 ];
 
 /// Bytes of numbers.
@@ -30,7 +31,8 @@ impl Precision {
     pub(super) fn of(tree: &str, bytes: Bytes<'_>, at: u64) -> Result<Self> {
         let known = TYPES.iter().find(|(name, _)| *name == tree);
         known.map(|(_, precision)| *precision).ok_or_else(|| {
-            let message = format!("a grid of the type {tree:?}, expected a tree of float or double, 5_4_3");
+            let message =
+                format!("a grid of the type {tree:?}, expected a tree of float, double or half, 5_4_3");
             bytes.error(at, ErrorKind::Unsupported, message).hint("convert it to a grid of the type float")
         })
     }

@@ -141,7 +141,7 @@ impl NodeValues {
         let size = self.precision.array * count as u64;
         let is_packed = self.packing.has(ZIP | BLOSC);
         // Of none that would be halved nothing is written, of others a packed nothing.
-        if !is_packed || (count == 0 && self.precision.array == 2) {
+        if !is_packed || (count == 0 && self.precision.array < self.precision.single) {
             return cursor.slice(size, "the values of a node");
         }
         let length = cursor.i64()?;

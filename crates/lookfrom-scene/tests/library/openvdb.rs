@@ -119,6 +119,7 @@ fn volumes_are_those_of_the_same_grids_of_nanovdb() {
             "Tree_float_5_4_3_HalfFloat",
             "Tree_double_5_4_3",
             "Tree_double_5_4_3_HalfFloat",
+            "Tree_half_5_4_3",
         ] {
             for flags in [0, ZIP, ACTIVE, ZIP | ACTIVE, BLOSC, BLOSC | ACTIVE] {
                 let draft = Draft { tree, flags, ..draft(&mut random, background) };
@@ -136,7 +137,8 @@ fn volumes_are_those_of_the_same_grids_of_nanovdb() {
 fn files_of_old_versions_are_read() {
     let mut random = Dice(2);
     for (version, flags) in [(219, ZIP), (220, 0), (220, ZIP), (221, 0), (221, ZIP)] {
-        for tree in ["Tree_float_5_4_3", "Tree_float_5_4_3_HalfFloat", "Tree_double_5_4_3"] {
+        for tree in ["Tree_float_5_4_3", "Tree_float_5_4_3_HalfFloat", "Tree_double_5_4_3", "Tree_half_5_4_3"]
+        {
             let draft = Draft { tree, flags, ..draft(&mut random, 0.75) };
             let expected = read(file(std::slice::from_ref(&draft)), "density").expect("good");
 

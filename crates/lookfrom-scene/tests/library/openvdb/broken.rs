@@ -30,7 +30,7 @@ fn what_is_not_read_is_told() {
         (
             Draft { tree: "Tree_vec3s_5_4_3", ..good() },
             unsupported,
-            "a grid of the type \"Tree_vec3s_5_4_3\", expected a tree of float or double, 5_4_3",
+            "a grid of the type \"Tree_vec3s_5_4_3\", expected a tree of float, double or half, 5_4_3",
         ),
         (
             Draft { map: ("NonlinearFrustumMap", vec![]), ..good() },

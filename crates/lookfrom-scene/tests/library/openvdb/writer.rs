@@ -175,9 +175,10 @@ impl Draft {
     }
 
     fn single(&self, value: f32) -> Vec<u8> {
-        match self.tree.starts_with("Tree_double") {
-            true => f64::from(value).to_le_bytes().to_vec(),
-            false => value.to_le_bytes().to_vec(),
+        match &self.tree[..9] {
+            "Tree_doub" => f64::from(value).to_le_bytes().to_vec(),
+            "Tree_half" => f16::from_f32(value).to_le_bytes().to_vec(),
+            _ => value.to_le_bytes().to_vec(),
         }
     }
 
