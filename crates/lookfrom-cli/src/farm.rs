@@ -14,12 +14,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use lookfrom::session::check_parts;
+use lookfrom::session::{Exposure, Options, Series, check_parts};
 use lookfrom_scene::plural::counted;
+use lookfrom_scene::scene::SourceFormat;
+use lookfrom_scene::{Disk, Inputs, Scene};
 
 use crate::args::{Common, FarmArguments, Scheduler};
-use crate::exit::{DONE, Failure, say};
-use crate::{files, film};
+use crate::exit::{self, DONE, Failure, say};
+use crate::{files, film, prepare};
 
 /// A job, from which the files of all schedulers are made.
 #[derive(Debug)]
@@ -87,13 +89,15 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
     let (loaded, inputs) = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?;
-    let common = Common { threads: None, strict: false, memory: arguments.memory };
-    let render = arguments.overrides.options(&common, None);
-    check_parts(loaded, &render, arguments.parts)?;
+    let series = arguments.series();
+    let of_all = options_of_all(arguments, &series, &loaded)?;
+    check_parts(loaded, &of_all, arguments.parts)?;
     let inputs = inputs.into_iter().map(|(path, _)| path);
     let environment = arguments.overrides.model.environment.iter().cloned();
     let inputs = inputs.chain(environment).map(|path| film::absolute(&path)).collect();
-    let mut options = film::arguments(matches);
+    let frame = |number| film::argument_of_picture(&series, number, &of_all).unwrap_or_default();
+    let frames = (0..series.count()).map(frame).collect();
+    let mut options = film::arguments_of_series(&film::arguments(matches), &series, &of_all);
     options.extend(
         arguments
             .overrides
@@ -106,20 +110,6 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
     if let Some(samples) = &arguments.overrides.samples {
         options.push(format!("--samples={}..{}", samples.start, samples.end));
     }
-    let start = arguments.overrides.model.turn.unwrap_or(0.0);
-    let frames = match (arguments.turntable, &arguments.frames) {
-        (Some(count), _) => {
-            options.retain(|option| !option.starts_with("--turn="));
-            (0..count)
-                .map(|k| format!("--turn={}", start + 360.0 * f64::from(k) / f64::from(count)))
-                .collect()
-        }
-        (None, Some(frames)) => frames
-            .clone()
-            .map(|frame| format!("--at={}", f64::from(frame) / arguments.overrides.variables.fps))
-            .collect(),
-        (None, None) => vec![String::new()],
-    };
     let name = scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Job {
         name,
@@ -133,6 +123,25 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
         frames,
         parts: arguments.parts,
     })
+}
+
+/// The options of all pictures: of an animation the bounds and the exposure, too, as `render` chooses them once for all frames.
+fn options_of_all(arguments: &FarmArguments, series: &Series, loaded: &Scene) -> Result<Options, Failure> {
+    let FarmArguments { scene, overrides, memory, .. } = arguments;
+    let common = Common { threads: None, strict: false, memory: *memory };
+    let Series::Frames { .. } = series else { return Ok(overrides.options(&common, None)) };
+    let inputs = Inputs::default();
+    let environment = prepare::environment(overrides, &common, &inputs)?;
+    let options = overrides.options(&common, environment.as_ref());
+    let mut options = series.framed(scene, &Disk, &options).map_err(exit::in_scene(scene))?;
+    let is_model = loaded.source_format != SourceFormat::Scene;
+    let stops = match options.exposure {
+        Some(Exposure::Stops(stops)) => stops,
+        None if !is_model => loaded.image.exposure,
+        _ => prepare::prepare(scene, &common, &series.options(0, &options), &inputs)?.image().exposure,
+    };
+    options.exposure = Some(Exposure::Stops(stops));
+    Ok(options)
 }
 
 /// A word of a POSIX shell.

@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Args, Command};
 use lookfrom::film::Film;
-use lookfrom::session::{Developed, FilmFile, FilmParts, Finished, Provenance};
+use lookfrom::session::{Developed, Exposure, FilmFile, FilmParts, Finished, Options, Provenance, Series};
+use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::{Budget, Disk, ErrorKind, Files, Inputs, LoadContext, Result as SceneResult};
 
 use crate::args::Overrides;
@@ -25,8 +26,7 @@ const OF_SAMPLES: [&str; 2] = ["samples", "crop"];
 
 /// The typed arguments of `lookfrom render` that a session with the same picture needs, one an element, in a fixed order.
 pub(crate) fn arguments(matches: &ArgMatches) -> Vec<String> {
-    let known =
-        Overrides::augment_args(Command::new("render")).arg(clap::Arg::new("fireflies").long("fireflies"));
+    let known = known();
     let mut typed = Vec::new();
     for argument in known.get_arguments() {
         let id = argument.get_id().as_str();
@@ -45,6 +45,65 @@ pub(crate) fn arguments(matches: &ArgMatches) -> Vec<String> {
         typed.extend(values.map(|value| format!("--{name}={}", value.to_string_lossy())));
     }
     typed
+}
+
+/// The options that say which picture to render.
+fn known() -> Command {
+    Overrides::augment_args(Command::new("render")).arg(clap::Arg::new("fireflies").long("fireflies"))
+}
+
+/// The arguments of all pictures of a series, by those that were typed and the options of all.
+pub(crate) fn arguments_of_series(typed: &[String], series: &Series, options: &Options) -> Vec<String> {
+    let exposure = match options.exposure {
+        Some(Exposure::Stops(stops)) => Some(format!("--exposure={stops}")),
+        _ => None,
+    };
+    let bounds = options.bounds.map(|Bounds { min, max }| {
+        let [x0, y0, z0, x1, y1, z1] = [min.x, min.y, min.z, max.x, max.y, max.z];
+        format!("--bounds={x0},{y0},{z0},{x1},{y1},{z1}")
+    });
+    let (varied, decided) = match series {
+        Series::Turntable(_) => ("turn", [None, None]),
+        Series::Views(_) => ("view", [exposure, None]),
+        Series::Frames { .. } => ("at", [exposure, bounds]),
+        _ => return typed.to_vec(),
+    };
+    let decided: Vec<String> = decided.into_iter().flatten().collect();
+    let is_replaced = |name: &str| name == varied || decided.iter().any(|argument| name_of(argument) == name);
+    let kept = typed.iter().filter(|argument| !is_replaced(name_of(argument))).cloned();
+    kept.chain(decided.iter().cloned()).collect()
+}
+
+/// The argument by which one picture of a series differs from others.
+pub(crate) fn argument_of_picture(series: &Series, number: usize, of_all: &Options) -> Option<String> {
+    let options = series.options(number, of_all);
+    match series {
+        Series::Turntable(_) => options.turn.map(|degrees| format!("--turn={degrees}")),
+        Series::Views(_) => series.label(number).map(|name| format!("--view={name}")),
+        Series::Frames { .. } => options.import.at.map(|seconds| format!("--at={seconds}")),
+        _ => None,
+    }
+}
+
+/// The arguments by which the session of one picture of a series can be opened again, in the order of [`arguments`].
+pub(crate) fn arguments_of_picture(
+    typed: &[String],
+    series: &Series,
+    number: usize,
+    of_all: &Options,
+) -> Vec<String> {
+    let mut all = arguments_of_series(typed, series, of_all);
+    all.extend(argument_of_picture(series, number, of_all));
+    let known = known();
+    let names: Vec<&str> = known.get_arguments().filter_map(clap::Arg::get_long).collect();
+    all.sort_by_key(|argument| names.iter().position(|name| name_of(argument) == *name));
+    all
+}
+
+/// The name of an option that was typed.
+fn name_of(argument: &str) -> &str {
+    let argument = argument.strip_prefix("--").unwrap_or(argument);
+    argument.split('=').next().unwrap_or(argument)
 }
 
 /// Paths of a film's scene and environment map, relative to one folder, from what they are relative to another.

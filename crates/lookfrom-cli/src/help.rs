@@ -11,7 +11,10 @@ const GROUPS: &[(&str, &[&str])] = &[
     ("Output", &["output", "format", "quality", "bits", "write_every", "show"]),
     ("Size", &["size", "width", "height", "crop"]),
     ("Samples, time, noise", &["samples", "time", "noise", "allocation", "denoise", "fireflies"]),
-    ("Camera", &["lookfrom", "lookat", "up", "fov", "view", "azimuth", "elevation", "turn", "camera"]),
+    (
+        "Camera",
+        &["lookfrom", "lookat", "up", "fov", "view", "azimuth", "elevation", "bounds", "turn", "camera"],
+    ),
     (
         "Light, background, colours",
         &["environment", "rotate_environment", "background", "floor", "exposure", "tonemap"],

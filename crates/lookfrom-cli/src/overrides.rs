@@ -57,6 +57,7 @@ impl Overrides {
             view: self.model.view,
             azimuth: self.model.azimuth,
             elevation: self.model.elevation,
+            bounds: self.model.bounds,
             environment: environment.cloned(),
             rotate_environment: self.model.rotate_environment,
             floor: self.model.floor,

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
+use lookfrom::render::StopReason;
 use lookfrom::session::{FilmFile, Finished, Session};
 use lookfrom_scene::Inputs;
 
@@ -84,9 +85,10 @@ pub(crate) fn render(
         terminal::draw(&finished.shown(), way)?;
     }
 
-    // Write, unless the render was stopped before the first sample.
+    // Write, unless the render was stopped before the first sample, or the next call would take what there is for the whole.
     let started = Instant::now();
-    let has_picture = finished.rendered.samples_taken > 0;
+    let is_half_done = finished.rendered.reason == StopReason::Cancelled && arguments.several.skip_existing;
+    let has_picture = finished.rendered.samples_taken > 0 && !is_half_done;
     if has_picture {
         match (&provenance, outlet) {
             (Some(provenance), _) => film::write(target, provenance, &finished, inputs)?,

@@ -93,12 +93,6 @@ impl<'a> Call<'a> {
                     .to_owned(),
             );
         }
-        if keep.film && matches!(call.series, Series::Views(_) | Series::Frames { .. }) {
-            return usage(
-                "--film is for single pictures and turntables: give --view or --at in calls of their own"
-                    .to_owned(),
-            );
-        }
         if keep.film && call.scenes.iter().any(|scene| scene == Path::new(PIPE)) {
             return usage("--film needs a scene in a file, which can be read again; - is stdin".to_owned());
         }
@@ -261,7 +255,8 @@ impl<'a> Call<'a> {
             Ok(animation.add(&shown.rgba)?)
         };
         let code = self.render_series(index, environment, inputs, &mut Outlet::Gathered(&mut outlet));
-        if let Some(animation) = animation {
+        let is_half_done = self.arguments.several.skip_existing && interrupt::asked();
+        if let Some(animation) = animation.filter(|_| !is_half_done) {
             let bytes = animation.finish().map_err(|error| target.cannot_encode(&error))?;
             target.write_finished(&bytes, inputs)?;
         }
@@ -320,7 +315,7 @@ impl<'a> Call<'a> {
             }
             let Some(session) = &session else { continue };
             let place = (self.count() > 1).then(|| [index * series.count() + number + 1, self.count()]);
-            let typed = self.typed(number, options);
+            let typed = film::arguments_of_picture(self.typed, series, number, options);
             let job = Job { arguments, typed: &typed, inputs, place };
             let code = interrupt::keeping(|| -> Result<u8, Failure> {
                 let film = if arguments.keep.go_on { film::existing(target, &options.budget)? } else { None };
@@ -332,18 +327,6 @@ impl<'a> Call<'a> {
             }
         }
         Ok(DONE)
-    }
-
-    /// The arguments by which the session of one picture can be opened again.
-    fn typed(&self, number: usize, options: &Options) -> Vec<String> {
-        let mut typed = self.typed.to_vec();
-        if let (Series::Turntable(_), Some(degrees)) =
-            (&self.series, self.series.options(number, options).turn)
-        {
-            typed.retain(|argument| !argument.starts_with("--turn="));
-            typed.push(format!("--turn={degrees}"));
-        }
-        typed
     }
 
     /// Tells that a picture is there already.

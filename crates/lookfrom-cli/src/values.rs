@@ -9,6 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use lookfrom_scene::Location;
 use lookfrom_scene::image::linear_from_srgb;
+use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{Background, Filter, LightPathLayer, PixelBounds, Sensor, SpectralFilm};
 use lookfrom_scene::spectrum::CameraSensor;
 use lookfrom_scene::studio::Viewpoint;
@@ -93,6 +94,16 @@ pub(crate) fn part(typed: &str) -> Result<[u32; 2], String> {
 pub(crate) fn vector(typed: &str) -> Result<DVec3, String> {
     let vector = DVec3::from_array(separated(typed, "three numbers, X,Y,Z")?);
     if vector.is_finite() { Ok(vector) } else { Err("expected finite numbers".to_owned()) }
+}
+
+/// `X0,Y0,Z0,X1,Y1,Z1`: a box.
+pub(crate) fn bounds(typed: &str) -> Result<Bounds, String> {
+    let [x0, y0, z0, x1, y1, z1] = separated(typed, "six numbers, X0,Y0,Z0,X1,Y1,Z1")?;
+    let bounds = Bounds { min: DVec3::new(x0, y0, z0), max: DVec3::new(x1, y1, z1) };
+    match bounds.min.is_finite() && bounds.max.is_finite() && bounds.min.cmple(bounds.max).all() {
+        true => Ok(bounds),
+        false => Err("expected finite numbers with X0 ≤ X1, Y0 ≤ Y1 and Z0 ≤ Z1".to_owned()),
+    }
 }
 
 /// Stops, or `auto`.

@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::Args;
+use lookfrom::session::Series;
 
 use super::{MemoryArguments, Overrides};
 use crate::scenes;
@@ -61,10 +62,10 @@ pub(crate) struct FarmArguments {
     pub(crate) parts: u32,
 
     /// This many pictures, evenly around the scene, as lookfrom render --turntable
-    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
+    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000), conflicts_with = "bounds")]
     pub(crate) turntable: Option<u32>,
 
-    /// Frames of the animations of the scene or model, FROM..BEFORE: --at FRAME / FPS
+    /// Frames of the animations of the scene or model, FROM..BEFORE, as lookfrom render --frames
     #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "at"])]
     pub(crate) frames: Option<Range<u32>>,
 
@@ -73,4 +74,16 @@ pub(crate) struct FarmArguments {
 
     #[command(flatten)]
     pub(crate) overrides: Overrides,
+}
+
+impl FarmArguments {
+    /// The pictures of the scene.
+    pub(crate) fn series(&self) -> Series {
+        let fps = self.overrides.variables.fps;
+        match (self.turntable, &self.frames) {
+            (Some(count), _) => Series::Turntable(count),
+            (None, Some(frames)) => Series::Frames { frames: frames.clone(), fps },
+            (None, None) => Series::One,
+        }
+    }
 }

@@ -5,6 +5,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::Background;
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::subdivision::MOST_LEVELS;
@@ -53,6 +54,10 @@ pub(crate) struct ModelArguments {
     /// Elevation of the view above the horizon, -90 to 90
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-90.0f64, 90.0), allow_hyphen_values = true, conflicts_with_all = ["lookfrom", "camera"])]
     pub(crate) elevation: Option<f64>,
+
+    /// Box that is framed where the scene has no camera or a view replaces it, and that --floor lies under, in place of that around all
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = values::bounds, allow_hyphen_values = true, conflicts_with = "turn")]
+    pub(crate) bounds: Option<Bounds>,
 
     /// Orbit the camera around the point that it looks at, with the environment: one picture of --turntable
     #[arg(long, value_name = "DEGREES", value_parser = values::between(-36000.0f64, 36000.0), allow_hyphen_values = true)]

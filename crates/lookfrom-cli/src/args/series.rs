@@ -16,7 +16,7 @@ pub(crate) struct SeriesArguments {
     /// The camera orbits an upright axis, counter-clockwise as seen from above; environment light turns with it, other lights
     /// stay with the scene. The axis goes through the point that the scene's camera looks at (or --lookat), else through
     /// the centre of the visible geometry. A model is framed so that nothing is cropped at any angle.
-    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000))]
+    #[arg(long, value_name = "N", value_parser = values::whole(1u32, 100_000), conflicts_with = "bounds")]
     pub(crate) turntable: Option<u32>,
 
     /// Render these views of each scene, as --view has them, or all: NAME-front.png, NAME-right.png …
@@ -33,8 +33,8 @@ pub(crate) struct SeriesArguments {
     #[arg(long, value_name = "N|CxR", value_parser = values::sheet, conflicts_with_all = ["write_every", "film", "skip_existing"])]
     pub(crate) sheet: Option<(u32, Option<u32>)>,
 
-    /// Leave out pictures whose files exist
-    #[arg(long)]
+    /// Leave out pictures whose files exist. Ctrl-C then leaves none that is half done; --continue is that of films
+    #[arg(long, conflicts_with_all = ["write_every", "film"])]
     pub(crate) skip_existing: bool,
 }
 

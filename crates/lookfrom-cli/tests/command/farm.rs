@@ -2,12 +2,16 @@
 
 use std::process::Command;
 
+use super::series::MOVING;
 use super::stage::{SCENE, Stage};
 
 /// Runs the script of a job, as a scheduler would.
-fn job(stage: &Stage, arguments: &[&str]) -> String {
+fn job(stage: &Stage, folder: &str, arguments: &[&str]) -> String {
     let mut command = Command::new("sh");
-    command.arg(stage.path("a job/job.sh")).args(arguments).env("LOOKFROM", env!("CARGO_BIN_EXE_lookfrom"));
+    command
+        .arg(stage.path(&format!("{folder}/job.sh")))
+        .args(arguments)
+        .env("LOOKFROM", env!("CARGO_BIN_EXE_lookfrom"));
     let output = command.output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
@@ -22,14 +26,14 @@ fn tasks_and_their_merge_are_one_render() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let script = String::from_utf8(stage.bytes("a job/job.sh")).unwrap();
     assert!(script.contains(" '--exposure=0.5' '--memory=2GiB' '--samples=0..5'"), "{script}");
-    job(&stage, &["part", "2-3"]);
-    job(&stage, &["part", "3"]);
+    job(&stage, "a job", &["part", "2-3"]);
+    job(&stage, "a job", &["part", "3"]);
     // One part is damaged, one is missing: the merge renders both.
     let film = stage.path("a job/parts/00001-000003.exr");
     let mut bytes = std::fs::read(&film).unwrap();
     bytes.truncate(bytes.len() / 2);
     std::fs::write(&film, bytes).unwrap();
-    assert!(job(&stage, &["merge"]).ends_with("a job/scene.exr\n"));
+    assert!(job(&stage, "a job", &["merge"]).ends_with("a job/scene.exr\n"));
     let one = ["render", "scene.toml", "--exposure=0.5", "--samples", "5", "--film", "-o", "a job/one.exr"];
     assert!(stage.command("").args(one).status().unwrap().success());
     assert!(stage.bytes("a job/one.exr") == stage.bytes("a job/scene.exr"));
@@ -53,8 +57,8 @@ fn frames_are_those_of_a_turntable() {
         "a job",
     ];
     assert!(stage.command("").args(farm).status().unwrap().success());
-    job(&stage, &["part", "1-2"]);
-    job(&stage, &["merge"]);
+    job(&stage, "a job", &["part", "1-2"]);
+    job(&stage, "a job", &["merge"]);
     let one =
         ["render", "model.obj", "--turntable", "2", "--size=24", "--floor", "--film", "-o", "a job/one.exr"];
     assert!(stage.command("").args(one).status().unwrap().success());
@@ -63,6 +67,34 @@ fn frames_are_those_of_a_turntable() {
             [format!("a job/one-00{frame}.exr"), format!("a job/model-0000{}.exr", frame + 1)];
         assert!(stage.bytes(&one) == stage.bytes(&merged), "frame {frame}");
     }
+}
+
+/// Framed once, and exposed as the first, of a model with a lamp of its own that it moves away from.
+#[test]
+#[cfg(unix)]
+fn frames_of_a_model_are_those_of_render() {
+    let stage = Stage::new("farm-animation");
+    let lamp =
+        r#"{"mesh": 0}, {"translation": [0, 2, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}}"#;
+    let lamps = r#""extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 9000}]}}, "nodes": ["#;
+    let lit = MOVING.replacen(r#""nodes": [0]"#, r#""nodes": [0, 1]"#, 1);
+    let lit = lit.replacen(r#"{"mesh": 0}"#, lamp, 1).replacen(r#""nodes": [{"#, &format!("{lamps}{{"), 1);
+    stage.write("moving.gltf", &lit);
+    let options = "--fps 4 --frames 1..4 --size 24x12 --samples 2 --denoise off";
+    stage.done(&format!("farm slurm moving.gltf {options} --parts 1 -o job"));
+    let frames = String::from_utf8(stage.bytes("job/frames.txt")).unwrap();
+    assert_eq!(frames, "--at=0.25\n--at=0.5\n--at=0.75\n");
+    let script = String::from_utf8(stage.bytes("job/job.sh")).unwrap();
+    assert!(script.contains("--bounds=") && script.contains("--exposure=-"), "{script}");
+    job(&stage, "job", &["part", "1-3"]);
+    job(&stage, "job", &["merge"]);
+    stage.done(&format!("render moving.gltf {options} --film -o job/one.exr"));
+    for frame in 1..4 {
+        let [one, merged] = [format!("job/one-000{frame}.exr"), format!("job/moving-0000{frame}.exr")];
+        assert!(stage.bytes(&one) == stage.bytes(&merged), "frame {frame}");
+    }
+    stage.done("resume job/one-0002.exr --samples 3");
+    stage.run("farm slurm moving.gltf --turntable 3 --bounds 0,0,0,1,1,1 -o job").fails(2, &["--bounds"]);
 }
 
 #[test]

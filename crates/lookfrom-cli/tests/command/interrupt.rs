@@ -37,3 +37,16 @@ fn the_picture_so_far_is_kept() {
         assert_eq!(stage.names(), ["endless.toml", "model.obj", output, "scene.toml"]);
     }
 }
+
+/// What is there is whole to the next call.
+#[test]
+fn what_the_next_call_would_skip_is_not_written_half_done() {
+    let stage = Stage::new("interrupt-skip");
+    stage.write("endless.toml", &SCENE.replace("samples = 4", "samples = 10000000"));
+    for output in ["p.png --skip-existing", "p.gif --turntable 2 --skip-existing"] {
+        let run = interrupted(&stage, "-INT", output, Duration::from_millis(1500));
+        assert_eq!(run.code, Some(130), "{}", run.stderr);
+        assert_eq!(stage.names(), ["endless.toml", "model.obj", "scene.toml"], "{output}");
+    }
+    stage.run("render scene.toml -o p.exr --skip-existing --film").fails(2, &["--skip-existing", "--film"]);
+}

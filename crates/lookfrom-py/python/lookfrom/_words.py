@@ -46,6 +46,7 @@ class Options(TypedDict, total=False):
     view: str
     azimuth: float
     elevation: float
+    bounds: Sequence[float] | NDArray[Any]
     turn: float
     camera: str
     # Light, background, colours.

@@ -154,7 +154,7 @@ impl Options {
         let asked = [
             ("film", self.film),
             ("keep_scene", self.keep_scene),
-            ("framed", self.framed.is_some()),
+            ("bounds", self.bounds.is_some()),
             ("light_sampler", self.light_sampler.is_some()),
             ("view", self.view.is_some()),
             ("azimuth", self.azimuth.is_some()),

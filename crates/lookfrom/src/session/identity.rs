@@ -61,14 +61,14 @@ impl Identity {
             view,
             azimuth,
             elevation,
-            framed,
+            bounds,
             rotate_environment,
             floor,
             ref import,
             ref variables,
             ..
         } = options;
-        let view = (view, azimuth, elevation, framed);
+        let view = (view, azimuth, elevation, bounds);
         Self {
             inputs,
             options: format!(

@@ -92,8 +92,8 @@ pub struct Options {
     pub azimuth: Option<f64>,
     /// Its elevation in degrees above the horizon, −90 to 90.
     pub elevation: Option<f64>,
-    /// The bounds that the view frames and the floor lies under; `None` for those of the scene.
-    pub framed: Option<Bounds>,
+    /// The box that a camera which is added frames, and that the floor lies under; `None` for that of the scene. Turntables frame all.
+    pub bounds: Option<Bounds>,
     /// An equirectangular environment map, in place of the studio or of a scene's own environments.
     pub environment: Option<Image>,
     /// Rotation of environments around the up direction, in degrees, counter-clockwise as seen from above.

@@ -73,7 +73,7 @@ pub(super) fn prepare(
         warnings.push(Warning::notice(&at, message));
     }
     if options.floor {
-        studio::add_floor(scene, up, options.framed);
+        studio::add_floor(scene, up, options.bounds);
         added.push("floor");
     }
     Ok(Prepared { added, turntable, has_own_lights })
@@ -107,6 +107,12 @@ fn unsuitable(scene: &mut Scene, file: &Path, options: &Options) -> Vec<String> 
                 .to_owned(),
         );
     }
+    if options.bounds.is_some() && scene.camera.is_some() && !options.chooses_view() && !options.floor {
+        messages.push(
+            "`bounds` are for what is framed: this scene has a camera, which `view` or `camera` replaces"
+                .to_owned(),
+        );
+    }
     if options.floor && !scene.render.integrator.is_path_traced() {
         messages.push(
             "a shadow-catching floor needs the path tracer; with this integrator it is grey".to_owned(),
@@ -127,7 +133,7 @@ fn place_camera(scene: &mut Scene, up: Option<DVec3>, options: &Options) -> Resu
     let turntable = options.turn.map(|_| Turntable::new(scene, up, options.lookat));
     match &turntable {
         Some(turntable) => turntable.frame(scene, &viewpoint),
-        None => studio::frame(scene, up, &viewpoint, options.framed),
+        None => studio::frame(scene, up, &viewpoint, options.bounds),
     }
     let middle = scene.bounds().center();
     if let Some(camera) = &mut scene.camera {

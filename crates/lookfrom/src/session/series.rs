@@ -95,12 +95,15 @@ impl Series {
     }
 
     /// The options of all pictures. Frames of an animation without a camera are framed as one: the bounds of its poses are
-    /// in [`Options::framed`], for which the scene is read at several times.
+    /// in [`Options::bounds`], unless these have some, for which the scene is read at several times.
     ///
     /// # Errors
     /// Errors of the file's reader.
     pub fn framed(&self, path: &Path, files: &dyn Files, options: &Options) -> Result<Options> {
-        let Self::Frames { frames, .. } = self else { return Ok(options.clone()) };
+        let frames = match self {
+            Self::Frames { frames, .. } if options.bounds.is_none() => frames,
+            _ => return Ok(options.clone()),
+        };
         let mut bounds = Bounds::EMPTY;
         let last = frames.len().saturating_sub(1);
         let steps = last.clamp(1, MOST_POSES - 1);
@@ -113,7 +116,7 @@ impl Series {
             }
             bounds = bounds.union(scene.bounds());
         }
-        Ok(Options { framed: Some(bounds), ..options.clone() })
+        Ok(Options { bounds: Some(bounds), ..options.clone() })
     }
 }
 
