@@ -462,7 +462,7 @@ pub(crate) struct Overrides {
     #[arg(long, value_name = "NAME[:RADIUS]", value_parser = values::filter)]
     pub(crate) filter: Option<Filter>,
 
-    /// Exposure in stops, for PNG, JPEG, WebP and PPM, or auto [default for models with lights of their own: auto]
+    /// Exposure in stops, for pictures that screens show, or auto [default for models with lights of their own: auto]
     #[arg(long, value_name = "STOPS|auto", value_parser = values::exposure, allow_hyphen_values = true)]
     pub(crate) exposure: Option<Exposure>,
 

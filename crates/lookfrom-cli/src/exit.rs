@@ -74,10 +74,15 @@ impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         let error = error.worded(remedy::in_flags);
         match error.kind {
-            ErrorKind::Request => Self::Usage(match error.hint {
-                Some(hint) => format!("{}\n  help: {hint}", error.message),
-                None => error.message,
-            }),
+            ErrorKind::Request => {
+                // Where a file has a list of what may be chosen.
+                let place = match error.at.pointer.is_empty() {
+                    true => String::new(),
+                    false => format!("{}: ", error.at),
+                };
+                let hint = error.hint.map(|hint| format!("\n  help: {hint}")).unwrap_or_default();
+                Self::Usage(format!("{place}{}{hint}", error.message))
+            }
             _ => Self::Scene(error),
         }
     }
@@ -92,6 +97,8 @@ pub(crate) fn in_scene(path: &Path) -> impl Fn(Error) -> Failure {
                 *at = Location::file(path);
             } else if *at.file == *OPTIONS {
                 at.file = "the command line".into();
+                is_usage = true;
+            } else if at.file.starts_with("--") {
                 is_usage = true;
             }
         }

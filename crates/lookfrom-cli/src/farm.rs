@@ -40,6 +40,8 @@ struct Job {
     frames: Vec<String>,
     /// Parts of each frame.
     parts: u32,
+    /// The number of the first frame in the names of pictures, and the digits of all: those of `lookfrom render`.
+    numbers: (u32, usize),
 }
 
 impl Job {
@@ -122,6 +124,7 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
             .collect(),
         frames,
         parts: arguments.parts,
+        numbers: (series.number(0)[0], series.label(0).map_or(0, |label| label.len())),
     })
 }
 

@@ -118,6 +118,11 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         let known: Vec<String> = inspection.rays.iter().map(|ray| ray.address.to_string()).collect();
         return Err(Failure::Usage(format!("there is no ray {ray}: this sample has {}", known.join(", "))));
     }
+    if let Some(bounce) = bounce.filter(|bounce| inspection.rays.iter().all(|ray| ray.depth != *bounce)) {
+        return Err(Failure::Usage(format!(
+            "there is no bounce {bounce}: no ray of this sample comes so far"
+        )));
+    }
     answer.print(&inspection, || inspection.excerpt(Selection { ray, bounce, part }).to_string())
 }
 

@@ -252,7 +252,11 @@ impl<'a> Call<'a> {
                     none.insert(Animation::new(format, [shown.width, shown.height], fps, shown.has_alpha)?)
                 }
             };
-            Ok(animation.add(&shown.rgba)?)
+            animation.add(&shown.rgba).map_err(|error| {
+                let size =
+                    format!("all are as large as the first, and one is {} × {}", shown.width, shown.height);
+                Failure::Output(format!("{}: {}: {size}", target.name(), error.message))
+            })
         };
         let code = self.render_series(index, environment, inputs, &mut Outlet::Gathered(&mut outlet));
         let is_half_done = self.arguments.several.skip_existing && interrupt::asked();

@@ -76,10 +76,9 @@ fn find_files(
     let scene = arguments.scene_file.clone().or_else(|| provenance.scene.clone().map(PathBuf::from));
     let of_scene = scene.as_deref().map_or(here, |scene| folder_or_here(scene.parent()));
     for argument in &mut provenance.arguments {
-        let found = argument
-            .strip_prefix(film::ENVIRONMENT)
-            .and_then(|path| film::found(path, [folder, of_scene, here]));
-        if let Some(path) = found {
+        let Some(path) = argument.strip_prefix(film::ENVIRONMENT) else { continue };
+        let found = || film::found(path, [folder, of_scene, here]);
+        if let Some(path) = arguments.environment.clone().or_else(found) {
             *argument = format!("{}{}", film::ENVIRONMENT, path.display());
         }
     }

@@ -31,6 +31,9 @@ const UNITS: [(&str, f64); 4] = [("ms", 1e-3), ("s", 1.0), ("m", 60.0), ("h", 36
 /// The largest filter radius in pixels, as in scene files.
 const GREATEST_RADIUS: f32 = 16.0;
 
+/// The greatest number of a frame.
+const MOST_FRAMES: u32 = 1 << 24;
+
 /// `60s`, `500ms`, `2m`, `1.5h`: a time of more than 0 and at most a year.
 pub(crate) fn duration(typed: &str) -> Result<Duration, String> {
     let unit = UNITS.iter().find_map(|(unit, seconds)| Some((typed.strip_suffix(unit)?, seconds)));
@@ -81,13 +84,25 @@ pub(crate) fn samples(typed: &str) -> Result<Range<u32>, String> {
     }
 }
 
+/// `FROM..BEFORE`: frames of an animation.
+pub(crate) fn frames(typed: &str) -> Result<Range<u32>, String> {
+    let number = |typed: &str| typed.trim().parse::<u32>().ok().filter(|&number| number <= MOST_FRAMES);
+    match typed.split_once("..").map(|(start, end)| (number(start), number(end))) {
+        Some((Some(start), Some(end))) if start < end => Ok(start..end),
+        _ => {
+            Err("expected the first frame and the one after the last, counted from 0, such as 0..48"
+                .to_owned())
+        }
+    }
+}
+
 /// `I/N`: part I of N, from 1.
 pub(crate) fn part(typed: &str) -> Result<[u32; 2], String> {
     let parts = typed.split_once('/').and_then(|(part, parts)| {
         Some([part.trim().parse::<u32>().ok()?, parts.trim().parse::<u32>().ok()?])
     });
     let parts = parts.filter(|&[part, parts]| (1..=parts).contains(&part) && parts <= MOST_SAMPLES);
-    parts.ok_or_else(|| "expected a part and the number of parts, from 1/64 to 64/64".to_owned())
+    parts.ok_or_else(|| "expected a part and the number of parts, such as 1/64, the first of 64".to_owned())
 }
 
 /// `X,Y,Z`: three finite numbers.

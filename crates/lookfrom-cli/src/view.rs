@@ -11,7 +11,7 @@ use lookfrom_scene::{Disk, Error, ErrorKind, Inputs, Location};
 use lookfrom_view::{Address, Server, Settings, handout};
 
 use crate::args::ViewArguments;
-use crate::exit::{DONE, Failure, INTERRUPTED, answer, say};
+use crate::exit::{DONE, Failure, INTERRUPTED, answer, in_scene, say};
 use crate::output::{folder_or_here, replace_file};
 use crate::{interrupt, prepare};
 
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &ViewArguments, typed: &[String]) -> u8 {
 fn export(arguments: &ViewArguments, typed: &[String], page: &Path) -> Result<(), Failure> {
     prepare::use_threads(&arguments.common)?;
     let html = handout(settings(arguments, typed), Arc::new(Disk), arguments.pixel, arguments.sample)
-        .map_err(Failure::Scene)?;
+        .map_err(in_scene(&arguments.scene))?;
     let is_file = page.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html"));
     let page = if is_file { page.to_owned() } else { page.join("index.html") };
     if !is_file {

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import sys
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +55,7 @@ def signature(name: str, item: Any) -> str:
         return name
     parts: list[str] = []
     for part in parameters.parameters.values():
-        if part.name == "self":
+        if part.name in ("self", "cls"):
             continue
         if part.kind is part.KEYWORD_ONLY and not any(text.startswith("*") for text in parts):
             parts.append("*")
@@ -101,7 +102,8 @@ def written() -> str:
             if not inspect.isclass(item) or issubclass(item, BaseException | dict):
                 continue
             for member, value in members(item):
-                value = getattr(value, "func", value)
+                if isinstance(value, cached_property):
+                    value = property(value.func)
                 value = value.__func__ if isinstance(value, staticmethod | classmethod) else value
                 lines.extend(entry(f"{name}.{member}", value, "####"))
     lines.extend(["## Parts of inspections", ""])

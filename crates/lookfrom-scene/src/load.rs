@@ -123,9 +123,14 @@ pub fn has_known_name(path: &Path) -> bool {
     Format::of_name(path).is_some()
 }
 
-/// Whether a path is a pipe, whose name says nothing: `-`, or one of the system's without an extension.
+/// Whether a path is a pipe, whose name says nothing: `-`, one of the system's without an extension, or what a shell has put in the place
+/// of one.
 fn is_stream(path: &Path, context: &LoadContext<'_>) -> bool {
-    path == Path::new(PIPE) || (path.extension().is_none() && context.files.length(path).is_none())
+    let is_descriptor =
+        || ["/dev/stdin", "/dev/fd", "/proc/self/fd"].iter().any(|known| path.starts_with(known));
+    path == Path::new(PIPE)
+        || is_descriptor()
+        || (path.extension().is_none() && context.files.length(path).is_none())
 }
 
 /// Whether a file has the name of a scene in our own format.

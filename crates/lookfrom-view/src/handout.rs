@@ -9,6 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use lookfrom::session::Format;
 use lookfrom_scene::files::SharedFiles;
+use lookfrom_scene::plural::counted;
 use lookfrom_scene::{Inputs, Result};
 use serde_json::Value;
 
@@ -38,6 +39,13 @@ pub fn handout(
     let image = loaded.session.image();
     let view = ViewRequest { exposure: image.exposure, denoise: image.denoise, ..ViewRequest::default() };
     check(pixel, [image.width, image.height])?;
+    let samples = loaded.session.settings().samples;
+    if let Some(sample) = sample.filter(|sample| *sample >= samples) {
+        return Err(refused(format!(
+            "there is no sample {sample}: the picture has {} per pixel, counted from 0",
+            counted(samples, "sample")
+        )));
+    }
     let mut window = Window::new(Arc::<Mailbox>::default(), document, None);
     window.loaded = Some(loaded);
     window.look(view)?;

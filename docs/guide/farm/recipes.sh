@@ -135,8 +135,8 @@ END
         sh "$job/job.sh" part 1-6
         sh "$job/job.sh" merge > /dev/null
         "$LOOKFROM" render "$model" --size 80 --samples 8 --turntable 3 -q --film -o "$job/one.exr"
-        for frame in 1 2 3; do
-            same "frame $frame of a turntable" "$job/one-00$((frame - 1)).exr" "$job/star-0000$frame.exr"
+        for frame in 0 1 2; do
+            same "frame $frame of a turntable" "$job/one-00$frame.exr" "$job/star-00$frame.exr"
         done
         ;;
     *)

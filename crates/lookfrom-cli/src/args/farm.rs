@@ -66,7 +66,7 @@ pub(crate) struct FarmArguments {
     pub(crate) turntable: Option<u32>,
 
     /// Frames of the animations of the scene or model, FROM..BEFORE, as lookfrom render --frames
-    #[arg(long, value_name = "FROM..BEFORE", value_parser = values::samples, conflicts_with_all = ["turntable", "at"])]
+    #[arg(long, value_name = "FROM..BEFORE", value_parser = values::frames, conflicts_with_all = ["turntable", "at"])]
     pub(crate) frames: Option<Range<u32>>,
 
     #[command(flatten)]

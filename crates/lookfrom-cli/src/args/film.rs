@@ -51,7 +51,7 @@ pub(crate) struct KeepArguments {
     #[arg(long = "continue", requires = "film")]
     pub(crate) go_on: bool,
 
-    /// Render only part I of N of the samples, 1/64 to 64/64, to be merged with the others
+    /// Render only part I of N of the samples, such as 1/64, to be merged with the others
     ///
     /// Parts are ranges of samples of the whole picture, since these take nearly the same time whatever the picture shows.
     #[arg(long, value_name = "I/N", value_parser = values::part)]
@@ -89,6 +89,10 @@ pub(crate) struct ResumeArguments {
     /// The scene, if it is not where it was
     #[arg(long, value_name = "SCENE")]
     pub(crate) scene_file: Option<PathBuf>,
+
+    /// The environment map of the render's --environment, if it is not where it was
+    #[arg(long, value_name = "FILE")]
+    pub(crate) environment: Option<PathBuf>,
 
     /// Print nothing but errors
     #[arg(short, long)]
@@ -130,14 +134,14 @@ pub(crate) struct DevelopArguments {
     #[arg(required = true, value_name = "PICTURE")]
     pub(crate) pictures: Vec<PathBuf>,
 
-    /// Output: a file (.png, .jpg, .webp, .exr, .hdr, .pfm, .ppm), a folder or a pattern with {name}, as for render
+    /// Output: a file (.png, .apng, .gif, .jpg, .webp, .exr, .hdr, .pfm, .ppm), a folder or a pattern with {name}, as for render
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) encoding: EncodingArguments,
 
-    /// Exposure in stops, for PNG, JPEG, WebP and PPM [default: the film's, or 0]
+    /// Exposure in stops, for pictures that screens show [default: the film's, or 0]
     #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
     pub(crate) exposure: Option<f32>,
 

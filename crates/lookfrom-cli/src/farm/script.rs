@@ -18,6 +18,8 @@ fn script(job: &Job) -> String {
     SCRIPT
         .replace("@TASKS@", &job.tasks().to_string())
         .replace("@PARTS@", &job.parts.to_string())
+        .replace("@FIRST@", &job.numbers.0.to_string())
+        .replace("@DIGITS@", &job.numbers.1.to_string())
         .replace("@FRAMES@", &job.frames.len().to_string())
         .replace("@OPTIONS@", &job.options.iter().map(option).collect::<String>())
         .replace("@SCENE@", &quoted(&job.scene_from_folder))
@@ -64,7 +66,7 @@ merge() {
     if [ "$frames" = 1 ]; then
         whole=$FOLDER/$name.exr
     else
-        whole=$FOLDER/$name-$(printf '%05d' "$1").exr
+        whole=$FOLDER/$name-$(printf '%0@DIGITS@d' $(($1 - 1 + @FIRST@))).exr
     fi
     frame=$1
     part=1

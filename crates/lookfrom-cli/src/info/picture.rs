@@ -103,12 +103,12 @@ fn for_people(picture: &Picture) -> String {
             counted(film.samples, "sample"),
             film.samples_taken as f64 / pixels.max(1) as f64
         ));
-        if let Some([start, end]) = film.goal {
-            lines.push(format!(
-                "  {:<10} samples {start}..{end} are not all there: lookfrom resume {}",
-                "goal", picture.picture
-            ));
-        }
+        let goal = film.goal.map(|[start, end]| match picture.header.get("noise") {
+            // Whether it is reached is known to who measures it.
+            Some(noise) => format!("an error of {noise}, which lookfrom resume {} reaches", picture.picture),
+            None => format!("samples {start}..{end} are not all there: lookfrom resume {}", picture.picture),
+        });
+        lines.extend(goal.map(|goal| format!("  {:<10} {goal}", "goal")));
         // The ledger of an unfinished film has a line for each row of tiles.
         let shown: Vec<&str> = film.ledger.lines().take(4).collect();
         lines.push(format!("  {:<10} {}", "ledger", shown.join("\n             ")));

@@ -67,6 +67,20 @@ fn what_the_parser_says_and_what_we_say_look_alike() {
     // What only the scene can tell is said like what the parser can.
     let run = stage.run("render scene.toml --crop 0,0,41,30");
     run.fails(2, &["error: the crop 0,0,41,30 is not", "\n\nFor more information, try '--help'.\n"]);
+    // Of what does not suit the scene, too.
+    stage.run("render scene.toml --light-path a=D -o a.exr").fails(2, &["--light-path a", "column 1"]);
+    stage.run("render scene.toml --light-path R=C.* -o a.exr").fails(2, &["another channel"]);
+    stage.write("moving.gltf", super::series::MOVING);
+    for (option, what) in
+        [("variant", "variant"), ("camera", "camera"), ("animation", "animation"), ("scene", "scene")]
+    {
+        stage
+            .run(&format!("render moving.gltf --{option} Foo -o a.png"))
+            .fails(2, &["moving.gltf#/", &format!("there is no {what}"), "\"Foo\""]);
+    }
+    stage.run("view scene.toml --export h.html --pixel 40,2").fails(2, &["pixel 40 2 is outside"]);
+    stage.run("view scene.toml --export h.html --sample 9").fails(2, &["there is no sample 9"]);
+    stage.run("inspect scene.toml 20 15 --bounce 99").fails(2, &["there is no bounce 99"]);
     for arguments in ["render nowhere.toml", "rendr scene.toml", "render scene.toml --crop 0,0,41,30"] {
         let output = stage.command(arguments).env("CLICOLOR_FORCE", "1").output().unwrap();
         let colored = String::from_utf8(output.stderr).unwrap();

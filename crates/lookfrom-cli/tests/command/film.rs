@@ -26,6 +26,50 @@ fn parts_in_any_order_are_the_film_of_one_render() {
     assert!(!stage.path("x.exr").exists());
 }
 
+/// All of an adaptive picture decides where its samples are.
+#[test]
+fn parts_of_adaptive_pictures_are_not_merged() {
+    let stage = Stage::new("film-adaptive");
+    for adaptive in ["--noise 0.5", "--allocation adaptive --samples 16"] {
+        for (part, crop) in [("a", "0,0,40,8"), ("b", "0,8,40,30")] {
+            stage.done(&format!("render scene.toml -o {part}.exr --film --crop {crop} {adaptive}"));
+        }
+        stage.run("merge a.exr b.exr -o x.exr").fails(1, &["b.exr: an adaptive picture has no parts"]);
+        stage.done("merge a.exr -o x.exr");
+    }
+}
+
+/// The film of a scene with a lens file is the same in any folder, and however the scene is named.
+#[test]
+fn lens_files_may_be_anywhere() {
+    let stage = Stage::new("film-lens");
+    for folder in ["a", "b"] {
+        std::fs::create_dir_all(stage.path(&format!("{folder}/lenses"))).unwrap();
+        stage.write(&format!("{folder}/lenses/single.dat"), "60 6 1.5 20\n0 2 0 10\n-60 50 1 20\n");
+        let camera = "[camera]\nlens = \"lenses/single.dat\"\nfilm = 35";
+        let scene = SCENE.replacen("[camera]", camera, 1).replacen("fov", "#fov", 1);
+        stage.write(&format!("{folder}/s.toml"), &scene);
+    }
+    stage.done("render a/s.toml -o a/1.exr --film --part 1/2");
+    let b = stage.path("b/s.toml").display().to_string();
+    let two = ["render", &b, "-o", "b/2.exr", "--film", "--part", "2/2"];
+    assert!(stage.command("").args(two).status().unwrap().success());
+    stage.done("merge a/1.exr b/2.exr -o merged.exr");
+    stage.done("render a/s.toml -o whole.exr --film");
+    assert!(stage.bytes("merged.exr") == stage.bytes("whole.exr"));
+}
+
+/// A film that has all its samples knows its environment map by name alone.
+#[test]
+fn resume_is_told_where_the_environment_is() {
+    let stage = Stage::new("film-environment");
+    std::fs::create_dir_all(stage.path("maps")).unwrap();
+    stage.done("render scene.toml -q --size 32x16 -o maps/sky.exr");
+    stage.done("render model.obj -o m.exr --film --size 16 --samples 2 --environment maps/sky.exr");
+    stage.run("resume m.exr --samples 3").fails(1, &["sky.exr: no such file"]);
+    stage.done("resume m.exr --samples 3 --environment maps/sky.exr");
+}
+
 #[test]
 fn a_damaged_part_is_named_and_rendered_again() {
     let stage = Stage::new("film-damaged");

@@ -14,6 +14,8 @@ fn layers_have_the_names_of_pbrts() {
     let stage = Stage::new("layers");
     stage.done("render scene.toml -q -o plain.exr");
     assert_eq!(names(&stage, "plain.exr"), ["B", "G", "R"]);
+    let told = stage.done("render scene.toml -o plain.png --layers geometry").stderr;
+    assert!(told.contains("PNG pictures have no layers"), "{told}");
     stage.done("render scene.toml -q -o layers.exr --layers geometry");
     let found = names(&stage, "layers.exr");
     for name in ["R", "Albedo.G", "N.X", "Ns.Z", "P.Y", "Variance.B", "u", "v", "depth"] {

@@ -24,6 +24,14 @@ fn scenes_come_from_stdin() {
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         assert!(stage.bytes("file.ppm") == stage.bytes("piped.ppm"), "{file}");
     }
+    // A shell puts a file in the place of a pipe.
+    #[cfg(unix)]
+    {
+        let mut command = stage.command("render /dev/stdin -q --size 16 --samples 1 -o redirected.ppm");
+        let model = std::fs::File::open(stage.path("model.obj")).unwrap();
+        assert!(command.stdin(model).status().unwrap().success());
+        assert!(stage.bytes("redirected.ppm") == stage.bytes("piped.ppm"));
+    }
     // Names in it are relative to the current folder.
     let imports = format!("{SCENE}\n[[mesh]]\nfile = \"model.obj\"\n");
     let run = piped(&stage, "render - -q --width 8 --samples 1", &imports);

@@ -175,7 +175,7 @@ fn frames_of_an_animation_are_framed_as_one() {
     stage.done(&format!("{frames} --frames 3..5 -o later/#####.png"));
     assert!(stage.path("later/00003.png").exists() && stage.path("later/00004.png").exists());
     stage.run("render moving.gltf --frames 0..2 --at 1").fails(2, &["--at"]);
-    stage.run("render moving.gltf --frames 2..2").fails(2, &["whole number"]);
+    stage.run("render moving.gltf --frames 2..2").fails(2, &["the one after the last"]);
     stage.run("render moving.gltf --frames 0..2 -o - --format pfm").fails(2, &["names of their own"]);
 }
 

@@ -1,13 +1,13 @@
 //! Selection of an animation, variant, camera or scene by its name or number.
 
 use super::file::Document;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::suggest::nearest;
 
 /// The index of the item with this name, or else, if the name is a number, of the item with this index, from 0.
 ///
 /// # Errors
-/// If there is no such item; the hint lists the items.
+/// `Request` if there is no such item; the hint lists the items.
 pub(crate) fn choose<'a>(
     document: &Document,
     what: &str,
@@ -23,6 +23,7 @@ pub(crate) fn choose<'a>(
         return Ok(index);
     }
     let error = document.invalid(list, format!("there is no {what} {asked:?}"));
+    let error = Error { kind: ErrorKind::Request, ..error };
     let mut known: Vec<String> = names
         .iter()
         .enumerate()

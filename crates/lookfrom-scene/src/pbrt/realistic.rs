@@ -38,7 +38,8 @@ impl Reader<'_, '_> {
         }
         let shape = self.aperture_shape(p)?;
         Ok(Projection::LensSystem(Arc::new(LensSystem {
-            name,
+            // Without its folders, as in our own scenes.
+            name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             surfaces,
             stop_diameter: Some(stop),
             shape,

@@ -83,7 +83,9 @@ impl Reader<'_, '_> {
     fn lens_surfaces(&mut self, value: Value<'_>) -> Result<(String, Vec<LensSurface>)> {
         let path = self.resolve(value, "the name of a lens file")?;
         let surfaces = lens::read(&path, self.context).map_err(|error| value.blame(error))?;
-        Ok((path.display().to_string(), surfaces))
+        // Without its folders, which differ between machines that render parts of one picture.
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok((name, surfaces))
     }
 
     /// A shape by its name, or the picture of one.

@@ -180,7 +180,13 @@ impl Work<'_> {
             match self.pass(pass.clone())? {
                 Pass::Cancelled => return Ok((samples, StopReason::Cancelled)),
                 Pass::Complete => {}
-                Pass::Done => clock.taken += pass.end - pass.start,
+                Pass::Done => {
+                    clock.taken += pass.end - pass.start;
+                    // One of a single part has had none meanwhile.
+                    if pass.end < wanted.end && self.progress.wants_checkpoint() {
+                        self.progress.checkpoint(&locked(&self.film).0);
+                    }
+                }
             }
             (start, samples) = (pass.end, pass.end - first);
             if stop.time.is_some_and(|time| clock.started.elapsed() >= time) && start < wanted.end {

@@ -111,7 +111,7 @@ impl Format {
     }
 
     /// The name of the format, as people write it.
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Png | Self::Png16 => "PNG",
             Self::Jpeg(_) => "JPEG",

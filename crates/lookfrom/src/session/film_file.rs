@@ -61,13 +61,18 @@ impl FilmFile {
     /// is forgotten.
     ///
     /// # Errors
-    /// `Invalid` where it is of another picture, says what differs, or has samples that this one has already. Then no sample has
+    /// `Invalid` where it is of another picture (says what differs), is another part of an adaptive one, or has samples that this one has already. Then no sample has
     /// been added.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         self.provenance.check_same(&other.provenance)?;
         if !self.provenance.adapts_as(&other.provenance) {
             let message = "films with different limits of noise, or different allocations of samples";
             return Err(Error::invalid(&Location::default(), message));
+        }
+        if self.provenance.is_adaptive() && self.film.area() != other.film.area() {
+            let message = "an adaptive picture has no parts: all of it decides where its samples are";
+            return Err(Error::invalid(&Location::default(), message)
+                .hint("render the parts without `--noise` and `--allocation adaptive`"));
         }
         self.film.enlarge(other.film.area());
         self.film.merge(&other.film)?;

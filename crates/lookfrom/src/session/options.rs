@@ -276,6 +276,13 @@ impl Options {
         self.view.is_some() || self.azimuth.is_some() || self.elevation.is_some()
     }
 
+    /// Whether they ask for layers besides the picture.
+    pub(super) fn asks_for_layers(&self) -> bool {
+        self.layers.is_some_and(|layers| layers != Layers::None)
+            || !self.light_paths.is_empty()
+            || self.spectral_buckets.is_some_and(|buckets| buckets > 0)
+    }
+
     /// The view that a scene without a camera is framed from.
     pub(super) fn viewpoint(&self) -> Viewpoint {
         let mut viewpoint = self.view.unwrap_or(Viewpoint::THREE_QUARTER);

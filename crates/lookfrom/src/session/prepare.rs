@@ -107,6 +107,9 @@ fn unsuitable(scene: &mut Scene, file: &Path, options: &Options) -> Vec<String> 
                 .to_owned(),
         );
     }
+    if let Some(format) = options.format.filter(|format| !format.has_layers() && options.asks_for_layers()) {
+        messages.push(format!("{} pictures have no layers: they are in OpenEXR (.exr) alone", format.name()));
+    }
     if options.bounds.is_some() && scene.camera.is_some() && !options.chooses_view() && !options.floor {
         messages.push(
             "`bounds` are for what is framed: this scene has a camera, which `view` or `camera` replaces"

@@ -97,6 +97,11 @@ impl Provenance {
         self.text(header::NOISE)
     }
 
+    /// Whether the picture decides how many samples a pixel gets.
+    pub(super) fn is_adaptive(&self) -> bool {
+        [header::NOISE, header::ALLOCATION].iter().any(|name| self.text(name).is_some())
+    }
+
     /// Whether both decide alike how many samples a pixel gets: by a limit of noise, by an allocation, or by none.
     pub(super) fn adapts_as(&self, other: &Self) -> bool {
         let texts =

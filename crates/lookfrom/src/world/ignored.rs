@@ -6,13 +6,27 @@ use lookfrom_scene::scene::Scene;
 use lookfrom_scene::settings::Integrator;
 use lookfrom_scene::{Location, Warning};
 
+/// Whether the camera and the middle of a scene are where a light with a portal is not seen.
+fn is_turned_away(light: &LightKind, scene: &Scene, camera: &Camera) -> bool {
+    let LightKind::Environment { portal: Some([a, b, _, d]), .. } = light else { return false };
+    let inward = (*b - *a).cross(*d - *a);
+    let middle = scene.bounds().center();
+    let eye = camera.look(middle).map_or(middle, |look| look.lookfrom);
+    [middle, eye].iter().all(|point| (*point - *a).dot(inward) < 0.0)
+}
+
 pub(super) fn warn(scene: &Scene, camera: &Camera, warnings: &mut Vec<Warning>) {
     let integrator = scene.render.integrator;
     let mut warn = |at: Option<&Location>, message: String| {
         warnings.extend(at.map(|at| Warning::new(at, message)));
     };
-    let ambient = scene.lights.iter().find(|light| matches!(light.kind, LightKind::Ambient { .. }));
-    let without_size = scene.lights.iter().find(|light| !light.kind.has_size());
+    // What was added to a scene has no place in its file.
+    let mut lights = scene.lights.iter().filter(|light| !light.at.file.is_empty());
+    let ambient = lights.clone().find(|light| matches!(light.kind, LightKind::Ambient { .. }));
+    let without_size = lights.clone().find(|light| !light.kind.has_size());
+    let hidden = lights.find(|light| is_turned_away(&light.kind, scene, camera));
+    let message = "no light comes through the `portal`: the scene is behind it; its corners are counter-clockwise as seen from inside";
+    warn(hidden.map(|light| &light.at), message.to_owned());
     let at_work = scene.media.iter().find(|medium| medium.scatters() || medium.emits());
     if matches!(integrator, Integrator::Path | Integrator::SimplePath | Integrator::RandomWalk) {
         let message = "ambient light belongs to Whitted's model: path tracing ignores it";

@@ -293,6 +293,19 @@ fn every_checkpoint_leads_to_the_same_end() {
     }
 }
 
+/// A small picture by one thread has one part in each pass.
+#[test]
+fn pictures_of_one_tile_have_checkpoints() {
+    let options = Options { width: Some(16), height: Some(16), samples: Some(200), ..Options::default() };
+    let session = session(&options, 1);
+    let checkpoints = Checkpoints { session: &session, files: Mutex::default() };
+    let finished = session.render(&checkpoints).expect("a picture");
+    let files = checkpoints.files.into_inner().expect("a lock");
+    assert!(files.len() > 2, "{}", files.len());
+    let resumed = session.resume(read(&files[2]), &()).expect("a picture");
+    assert!(bytes(&session, &resumed) == bytes(&session, &finished));
+}
+
 #[test]
 fn more_samples_are_those_of_one_render() {
     let of = |samples| Options { samples: Some(samples), ..Options::default() };
