@@ -2,10 +2,12 @@
 //! files are never overwritten.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufWriter, Cursor, ErrorKind, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use lookfrom::session::{Format, Series};
@@ -341,8 +343,12 @@ fn partial_prefix(path: &Path) -> String {
 
 /// Removes what processes that were killed while they wrote into this folder have left: temporary files that nobody holds
 /// a lock on, which ends with its process, and that were not made at this moment; or, where the file system has no locks,
-/// that nobody has written to for ten minutes.
+/// that nobody has written to for ten minutes. Once for each folder: to read one takes as long as it has files.
 fn remove_left_partials(folder: &Path) {
+    static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if !DONE.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        return;
+    }
     const MADE: Duration = Duration::from_secs(2);
     const LEFT: Duration = Duration::from_secs(600);
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

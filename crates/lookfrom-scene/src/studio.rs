@@ -136,6 +136,17 @@ fn framing_from(bounds: Bounds, aspect: f64, basis: [DVec3; 3], viewpoint: &View
     framing.camera()
 }
 
+/// The names of lights that are added to scenes without any.
+const FILL_LIGHT: &str = "fill";
+const ROOM_LIGHT: &str = "room";
+const LAMP_LIGHT: &str = "lamp";
+
+/// Whether a light was added to a scene that lacked light, and is not its own.
+pub fn is_added(light: &Light) -> bool {
+    light.at == Location::default()
+        && [FILL_LIGHT, ROOM_LIGHT, LAMP_LIGHT].map(Some).contains(&light.name.as_deref())
+}
+
 fn add(scene: &mut Scene, name: &str, kind: LightKind) {
     scene.lights.push(Light {
         name: Some(name.to_owned()),
@@ -147,7 +158,7 @@ fn add(scene: &mut Scene, name: &str, kind: LightKind) {
 
 fn add_lamp(scene: &mut Scene, position: DVec3) {
     let intensity = Color::gray(LAMP);
-    add(scene, "lamp", LightKind::Point { position, intensity, falloff: Falloff::None });
+    add(scene, LAMP_LIGHT, LightKind::Point { position, intensity, falloff: Falloff::None });
 }
 
 /// The bounds to frame, and unit vectors to the right, up and towards the camera.
@@ -195,10 +206,10 @@ impl StudioFrame {
         } else {
             LightKind::Ambient { color: FILL_HORIZON }
         };
-        add(scene, "fill", fill);
+        add(scene, FILL_LIGHT, fill);
         match self.eye_inside(scene) {
             Some(eye) => {
-                add(scene, "room", LightKind::Ambient { color: [ROOM; 3] });
+                add(scene, ROOM_LIGHT, LightKind::Ambient { color: [ROOM; 3] });
                 add_lamp(scene, eye);
             }
             None => {

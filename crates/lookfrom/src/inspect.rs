@@ -58,12 +58,12 @@ pub fn inspect(renderer: &Renderer, id: SampleId) -> Inspection {
     inspection
 }
 
-/// An inspection without segments to draw, and without the tests of primitives, which take most of the time.
-fn inspect_without_tests(renderer: &Renderer, id: SampleId) -> Inspection {
+/// An inspection without segments to draw, the tests of primitives, and the formulas of lights, which take most of the time.
+fn inspect_in_short(renderer: &Renderer, id: SampleId) -> Inspection {
     trace(renderer, id, false)
 }
 
-fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
+fn trace(renderer: &Renderer, id: SampleId, is_whole: bool) -> Inspection {
     let mut events: Vec<Event> = Vec::new();
     let (traced, _) = renderer.trace_events(&[id], &mut events);
     let traced = traced[0];
@@ -76,7 +76,7 @@ fn trace(renderer: &Renderer, id: SampleId, with_tests: bool) -> Inspection {
         }),
     };
 
-    let mut log = TraceLogBuilder::new(renderer, (traced.mode, renderer.time(id)), with_tests);
+    let mut log = TraceLogBuilder::new(renderer, (traced.mode, renderer.time(id)), is_whole);
     events.iter().for_each(|event| log.record(event));
     let told = log.end();
     let film = renderer.rgb(told.sum * traced.weight, &traced.mode);

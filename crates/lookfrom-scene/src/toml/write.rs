@@ -71,7 +71,7 @@ impl Sources<'_> {
     /// The path and content of the file with this name: a path, or the end of one.
     fn file_of(&self, name: &str) -> Option<(String, Vec<u8>)> {
         let last = Path::new(name).file_name()?;
-        let is_whole = |path: &&PathBuf| path.as_path() == Path::new(name);
+        let is_whole = |path: &&PathBuf| path.as_os_str() == name;
         let path = self.paths.iter().find(is_whole);
         let path = path.or_else(|| self.paths.iter().find(|path| path.file_name() == Some(last)))?;
         Some((path.display().to_string(), self.read(path)?))

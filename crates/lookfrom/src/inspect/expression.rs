@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 use serde::Serialize;
 
-use super::inspect_without_tests;
+use super::inspect_in_short;
 use super::report::{Addition, Inspection, MetReport, RayReport};
 use super::scatter::{FoundReport, LightSampleReport};
 use super::segments::RayKind;
@@ -76,7 +76,7 @@ fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribu
 /// The expression of the largest contribution to a sample; `None` without light, and where the camera sees the light
 /// itself, straight or by mirrors and sharp glass.
 pub(crate) fn light_seen_by_bounces(renderer: &Renderer, id: SampleId) -> Option<String> {
-    let inspection = inspect_without_tests(renderer, id);
+    let inspection = inspect_in_short(renderer, id);
     let largest = inspection.contributions.first()?;
     let light = inspection
         .additions

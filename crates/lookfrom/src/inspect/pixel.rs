@@ -7,7 +7,7 @@ use lookfrom_scene::{Error, ErrorKind, Location, Result};
 use serde::Serialize;
 
 use super::expression::{self, Contribution, LARGEST, brightness};
-use super::{Inspection, inspect_without_tests};
+use super::{Inspection, inspect_in_short};
 use crate::core::math::luminance;
 use crate::film::{Film, FilmTile, Picture};
 use crate::post::develop::{srgb8_before, srgba8};
@@ -82,7 +82,7 @@ pub fn inspect_pixel(renderer: &Renderer, pixel: [u32; 2], samples: Range<u32>) 
     let mut all = Vec::new();
     let mut contributions: Vec<Contribution> = Vec::new();
     for sample in samples.clone() {
-        let inspection = inspect_without_tests(renderer, SampleId { pixel, sample });
+        let inspection = inspect_in_short(renderer, SampleId { pixel, sample });
         add(&mut tile, &inspection);
         all.push(SampleSummary::new(&inspection));
         contributions.extend(inspection.contributions);

@@ -32,8 +32,8 @@ pub(super) struct TraceLogBuilder<'a> {
     mode: SpectralMode,
     /// The time of the sample while the shutter is open, from 0 to 1.
     time: f32,
-    /// Whether the tests of primitives are reported.
-    with_tests: bool,
+    /// Whether the tests of primitives and the formulas of lights are reported.
+    is_whole: bool,
     rays: BTreeMap<u64, RayReport>,
     /// The contribution of each ray's own hit.
     added: BTreeMap<u64, Spectrum>,
@@ -64,13 +64,13 @@ fn is_path(integrator: Integrator) -> bool {
 
 impl<'a> TraceLogBuilder<'a> {
     /// An empty log.
-    pub(super) fn new(renderer: &'a Renderer, (mode, time): (SpectralMode, f32), with_tests: bool) -> Self {
+    pub(super) fn new(renderer: &'a Renderer, (mode, time): (SpectralMode, f32), is_whole: bool) -> Self {
         Self {
             renderer,
             world: renderer.world(),
             mode,
             time,
-            with_tests,
+            is_whole,
             rays: BTreeMap::new(),
             added: BTreeMap::new(),
             sum: Spectrum::BLACK,

@@ -72,7 +72,7 @@ impl FilmFile {
         if self.provenance.is_adaptive() && self.film.area() != other.film.area() {
             let message = "an adaptive picture has no parts: all of it decides where its samples are";
             return Err(Error::invalid(&Location::default(), message)
-                .hint("render the parts without `--noise` and `--allocation adaptive`"));
+                .hint("render parts with the same number of samples for all pixels"));
         }
         self.film.enlarge(other.film.area());
         self.film.merge(&other.film)?;

@@ -4,7 +4,7 @@ use lookfrom_scene::camera::Camera;
 use lookfrom_scene::light::LightKind;
 use lookfrom_scene::scene::Scene;
 use lookfrom_scene::settings::Integrator;
-use lookfrom_scene::{Location, Warning};
+use lookfrom_scene::{Location, Warning, studio};
 
 /// Whether the camera and the middle of a scene are where a light with a portal is not seen.
 fn is_turned_away(light: &LightKind, scene: &Scene, camera: &Camera) -> bool {
@@ -20,8 +20,7 @@ pub(super) fn warn(scene: &Scene, camera: &Camera, warnings: &mut Vec<Warning>) 
     let mut warn = |at: Option<&Location>, message: String| {
         warnings.extend(at.map(|at| Warning::new(at, message)));
     };
-    // What was added to a scene has no place in its file.
-    let mut lights = scene.lights.iter().filter(|light| !light.at.file.is_empty());
+    let mut lights = scene.lights.iter().filter(|light| !studio::is_added(light));
     let ambient = lights.clone().find(|light| matches!(light.kind, LightKind::Ambient { .. }));
     let without_size = lights.clone().find(|light| !light.kind.has_size());
     let hidden = lights.find(|light| is_turned_away(&light.kind, scene, camera));

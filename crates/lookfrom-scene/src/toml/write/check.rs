@@ -1,5 +1,6 @@
 //! The proof that a document is read back to the scene that it was written from: written again, it is the same, and so are its files.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{Sources, Written, write};
@@ -15,7 +16,7 @@ impl Written {
     /// Errors of the reader, and `Unsupported` for a document that says something else than the scene: with the first line that does.
     pub fn check(&self, folder: &str, budget: &Budget) -> Result<()> {
         let name = format!("{folder}.toml");
-        let files = OfDocument { written: self, name: &name };
+        let files = OfDocument::new(self, &name);
         let mut context = LoadContext::within(budget, &files);
         let scene = load::scene(Path::new(&name), &mut context)?;
         let paths = self.files.iter().map(|(name, _)| PathBuf::from(name)).collect();
@@ -41,30 +42,25 @@ impl Written {
 }
 
 /// The files of a document that is in memory.
-struct OfDocument<'a> {
-    written: &'a Written,
-    name: &'a str,
-}
+struct OfDocument<'a>(BTreeMap<&'a Path, &'a [u8]>);
 
-impl OfDocument<'_> {
-    fn find(&self, path: &Path) -> Option<&[u8]> {
-        if path == Path::new(self.name) {
-            return Some(self.written.text.as_bytes());
-        }
-        let found = self.written.files.iter().find(|(name, _)| Path::new(name) == path);
-        found.map(|(_, bytes)| &bytes[..])
+impl<'a> OfDocument<'a> {
+    /// The document has a name of its own.
+    fn new(written: &'a Written, name: &'a str) -> Self {
+        let files = written.files.iter().map(|(name, bytes)| (Path::new(name), &bytes[..]));
+        Self(files.chain([(Path::new(name), written.text.as_bytes())]).collect())
     }
 }
 
 impl Files for OfDocument<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
-        let found = self.find(path).filter(|bytes| bytes.len() as u64 <= limit);
+        let found = self.0.get(path).filter(|bytes| bytes.len() as u64 <= limit);
         found
-            .map(<[u8]>::to_vec)
+            .map(|bytes| bytes.to_vec())
             .ok_or_else(|| Error::new(ErrorKind::Io, &Location::file(path), "no such file"))
     }
 
     fn length(&self, path: &Path) -> Option<u64> {
-        self.find(path).map(|bytes| bytes.len() as u64)
+        self.0.get(path).map(|bytes| bytes.len() as u64)
     }
 }

@@ -78,12 +78,18 @@ impl TraceLogBuilder<'_> {
         sample: &LightSample,
         incomplete_pdf: IncompletePdf,
     ) -> Vec<Derivation> {
+        if !self.is_whole {
+            return Vec::new();
+        }
         let light = &self.world.lights[light as usize];
         light.derivations(&self.world.textures, at, sample, &self.mode, incomplete_pdf)
     }
 
     /// The formula of an area light's radiance.
     pub(super) fn emission(&self, light: u32, radiance: Spectrum) -> Option<Derivation> {
+        if !self.is_whole {
+            return None;
+        }
         self.world.lights[light as usize].emission(&self.world.textures, radiance, &self.mode)
     }
 
@@ -129,6 +135,9 @@ impl TraceLogBuilder<'_> {
     }
 
     fn choice_at(&self, at: &LightSampleContext, light: u32) -> Vec<Derivation> {
+        if !self.is_whole {
+            return Vec::new();
+        }
         let world = self.world;
         world.light_choice().derivations(&world.lights, &world.textures, at, light)
     }
@@ -185,7 +194,7 @@ impl TraceLogBuilder<'_> {
         // A ray of a probe stops at a first surface that blocks it: only one that reaches the light has a rest.
         let rest = (!hit.is_hit()).then(|| self.factor(passed));
         let departure = self.departure(shadow.address, &shadow.ray);
-        let traversal = match self.with_tests {
+        let traversal = match self.is_whole {
             true => candidate::of_shadow(world, &shadow.ray, self.time),
             false => TraversalReport::default(),
         };

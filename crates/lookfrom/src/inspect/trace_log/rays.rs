@@ -32,7 +32,7 @@ impl TraceLogBuilder<'_> {
             (_, 0) => RayKind::Reflected,
             _ => RayKind::Refracted,
         };
-        let (traversal, candidates) = match self.with_tests {
+        let (traversal, candidates) = match self.is_whole {
             true => candidate::candidates(self.world, (&path.ray, self.time), hit),
             false => Default::default(),
         };
