@@ -1,4 +1,4 @@
-//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023). Errors have the location of the invalid value.
+//! Reader for scenes of pbrt-v4 (Pharr, Jakob & Humphreys 2023), and of pbrt-v3. Errors have the location of the invalid value.
 //!
 //! `text` and `lexer` handle bytes and tokens, `params` the typed parameters, `directive` executes directives on the
 //! `state`; the other files each handle a part of the vocabulary. Features of pbrt that this program does not render are
@@ -43,6 +43,7 @@ use self::file::Model;
 use self::missing::Missing;
 use self::state::{Opened, Options, State};
 use self::text::Place;
+use self::version3::Version;
 use crate::budget::Reserved;
 use crate::chain;
 use crate::error::{Error, Location, Result};
@@ -54,11 +55,11 @@ use crate::packed;
 use crate::scene::{CurveId, ImageId, MaterialId, MediumId, ObjectId, Scene, TextureId, VertexNormals};
 use crate::settings::ColorMode;
 
-/// Reads a scene of pbrt-v4 with all its includes. File names are relative to the folder of `path`, or else to the folder
+/// Reads a scene of pbrt-v4, or of pbrt-v3 by what is nearest, with all its includes. File names are relative to the folder of `path`, or else to the folder
 /// of the file that contains them.
 ///
 /// # Errors
-/// With line and column: `Syntax` for malformed files, `Invalid` for invalid values (and for scenes of pbrt-v3), `Limit`
+/// With line and column: `Syntax` for malformed files, `Invalid` for invalid values (and for words of pbrt-v3 in scenes of pbrt-v4), `Limit`
 /// for excessive sizes and nesting, and the errors of the files that are named. All missing files are reported at once, as
 /// [`Error::more`].
 pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
@@ -106,6 +107,7 @@ pub(crate) fn from_bytes(
         without_media: None,
         missing: Missing::default(),
         film_diagonal: 35.0,
+        version: Version::default(),
     };
     let result = reader.text(path, bytes).and_then(|()| reader.finish(path));
     if let Some(error) = reader.missing.and(result) {
@@ -172,6 +174,8 @@ struct Reader<'s, 'f> {
     missing: Missing,
     /// The diagonal of the film in millimetres.
     film_diagonal: f64,
+    /// The version of pbrt that the scene is written for.
+    version: Version,
 }
 
 /// A material that has been defined or referred to.

@@ -7,9 +7,9 @@ use glam::{DMat4, DVec3};
 use super::lexer::{Lexer, Token};
 use super::params::{self, Inherited, Parameters};
 use super::spectra::Space;
-use super::state::{Entity, Opened, TARGETS};
+use super::state::{Entity, Opened, Options, TARGETS};
 use super::text::Place;
-use super::{Reader, transform, version3};
+use super::{Reader, transform};
 use crate::camera::Target;
 use crate::error::{ErrorKind, Location, Result};
 use crate::motion::Motion;
@@ -79,9 +79,11 @@ impl Reader<'_, '_> {
             b"AttributeEnd" => self.end("Attribute", place)?,
             b"TransformBegin" | b"TransformEnd" => {
                 let word = String::from_utf8_lossy(word);
-                let meant = word.replace("Transform", "Attribute");
-                self.context
-                    .notice(&place.location(), format!("{word} is an old word for {meant}, as in pbrt-v4"));
+                if !self.is_old() {
+                    let meant = word.replace("Transform", "Attribute");
+                    let message = format!("{word} is an old word for {meant}, as in pbrt-v4");
+                    self.context.notice(&place.location(), message);
+                }
                 if word.ends_with("Begin") {
                     self.begin("Attribute", place)?;
                 } else {
@@ -235,7 +237,9 @@ impl Reader<'_, '_> {
                 self.state = state;
             }
             _ => {
-                version3::check_directive(word, place)?;
+                if self.note_directive(word, place)? {
+                    return Ok(());
+                }
                 let word = String::from_utf8_lossy(word);
                 let short: String = word.chars().take(40).collect();
                 let error = place.syntax(format!("expected a directive, found `{short}`"));
@@ -268,19 +272,21 @@ impl Reader<'_, '_> {
 
     /// A quoted type and its parameters.
     pub(super) fn entity(
-        &self,
+        &mut self,
         word: &[u8],
         place: &Place,
         lexer: &mut Lexer<'_>,
         target: Option<usize>,
     ) -> Result<(String, Parameters)> {
         let start = lexer.here();
-        let kind = lexer.string("a quoted kind")?;
+        let mut kind = lexer.string("a quoted kind")?;
         let directive = String::from_utf8_lossy(word);
-        version3::check_word(&directive, &kind, &lexer.place(start))?;
-        let own = params::read(lexer)?;
-        for parameter in &own {
-            version3::check_parameter(&directive, parameter.kind.word(), &parameter.name, &parameter.place)?;
+        self.note_word(&directive, &kind, &lexer.place(start))?;
+        let mut own = params::read(lexer)?;
+        own.iter().try_for_each(|parameter| self.note_parameter(&directive, parameter))?;
+        // What is before the world waits until it is known for which version it is written.
+        if self.is_old() && target.is_some() {
+            self.translate((&directive, place), &mut kind, &mut own);
         }
         let none = Inherited::default();
         let inherited = target.map_or(&none, |target| &self.state.attributes[target]);
@@ -289,7 +295,7 @@ impl Reader<'_, '_> {
     }
 
     fn world_entity(
-        &self,
+        &mut self,
         word: &[u8],
         place: &Place,
         lexer: &mut Lexer<'_>,
@@ -299,7 +305,7 @@ impl Reader<'_, '_> {
         self.entity(word, place, lexer, Some(target))
     }
 
-    fn option(&self, word: &[u8], place: &Place, lexer: &mut Lexer<'_>) -> Result<Entity> {
+    fn option(&mut self, word: &[u8], place: &Place, lexer: &mut Lexer<'_>) -> Result<Entity> {
         self.before_world_only(word, place)?;
         let (kind, parameters) = self.entity(word, place, lexer, None)?;
         Ok(Entity { kind, parameters })
@@ -340,6 +346,7 @@ impl Reader<'_, '_> {
         let target = target
             .ok_or_else(|| Self::unknown(&lexer.place(start), "target of Attribute", &name, TARGETS))?;
         let own = params::read(lexer)?;
+        own.iter().try_for_each(|parameter| self.note_parameter("Attribute", parameter))?;
         // The colour space of rgb values is that of their definition, not that of their use.
         let parameters =
             Parameters::new(String::new(), place.clone(), self.state.space, own, &Inherited::default());
@@ -458,7 +465,19 @@ impl Reader<'_, '_> {
 
     /// Sets camera, film and the other options before the world, or their defaults.
     fn settle_options(&mut self) -> Result<()> {
-        let options = std::mem::take(&mut self.options);
+        let mut options = std::mem::take(&mut self.options);
+        if self.is_old() {
+            let Options { film, filter, sampler, integrator, camera, .. } = &mut options;
+            let camera = camera.as_mut().map(|(entity, _)| entity);
+            let entities = [film.as_mut(), filter.as_mut(), sampler.as_mut(), integrator.as_mut(), camera];
+            let words = ["Film", "PixelFilter", "Sampler", "Integrator", "Camera"];
+            for (word, entity) in words.into_iter().zip(entities) {
+                if let Some(Entity { kind, parameters }) = entity {
+                    let place = parameters.place.clone();
+                    self.translate((word, &place), kind, parameters.own_mut());
+                }
+            }
+        }
         self.film(options.film.as_ref(), options.camera.as_ref().map(|(entity, _)| entity))?;
         self.filter(options.filter.as_ref())?;
         self.sampler(options.sampler.as_ref())?;

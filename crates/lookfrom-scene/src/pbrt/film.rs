@@ -4,6 +4,7 @@ use super::Reader;
 use super::params::{ParameterType, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
+use super::version3::Version;
 use crate::error::Result;
 use crate::settings::{Filter, FilterShape, Layers, PixelBounds, Sensor, SpectralFilm};
 use crate::spectrum::CameraSensor;
@@ -36,7 +37,13 @@ impl Reader<'_, '_> {
             }
             None => 1.0,
         };
+        // In version 3 it does not matter how long the shutter is open.
+        let shutter = if self.version == Version::Three { 1.0 } else { shutter };
         image.sensor.imaging_ratio = shutter;
+        if self.version == Version::Three {
+            (image.width, image.height) = (640, 480);
+        }
+        let default_size = [image.width as i32, image.height as i32];
         let Some(Entity { kind, parameters }) = film else { return Ok(()) };
         match &**kind {
             "rgb" => {}
@@ -48,8 +55,8 @@ impl Reader<'_, '_> {
         self.film_diagonal = f64::from(parameters.positive("diagonal", 35.0)?);
         let sensor = Self::sensor(parameters, shutter)?;
         let image = &mut self.scene.image;
-        image.width = parameters.integer("xresolution", 1280, 1, LARGEST)? as u32;
-        image.height = parameters.integer("yresolution", 720, 1, LARGEST)? as u32;
+        image.width = parameters.integer("xresolution", default_size[0], 1, LARGEST)? as u32;
+        image.height = parameters.integer("yresolution", default_size[1], 1, LARGEST)? as u32;
         image.crop = crop(parameters, image.width, image.height)?;
         image.sensor = sensor;
         if parameters.space != SRGB {
@@ -88,7 +95,10 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn filter(&mut self, filter: Option<&Entity>) -> Result<()> {
-        self.scene.image.filter = FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5);
+        self.scene.image.filter = match self.version {
+            Version::Three => FilterShape::Box.of_radius(0.5),
+            _ => FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5),
+        };
         let Some(Entity { kind, parameters }) = filter else { return Ok(()) };
         let (shape, radius) = match &**kind {
             "box" => (FilterShape::Box, 0.5),

@@ -13,13 +13,16 @@ use super::spectra::brightness;
 use super::text::Place;
 use super::{Reader, transform};
 use crate::error::Result;
-use crate::light::{Edge, Falloff, Light, LightKind, Power, Projected, Sky, is_rectangle};
+use crate::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky, is_rectangle};
 use crate::material::Color;
 use crate::scene::ImageId;
 use crate::shape::Emission;
 use crate::texture::TexelFilter;
 
 const KINDS: &[&str] = &["distant", "goniometric", "infinite", "point", "projection", "spot"];
+
+/// From the space of a map in latitude and longitude, with y up, to that of a light of pbrt-v3, which has z up, and longitudes from x to y.
+const OLD_FROM_PANORAMA: DMat4 = DMat4::from_cols(DVec4::NEG_Y, DVec4::Z, DVec4::X, DVec4::W);
 
 /// The default colour of lights: the scene's white.
 const WHITE: Color = Color::Value([1.0; 3]);
@@ -105,6 +108,16 @@ impl Reader<'_, '_> {
             _ => return Err(p.refuse("portal", &format!("4 corners, found {}", portal.len()))),
         };
         let (sky, color) = match (p.file_name()?, written) {
+            (Some(_), color) if self.is_old() => {
+                let image = self.light_picture(p, false)?;
+                let scale = match color {
+                    Some(Color::Value(rgb)) => rgb,
+                    _ => [1.0; 3],
+                };
+                let rows = MapRows::Bands;
+                let world_from_light = world_from_light * OLD_FROM_PANORAMA;
+                (Sky::Image { image, scale, world_from_light, rows }, WHITE)
+            }
             (Some(_), Some(_)) => {
                 let error = p.refuse("L", "it without \"filename\"");
                 return Err(error.hint("take one of the two out; \"float scale\" makes a picture brighter"));

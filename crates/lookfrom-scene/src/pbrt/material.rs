@@ -59,7 +59,11 @@ impl Reader<'_, '_> {
             error.hint("add \"string type\" \"diffuse\", or whichever kind it is")
         })?;
         let name_place = lexer.place(start);
-        super::version3::check_word("Material", &kind, &name_place)?;
+        self.note_word("Material", &kind, &name_place)?;
+        if self.is_old() && self.materials.get(&name).is_some_and(|named| named.is_made) {
+            // It is defined again, for what comes after.
+            self.materials.remove(&name);
+        }
         if let Some(named) = self.materials.get(&name).filter(|named| named.is_made) {
             let before = &self.scene.materials[named.id.index()].at;
             let error = name_place.invalid(format!("material {name:?} is already defined, at {before}"));
@@ -79,6 +83,12 @@ impl Reader<'_, '_> {
 
     fn look(&mut self, name: &str, kind: &str, parameters: &Parameters) -> Result<Material> {
         let p = parameters;
+        if self.is_old()
+            && let Some(old) = self.old_material(kind, p)?
+        {
+            let bump_mapping = self.old_bump_mapping(p)?;
+            return Ok(Material { bump_mapping, ..Material::new(name, p.place.location(), old) });
+        }
         let kind = match kind {
             "diffuse" => {
                 MaterialKind::Diffuse { reflectance: self.color(p, "reflectance", REFLECTANCE, Reflectance)? }
@@ -123,8 +133,10 @@ impl Reader<'_, '_> {
             "mix" => self.mix(p)?,
             "interface" => MaterialKind::Interface,
             "" | "none" => {
-                self.context
-                    .notice(&p.place.location(), "a material without a surface is called \"interface\"");
+                if !self.is_old() {
+                    let message = "a material without a surface is called \"interface\"";
+                    self.context.notice(&p.place.location(), message);
+                }
                 MaterialKind::Interface
             }
             "subsurface" => self.subsurface(p)?,

@@ -26,7 +26,10 @@ const KNOWING: &[&str] = &["volpath", "simplevolpath", "bdpt", "mlt"];
 
 impl Reader<'_, '_> {
     pub(super) fn make_medium(&mut self, name: &str, p: &Parameters) -> Result<()> {
-        let kind = p.string("type")?.unwrap_or_default().to_owned();
+        let kind = match p.string("type")?.unwrap_or_default() {
+            "heterogeneous" if self.is_old() => "uniformgrid".to_owned(),
+            kind => kind.to_owned(),
+        };
         if !KINDS.contains(&kind.as_str()) {
             return Err(Self::unknown(&p.place, "medium", &kind, KINDS.iter().copied()));
         }

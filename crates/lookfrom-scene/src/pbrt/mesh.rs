@@ -86,7 +86,7 @@ impl Reader<'_, '_> {
         Ok(self.push_mesh(mesh))
     }
 
-    fn push_mesh(&mut self, mesh: Mesh) -> Option<Geometry> {
+    pub(super) fn push_mesh(&mut self, mesh: Mesh) -> Option<Geometry> {
         if mesh.triangles.is_empty() {
             return None;
         }

@@ -12,7 +12,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::lexer::{Lexer, Token, parse_integer, parse_single};
 use super::spectra::Space;
 use super::text::Place;
-use super::version3;
+use super::version3::new_kind;
 use crate::error::{Error, Result};
 use crate::files::LoadContext;
 use crate::suggest::nearest;
@@ -96,12 +96,19 @@ pub(super) struct Parameter {
     pub(super) name: String,
     pub(super) place: Place,
     pub(super) values: Values,
+    /// The type that was written, if only pbrt-v3 has it.
+    pub(super) old_kind: Option<&'static str>,
     /// The colour space of its rgb values, if it was fixed at its definition (in `Attribute`).
     pub(super) space: Cell<Option<Space>>,
     used: Cell<bool>,
 }
 
 impl Parameter {
+    pub(super) fn new(kind: ParameterType, name: &str, place: Place, values: Values) -> Self {
+        let (name, space, used) = (name.to_owned(), Cell::new(None), Cell::new(false));
+        Self { kind, name, place, values, old_kind: None, space, used }
+    }
+
     /// Its numbers; empty for values of other types.
     pub(super) fn numbers(&self) -> &[f32] {
         match &self.values {
@@ -159,28 +166,27 @@ pub(super) fn read(lexer: &mut Lexer<'_>) -> Result<Vec<Parameter>> {
             let error = place.syntax(format!("expected a type and a name, found {declaration:?}"));
             return Err(error.hint("parameters are written as \"float radius\" 2"));
         };
-        let kind = kind_of(kind, name, &place)?;
+        let (kind, old_kind) = kind_of(kind, name, &place)?;
         let values = values(lexer, kind)?;
-        parameters.push(Parameter {
-            kind,
-            name: name.to_owned(),
-            place,
-            values,
-            space: Cell::new(None),
-            used: Cell::new(false),
-        });
+        parameters.push(Parameter { old_kind, ..Parameter::new(kind, name, place, values) });
     }
     Ok(parameters)
 }
 
-fn kind_of(word: &str, name: &str, place: &Place) -> Result<ParameterType> {
-    if let Some(&(_, kind)) = KINDS.iter().find(|entry| entry.0 == word) {
-        return Ok(kind);
+/// The type with a name, and that name if only pbrt-v3 has it.
+fn kind_of(word: &str, name: &str, place: &Place) -> Result<(ParameterType, Option<&'static str>)> {
+    let named = |word: &str| KINDS.iter().find(|entry| entry.0 == word).map(|entry| entry.1);
+    if let Some(kind) = named(word) {
+        return Ok((kind, None));
     }
     if word == "normal3" {
-        return Ok(ParameterType::Normal);
+        return Ok((ParameterType::Normal, None));
     }
-    version3::check_kind(word, name, place)?;
+    if let Some((old, new)) = new_kind(word, name)
+        && let Some(kind) = named(new)
+    {
+        return Ok((kind, Some(old)));
+    }
     let error = place.invalid(format!("{word:?} is not a type of parameters"));
     let words = || KINDS.iter().map(|entry| entry.0);
     Err(match nearest(word, words()) {
@@ -474,6 +480,11 @@ impl Parameters {
             Some(Values::Integers(values)) => values,
             _ => &[],
         })
+    }
+
+    /// The parameters themselves, without those that are inherited.
+    pub(super) fn own_mut(&mut self) -> &mut Vec<Parameter> {
+        &mut self.own
     }
 
     /// The parameters themselves, for later directives to inherit.

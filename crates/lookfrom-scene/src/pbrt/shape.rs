@@ -26,6 +26,9 @@ impl Reader<'_, '_> {
             "bilinearmesh" => self.bilinear_mesh(p)?,
             "loopsubdiv" => self.loop_subdivision(p)?,
             "curve" => Some(self.curve_shape(p)?),
+            "cone" | "paraboloid" | "hyperboloid" | "heightfield" | "nurbs" if self.is_old() => {
+                self.old_shape(kind, p)?
+            }
             _ => return Err(Self::unknown(&p.place, "shape", kind, KINDS.iter().copied())),
         };
         let alpha = self.scalar_or_none(p, "alpha")?.filter(|&alpha| alpha != Scalar::Value(1.0));

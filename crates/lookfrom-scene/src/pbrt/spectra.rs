@@ -95,7 +95,9 @@ impl Reader<'_, '_> {
     /// A spectrum by name, from a file or inline, or a blackbody's.
     fn uniform(&mut self, parameter: &Parameter, scene_space: Space, meaning: Meaning) -> Result<Color> {
         match parameter.kind {
-            ParameterType::Rgb => rgb(parameter, parameter.space.get().unwrap_or(scene_space), meaning),
+            ParameterType::Rgb => {
+                rgb(parameter, parameter.space.get().unwrap_or(scene_space), (meaning, self.is_old()))
+            }
             ParameterType::Blackbody => match parameter.numbers() {
                 &[kelvin] if kelvin > 0.0 => Ok(self.curve(Curve::Blackbody { kelvin })),
                 _ => Err(parameter.wrong("one temperature in kelvin, greater than 0")),
@@ -159,10 +161,15 @@ pub(super) fn brightness(color: Color) -> f32 {
     }
 }
 
-fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
+/// A colour. Where it `clamps`, as pbrt-v3 does, none is out of range.
+fn rgb(parameter: &Parameter, space: Space, (meaning, clamps): (Meaning, bool)) -> Result<Color> {
     let &[red, green, blue] = parameter.numbers() else {
         return Err(parameter.wrong(format!("3 numbers, found {}", parameter.numbers().len())));
     };
+    let most = if meaning == Meaning::Reflectance { 1.0 } else { f32::INFINITY };
+    if clamps {
+        return Ok(Color::Value([red, green, blue].map(|part| part.clamp(0.0, most))));
+    }
     let found = format!("found [ {red} {green} {blue} ]");
     if red < 0.0 || green < 0.0 || blue < 0.0 {
         return Err(parameter.wrong(format!("no negative number, {found}")));
@@ -179,7 +186,6 @@ fn rgb(parameter: &Parameter, space: Space, meaning: Meaning) -> Result<Color> {
         Meaning::Reflectance | Meaning::Unbounded => space::reflectance_rec709_from(space),
     };
     let rows = matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    let most = if meaning == Meaning::Reflectance { 1.0 } else { f32::INFINITY };
     // Colours outside the gamut of Rec. 709 are clamped.
     let convert = |row: [f32; 3]| (row[0] * red + row[1] * green + row[2] * blue).clamp(0.0, most);
     Ok(Color::Value(rows.map(convert)))

@@ -86,15 +86,19 @@ impl Reader<'_, '_> {
         let name_place = lexer.place(start);
         let start = lexer.here();
         let values = lexer.string("\"float\" or \"spectrum\"")?;
-        super::version3::check_kind(&values, "", &lexer.place(start))?;
+        self.note_texture_kind(&values, &lexer.place(start))?;
         let is_float = match &*values {
             "float" => true,
-            "spectrum" => false,
+            "spectrum" | "color" => false,
             _ => return Err(lexer.wrong(start, "\"float\" or \"spectrum\"")),
         };
         let start = lexer.here();
         let (kind, parameters) = self.entity(b"Texture", place, lexer, Some(4))?;
         let key = (is_float, name.clone());
+        if self.is_old() && self.textures.get(&key).is_some_and(|named| named.is_made) {
+            // It is defined again, for what comes after.
+            self.textures.remove(&key);
+        }
         if let Some(before) = self.textures.get(&key).filter(|named| named.is_made) {
             let at = before.first.location();
             let error = name_place.invalid(format!("{values} texture {name:?} is already defined, at {at}"));
@@ -150,6 +154,21 @@ impl Reader<'_, '_> {
         let footprint = TexelFilter::PBRT_FOOTPRINT;
         Ok(match kind {
             "constant" => uniform(self.part(p, "value", 1.0, is_float)?),
+            "scale" if self.is_old() => match is_float {
+                true => TextureKind::Scale {
+                    color: self.part(p, "tex1", 1.0, is_float)?,
+                    by: self.scalar(p, "tex2", 1.0)?,
+                },
+                false => TextureKind::Product {
+                    a: self.part(p, "tex1", 1.0, is_float)?,
+                    b: self.part(p, "tex2", 1.0, is_float)?,
+                },
+            },
+            "uv" if self.is_old() => TextureKind::Bilinear {
+                corners: [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]
+                    .map(|[u, v]| Color::Value([u, v, 0.0])),
+                mapping: self.mapping(p)?,
+            },
             "scale" => TextureKind::Scale {
                 color: self.part(p, "tex", 1.0, is_float)?,
                 by: self.scalar(p, "scale", 1.0)?,
@@ -193,19 +212,21 @@ impl Reader<'_, '_> {
                 mapping: self.mapping(p)?,
             },
             "imagemap" => self.imagemap(p, is_float)?,
-            "fbm" if is_float => TextureKind::Fbm {
+            "fbm" if is_float || self.is_old() => TextureKind::Fbm {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 footprint,
                 mapping: self.in_space(p)?,
             },
-            "wrinkled" if is_float => TextureKind::Wrinkled {
+            "wrinkled" if is_float || self.is_old() => TextureKind::Wrinkled {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
                 footprint,
                 mapping: self.in_space(p)?,
             },
-            "windy" if is_float => TextureKind::Windy { footprint, mapping: self.in_space(p)? },
+            "windy" if is_float || self.is_old() => {
+                TextureKind::Windy { footprint, mapping: self.in_space(p)? }
+            }
             "marble" if !is_float => TextureKind::PbrtMarble {
                 octaves: octaves(p)?,
                 roughness: p.float("roughness", TextureKind::ROUGHNESS)?,
@@ -259,7 +280,8 @@ impl Reader<'_, '_> {
             ("octahedralsphere", Wrap::Clamp),
         ];
         Ok(TextureKind::Image {
-            image: match is_float {
+            // A picture of numbers is its colours' in version 3, whatever its alpha.
+            image: match is_float && !self.is_old() {
                 true => self.number_picture(name, &encoding, place)?,
                 false => self.picture(name, &encoding, place)?,
             },

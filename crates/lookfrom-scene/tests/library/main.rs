@@ -31,6 +31,7 @@ mod openvdb;
 mod pbrt;
 mod pbrt_errors;
 mod pbrt_hostile;
+mod pbrt_old;
 mod pbrt_scenes;
 #[cfg(unix)]
 mod pipes;
