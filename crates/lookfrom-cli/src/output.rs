@@ -193,7 +193,7 @@ impl Target {
         if let Err(error) = File::create(&trial).and_then(|_| fs::remove_file(&trial)) {
             return wrong(format!("cannot write into the folder {}: {error}", folder.display()));
         }
-        remove_left_partials(folder);
+        tidy(folder);
         Ok(())
     }
 }
@@ -279,7 +279,7 @@ pub(crate) fn replace_file_by(
         fs::rename(&partial, target).map_err(text)?;
         // The new name is on disk only when the folder is; systems that cannot sync folders need not.
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
-        remove_left_partials(folder);
+        tidy(folder);
         Ok(())
     };
     let written: Result<(), String> = written();
@@ -341,14 +341,18 @@ fn partial_prefix(path: &Path) -> String {
     format!(".{}-", name.chars().take(50).collect::<String>())
 }
 
+/// [`remove_left_partials`], once for each folder: to read one takes as long as it has files.
+fn tidy(folder: &Path) {
+    static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    if DONE.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+        remove_left_partials(folder);
+    }
+}
+
 /// Removes what processes that were killed while they wrote into this folder have left: temporary files that nobody holds
 /// a lock on, which ends with its process, and that were not made at this moment; or, where the file system has no locks,
-/// that nobody has written to for ten minutes. Once for each folder: to read one takes as long as it has files.
+/// that nobody has written to for ten minutes.
 fn remove_left_partials(folder: &Path) {
-    static DONE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-    if !DONE.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
-        return;
-    }
     const MADE: Duration = Duration::from_secs(2);
     const LEFT: Duration = Duration::from_secs(600);
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

@@ -61,8 +61,8 @@ impl FilmFile {
     /// is forgotten.
     ///
     /// # Errors
-    /// `Invalid` where it is of another picture (says what differs), is another part of an adaptive one, or has samples that this one has already. Then no sample has
-    /// been added.
+    /// `Invalid` where it is of another picture (it says what differs) or another part of an adaptive one, or has samples that this one has
+    /// already. Then no sample has been added.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         self.provenance.check_same(&other.provenance)?;
         if !self.provenance.adapts_as(&other.provenance) {
