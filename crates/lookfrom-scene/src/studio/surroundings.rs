@@ -7,6 +7,8 @@
 //! mirrors would vanish in front of what they reflect. It is an environment light at infinity, so models of any size look
 //! the same in it.
 
+use std::sync::OnceLock;
+
 use glam::{DMat4, DVec3};
 
 use super::{StudioFrame, sane};
@@ -133,8 +135,13 @@ pub fn add_floor(scene: &mut Scene, up: Option<DVec3>, bounds: Option<Bounds>) {
     });
 }
 
-/// The studio's equirectangular environment map: the camera is at +z.
+/// The studio's equirectangular environment map: the camera is at +z. It is painted once, for all models of a call.
 fn studio() -> Image {
+    static STUDIO: OnceLock<Image> = OnceLock::new();
+    STUDIO.get_or_init(painted_studio).clone()
+}
+
+fn painted_studio() -> Image {
     let turns = |parts: f64| libm::sincos(std::f64::consts::PI * parts);
     let columns: Vec<(f64, f64)> =
         (0..WIDTH).map(|x| turns(2.0 * ((f64::from(x) + 0.5) / f64::from(WIDTH) - 0.5))).collect();

@@ -13,6 +13,7 @@ use lookfrom_scene::texture::TexelFilter;
 
 use crate::core::distribution::Piecewise2D;
 use crate::core::math;
+use crate::core::parallel;
 use crate::core::warp;
 use crate::light::{
     EmissionSpectrum, Environment, Goniometric, Light, MapLayout, Opening, Portal, Projection, Scale, Sky,
@@ -339,10 +340,38 @@ fn weights(image: &Image, layout: MapLayout) -> Vec<(f32, f32)> {
         let texels = (0..width * height).map(|index| [index % width, index / width]);
         return texels.map(|texel| (brightest_around(image, layout, texel), 1.0)).collect();
     }
+    // The brightest of each texel and its neighbours in a row, then of these in three rows: as `brightest_around` has it.
+    let rows: Vec<Vec<f32>> = parallel::collect(height, |y| {
+        let brightness = |x: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
+        let row: Vec<f32> = (0..width).map(brightness).collect();
+        (0..width).map(|x| row[(x + width - 1) % width].max(row[x]).max(row[(x + 1) % width])).collect()
+    });
     let mut weights = Vec::with_capacity(width * height);
     for y in 0..height {
         let sin_theta = libm::sinf(PI * (y as f32 + 0.5) / height as f32);
-        weights.extend((0..width).map(|x| (brightest_around(image, layout, [x, y]), sin_theta)));
+        let around = &rows[y.saturating_sub(1)..(y + 2).min(height)];
+        let brightest = |x: usize| around.iter().map(|row| row[x]).fold(0.0, f32::max);
+        weights.extend((0..width).map(|x| (brightest(x), sin_theta)));
     }
     weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_are_the_brightest_around_each_texel() {
+        for [width, height] in [[1, 1], [2, 1], [1, 3], [5, 4], [8, 3]] {
+            let value = |index: u32| (index.wrapping_mul(2_654_435_761) >> 8) as f32 - 4e6;
+            let texels = (0..width * height).map(|index| [0, 1, 2].map(|c| value(3 * index + c))).collect();
+            let image = Image::from_linear("map", width, height, texels);
+            for layout in [MapLayout::LatitudeLongitude, MapLayout::Octahedral] {
+                for (index, (brightest, _)) in weights(&image, layout).into_iter().enumerate() {
+                    let texel = [index % width as usize, index / width as usize];
+                    assert_eq!(brightest, brightest_around(&image, layout, texel), "{layout:?} {texel:?}");
+                }
+            }
+        }
+    }
 }
