@@ -13,7 +13,6 @@ use lookfrom_scene::texture::TexelFilter;
 
 use crate::core::distribution::Piecewise2D;
 use crate::core::math;
-use crate::core::parallel;
 use crate::core::warp;
 use crate::light::{
     EmissionSpectrum, Environment, Goniometric, Light, MapLayout, Opening, Portal, Projection, Scale, Sky,
@@ -341,11 +340,13 @@ fn weights(image: &Image, layout: MapLayout) -> Vec<(f32, f32)> {
         return texels.map(|texel| (brightest_around(image, layout, texel), 1.0)).collect();
     }
     // The brightest of each texel and its neighbours in a row, then of these in three rows: as `brightest_around` has it.
-    let rows: Vec<Vec<f32>> = parallel::collect(height, |y| {
+    let widened = |y: usize| -> Vec<f32> {
         let brightness = |x: usize| image.texel(y * width + x).into_iter().fold(0.0, f32::max);
         let row: Vec<f32> = (0..width).map(brightness).collect();
-        (0..width).map(|x| row[(x + width - 1) % width].max(row[x]).max(row[(x + 1) % width])).collect()
-    });
+        let around = |x: usize| row[(x + width - 1) % width].max(row[x]).max(row[(x + 1) % width]);
+        (0..width).map(around).collect()
+    };
+    let rows: Vec<Vec<f32>> = (0..height).map(widened).collect();
     let mut weights = Vec::with_capacity(width * height);
     for y in 0..height {
         let sin_theta = libm::sinf(PI * (y as f32 + 0.5) / height as f32);
