@@ -76,11 +76,10 @@ pub(crate) fn arguments_of_series(typed: &[String], series: &Series, options: &O
 
 /// The argument by which one picture of a series differs from others.
 pub(crate) fn argument_of_picture(series: &Series, number: usize, of_all: &Options) -> Option<String> {
-    let options = series.options(number, of_all);
     match series {
-        Series::Turntable(_) => options.turn.map(|degrees| format!("--turn={degrees}")),
+        Series::Turntable(_) => series.turn(number, of_all).map(|degrees| format!("--turn={degrees}")),
         Series::Views(_) => series.label(number).map(|name| format!("--view={name}")),
-        Series::Frames { .. } => options.import.at.map(|seconds| format!("--at={seconds}")),
+        Series::Frames { .. } => series.time(number).map(|seconds| format!("--at={seconds}")),
         _ => None,
     }
 }

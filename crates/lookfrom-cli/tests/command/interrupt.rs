@@ -38,7 +38,7 @@ fn the_picture_so_far_is_kept() {
     }
 }
 
-/// What is there is whole to the next call.
+/// Interrupted renders with `--skip-existing`: the next call would skip their files.
 #[test]
 fn what_the_next_call_would_skip_is_not_written_half_done() {
     let stage = Stage::new("interrupt-skip");

@@ -4,7 +4,6 @@ use super::Reader;
 use super::params::{ParameterType, Parameters};
 use super::spectra::SRGB;
 use super::state::Entity;
-use super::version3::Version;
 use crate::error::Result;
 use crate::settings::{Filter, FilterShape, Layers, PixelBounds, Sensor, SpectralFilm};
 use crate::spectrum::CameraSensor;
@@ -15,8 +14,10 @@ const LARGEST: i32 = 1 << 16;
 impl Reader<'_, '_> {
     /// Converts the film, and the camera's exposure time.
     pub(super) fn film(&mut self, film: Option<&Entity>, camera: Option<&Entity>) -> Result<()> {
+        let is_old = self.is_old();
         let image = &mut self.scene.image;
-        (image.width, image.height) = (1280, 720);
+        let [width, height] = if is_old { [640, 480] } else { [1280, 720] };
+        (image.width, image.height) = (width as u32, height as u32);
         let shutter = match camera {
             Some(camera) => {
                 let parameters = &camera.parameters;
@@ -38,12 +39,8 @@ impl Reader<'_, '_> {
             None => 1.0,
         };
         // In version 3 it does not matter how long the shutter is open.
-        let shutter = if self.version == Version::Three { 1.0 } else { shutter };
+        let shutter = if is_old { 1.0 } else { shutter };
         image.sensor.imaging_ratio = shutter;
-        if self.version == Version::Three {
-            (image.width, image.height) = (640, 480);
-        }
-        let default_size = [image.width as i32, image.height as i32];
         let Some(Entity { kind, parameters }) = film else { return Ok(()) };
         match &**kind {
             "rgb" => {}
@@ -55,8 +52,8 @@ impl Reader<'_, '_> {
         self.film_diagonal = f64::from(parameters.positive("diagonal", 35.0)?);
         let sensor = Self::sensor(parameters, shutter)?;
         let image = &mut self.scene.image;
-        image.width = parameters.integer("xresolution", default_size[0], 1, LARGEST)? as u32;
-        image.height = parameters.integer("yresolution", default_size[1], 1, LARGEST)? as u32;
+        image.width = parameters.integer("xresolution", width, 1, LARGEST)? as u32;
+        image.height = parameters.integer("yresolution", height, 1, LARGEST)? as u32;
         image.crop = crop(parameters, image.width, image.height)?;
         image.sensor = sensor;
         if parameters.space != SRGB {
@@ -95,9 +92,9 @@ impl Reader<'_, '_> {
     }
 
     pub(super) fn filter(&mut self, filter: Option<&Entity>) -> Result<()> {
-        self.scene.image.filter = match self.version {
-            Version::Three => FilterShape::Box.of_radius(0.5),
-            _ => FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5),
+        self.scene.image.filter = match self.is_old() {
+            true => FilterShape::Box.of_radius(0.5),
+            false => FilterShape::Gaussian { sigma: 0.5 }.of_radius(1.5),
         };
         let Some(Entity { kind, parameters }) = filter else { return Ok(()) };
         let (shape, radius) = match &**kind {

@@ -70,15 +70,21 @@ impl Series {
             Self::Turntable(_) => options.turn = self.turn(index, of_all),
             Self::Views(views) => options.view = views.get(index).map(|&(_, view)| view),
             Self::Frames { fps, .. } => {
-                options.import.at = Some(f64::from(self.number(index)[0]) / fps);
+                options.import.at = self.time(index);
                 options.variables.fps = *fps;
             }
         }
         options
     }
 
-    /// The angle of a picture on a turntable.
-    fn turn(&self, index: usize, of_all: &Options) -> Option<f64> {
+    /// The time of a frame in seconds; `None` for other series.
+    pub fn time(&self, index: usize) -> Option<f64> {
+        let Self::Frames { fps, .. } = self else { return None };
+        Some(f64::from(self.number(index)[0]) / fps)
+    }
+
+    /// The angle of a picture on a turntable in degrees; `None` for other series.
+    pub fn turn(&self, index: usize, of_all: &Options) -> Option<f64> {
         let Self::Turntable(count) = self else { return None };
         Some(of_all.turn.unwrap_or(0.0) + 360.0 * index as f64 / f64::from(*count))
     }

@@ -79,11 +79,11 @@ impl Reader<'_, '_> {
             "translucent" => {
                 p.ignore(&["Ks", "roughness", "remaproughness"]);
                 let diffuse = self.color(p, "Kd", Color::gray(0.25), Reflectance)?;
-                let [reflected, transmitted] = [("reflect", p), ("transmit", p)]
-                    .map(|(name, p)| self.color(p, name, Color::gray(0.5), Reflectance));
+                let reflected = self.color(p, "reflect", Color::gray(0.5), Reflectance)?;
+                let transmitted = self.color(p, "transmit", Color::gray(0.5), Reflectance)?;
                 MaterialKind::DiffuseTransmission {
-                    reflectance: self.product(diffuse, reflected?),
-                    transmittance: self.product(diffuse, transmitted?),
+                    reflectance: self.product(diffuse, reflected),
+                    transmittance: self.product(diffuse, transmitted),
                     scale: 1.0,
                 }
             }
