@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufWriter, Cursor, ErrorKind, Seek, Write};
+use std::io::{self, BufWriter, Cursor, ErrorKind, Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -183,6 +183,9 @@ impl Target {
         if path.is_dir() {
             return wrong(format!("cannot write {}: it is a folder", path.display()));
         }
+        if is_stream(path) {
+            return Ok(());
+        }
         let mut folders = path.ancestors().skip(1).map(|folder| folder_or_here(Some(folder)));
         let folder = folders.find(|folder| folder.exists()).unwrap_or(Path::new("."));
         if !folder.is_dir() {
@@ -198,12 +201,12 @@ impl Target {
     }
 }
 
-fn write_stdout(bytes: &[u8]) -> std::io::Result<()> {
-    std::io::stdout().write_all(bytes).and_then(|()| std::io::stdout().flush())
+fn write_stdout(bytes: &[u8]) -> io::Result<()> {
+    io::stdout().write_all(bytes).and_then(|()| io::stdout().flush())
 }
 
 /// The failure of stdout.
-fn unwritten(error: &std::io::Error) -> Failure {
+fn unwritten(error: &io::Error) -> Failure {
     Failure::Output(format!("cannot write -: {error}"))
 }
 
@@ -235,7 +238,7 @@ pub(crate) fn keep_inputs(path: &Path, inputs: &Inputs, option: &str) -> Result<
 }
 
 /// Writes a temporary file beside `path` and renames it to `path`. Missing folders are created. A symbolic link to a file stays,
-/// and so do the permissions of what is replaced.
+/// and so do the permissions of what is replaced. A pipe or a device gets the bytes.
 ///
 /// # Errors
 /// `Output` where it cannot be written or would overwrite an input; `option` as for [`keep_inputs`].
@@ -260,9 +263,11 @@ pub(crate) fn replace_file_by(
     keep_inputs(path, inputs, option)?;
     let linked = fs::canonicalize(path).ok().filter(|target| target.is_file());
     let target = linked.as_deref().unwrap_or(path);
-    let folder = folder_or_here(target.parent());
+    let is_stream = is_stream(path);
+    let temporary = std::env::temp_dir();
+    let folder = if is_stream { &temporary } else { folder_or_here(target.parent()) };
     let partial = folder.join(partial(target));
-    let text = |error: std::io::Error| error.to_string();
+    let text = |error: io::Error| error.to_string();
     let written = || {
         fs::create_dir_all(folder).map_err(text)?;
         let file = OpenOptions::new().write(true).create(true).truncate(true).open(&partial).map_err(text)?;
@@ -275,6 +280,12 @@ pub(crate) fn replace_file_by(
         let mut file = BufWriter::with_capacity(1 << 20, file);
         write(&mut file)?;
         let file = file.into_inner().map_err(|error| error.to_string())?;
+        if is_stream {
+            // Formats that go back to their heads could not be written into it.
+            let mut stream = OpenOptions::new().write(true).open(target).map_err(text)?;
+            io::copy(&mut File::open(&partial).map_err(text)?, &mut stream).map_err(text)?;
+            return fs::remove_file(&partial).map_err(text);
+        }
         file.sync_all().map_err(text)?;
         fs::rename(&partial, target).map_err(text)?;
         // The new name is on disk only when the folder is; systems that cannot sync folders need not.
@@ -380,6 +391,11 @@ fn is_partial(name: &str) -> bool {
     let mut parts = name.strip_suffix(PARTIAL).unwrap_or_default().rsplitn(3, '-');
     let numbers = [parts.next(), parts.next()];
     name.starts_with('.') && numbers.iter().all(|part| part.is_some_and(is_number)) && parts.next().is_some()
+}
+
+/// Whether there is something else than a file, which keeps its place: a pipe, a device.
+fn is_stream(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
 /// The folder of a file, from the parent of its path: `.` where that is empty.

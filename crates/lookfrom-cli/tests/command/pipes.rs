@@ -43,6 +43,25 @@ fn scenes_come_from_stdin() {
     piped(&stage, "render - -o p.exr --film", SCENE).fails(2, &["--film"]);
 }
 
+/// A named pipe as output: EXR is written back and forth, so not straight into it.
+#[cfg(unix)]
+#[test]
+fn a_named_pipe_gets_the_picture_and_stays() {
+    use std::os::unix::fs::FileTypeExt;
+    let stage = Stage::new("fifo");
+    for format in ["exr", "png"] {
+        let (pipe, file) = (format!("pipe.{format}"), format!("file.{format}"));
+        assert!(std::process::Command::new("mkfifo").arg(stage.path(&pipe)).status().unwrap().success());
+        let path = stage.path(&pipe);
+        let reader = std::thread::spawn(move || std::fs::read(path).unwrap());
+        for output in [&file, &pipe] {
+            stage.done(&format!("render scene.toml -q --width 8 --samples 1 -o {output}"));
+        }
+        assert!(reader.join().unwrap() == stage.bytes(&file), "{format}");
+        assert!(std::fs::metadata(stage.path(&pipe)).unwrap().file_type().is_fifo());
+    }
+}
+
 #[test]
 fn pictures_go_to_stdout_in_every_format() {
     let stage = Stage::new("stdout");
