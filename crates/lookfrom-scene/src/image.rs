@@ -14,6 +14,8 @@ mod radiance;
 mod read;
 mod srgb;
 mod texels;
+#[cfg(feature = "images")]
+mod tiff;
 mod write;
 
 pub use self::animation::{Animation, AnimationFormat};

@@ -7,15 +7,15 @@ use std::path::Path;
 use ::image::error::{ImageError, LimitErrorKind};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
-#[cfg(feature = "images")]
-use super::ktx2;
 use super::{Encoding, Image, openexr, radiance};
+#[cfg(feature = "images")]
+use super::{ktx2, tiff};
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{Limits, LoadContext};
 
 /// The names of the readable formats, for messages.
-const KNOWN: &str = if cfg!(feature = "images") {
+pub(super) const KNOWN: &str = if cfg!(feature = "images") {
     "PNG, JPEG, HDR, EXR, BMP, TGA, PNM, PFM, WebP, GIF, TIFF, DDS (DXT1 to DXT5), KTX2"
 } else {
     "PNG, JPEG, HDR, EXR, PFM, WebP, GIF"
@@ -316,12 +316,18 @@ fn decode_common(
     bytes: &[u8],
     path: &Path,
     at: &Location,
-    context: &LoadContext<'_>,
+    context: &mut LoadContext<'_>,
 ) -> Result<(DynamicImage, Reservation)> {
+    #[cfg(feature = "images")]
+    if tiff::is(bytes) {
+        return tiff::decode(bytes, at, context);
+    }
     let limits = &context.limits;
     let fault = |error: &ImageError| wrong(error, bytes, at, limits);
     let mut reader = ImageReader::new(Cursor::new(bytes));
-    if let Ok(format) = ImageFormat::from_path(path) {
+    if let Ok(format) = ImageFormat::from_path(path)
+        && format != ImageFormat::Tiff
+    {
         reader.set_format(format);
     }
     let mut reader = reader.with_guessed_format().map_err(|error| fault(&ImageError::IoError(error)))?;

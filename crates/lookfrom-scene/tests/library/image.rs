@@ -10,6 +10,8 @@ use ::image::{
 use lookfrom_scene::image::{self, Image, Metadata, Pixels};
 use lookfrom_scene::{ErrorKind, LoadContext, Memory};
 use proptest::prelude::*;
+use tiff::encoder::TiffEncoder;
+use tiff::encoder::colortype::{RGB8, RGB32Float, RGBA8, RGBA16};
 
 fn read_as(name: &str, bytes: &[u8], texels: Option<u64>) -> lookfrom_scene::Result<(Image, usize)> {
     let mut files = Memory::default();
@@ -29,6 +31,19 @@ fn gradient() -> RgbImage {
 
 fn encode(picture: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
+    if format == ImageFormat::Tiff {
+        let (width, height) = (picture.width(), picture.height());
+        let mut file = TiffEncoder::new(&mut bytes).expect("TIFF");
+        match picture {
+            DynamicImage::ImageRgb8(picture) => file.write_image::<RGB8>(width, height, picture),
+            DynamicImage::ImageRgba8(picture) => file.write_image::<RGBA8>(width, height, picture),
+            DynamicImage::ImageRgba16(picture) => file.write_image::<RGBA16>(width, height, picture),
+            DynamicImage::ImageRgb32F(picture) => file.write_image::<RGB32Float>(width, height, picture),
+            picture => unreachable!("{:?}", picture.color()),
+        }
+        .expect("encodes");
+        return bytes.into_inner();
+    }
     picture.write_to(&mut bytes, format).expect("encodes");
     bytes.into_inner()
 }

@@ -15,6 +15,8 @@ mod graphs;
 mod image;
 mod image_exr;
 mod image_radiance;
+#[cfg(feature = "images")]
+mod image_tiff;
 mod left_out;
 #[cfg(feature = "mitsuba")]
 mod mitsuba;
