@@ -157,6 +157,9 @@ impl Bvh {
     /// assert!(Arc::ptr_eq(builder.build()?.instance_tree(instance), &object));
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
+    ///
+    /// # Panics
+    /// For the number of no instance.
     pub fn instance_tree(&self, instance: u32) -> &Arc<Self> {
         &self.instances[instance as usize].bvh
     }

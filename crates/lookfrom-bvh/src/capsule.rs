@@ -64,8 +64,9 @@ impl CapsuleBlock {
                 });
                 block.ends[axis][lane] = steps[0] | steps[1] << 16;
             }
-            // Larger by what the ends were moved. (Not a number: everywhere.)
-            let radius = f64::from(*radius) / wide_step + off[0].max(off[1]).sqrt();
+            // Larger by what the ends were moved. (Not a number, which `max` would ignore: everywhere.)
+            let moved = off[0].max(off[1]) + 0.0 * (off[0] + off[1]);
+            let radius = f64::from(*radius) / wide_step + moved.sqrt();
             if radius < STEPS + 2.0 {
                 block.radius[lane] = (radius * (1.0 + 1e-9)).ceil() as u16;
             }

@@ -73,7 +73,7 @@ impl CommonOriginBlock {
         let relative = extent * (ERROR * length) + underflow;
         let bound = (reach + extent) * relative + underflow;
         let size_error = extent * relative + underflow;
-        let distance_error = (extent * (extent * ERROR + underflow) + underflow) * reach;
+        let distance_error = (extent * (extent * ERROR + underflow) + underflow) * reach + underflow;
         let (near, far) = (distance.abs() - 2.0 * distance_error, distance.abs() + 2.0 * distance_error);
 
         let sign = f32x8::splat(simd, 1.0).copysign(distance);

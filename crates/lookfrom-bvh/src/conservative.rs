@@ -391,7 +391,8 @@ impl<S: Simd, F: Numbers<S>> TriangleEdges<S, F> {
         let underflow = ray.underflow;
         let size_error = extent.mul_add(extent.mul_add(ray.error, underflow), underflow);
         let distance = nx.mul_add(cx, ny.mul_add(cy, nz * cz));
-        let distance_error = extent.mul_add(extent.mul_add(ERROR, underflow), underflow) * reach;
+        let distance_error =
+            extent.mul_add(extent.mul_add(ERROR, underflow), underflow).mul_add(reach, underflow);
 
         // A t surely out of range, where the determinant's sign is sure.
         let size = determinant.abs();

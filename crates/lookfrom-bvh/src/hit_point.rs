@@ -3,7 +3,7 @@
 //! A hit has ids; its primitive is found again by a descent through the boxes around the point, so that trees need no table of
 //! their primitives.
 
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, Instance, Part};
 use crate::exact::ExactRay;
 use crate::item::Leaf;
 use crate::node::{Child, Content};
@@ -43,7 +43,7 @@ enum Primitive {
 
 impl Bvh {
     /// The point of `hit`, which is one of `ray` with this tree. `None` for a miss, and for procedural shapes, which do not
-    /// define their surfaces.
+    /// define their surfaces. What moves is where it is at time 0: [`Query::hit_point`](crate::Query::hit_point) has a time.
     ///
     /// The position is on the surface up to its error bound: of a triangle at the hit's u and v, of a sphere (in an instance
     /// an ellipsoid) where the ray is at the hit's t.
@@ -67,15 +67,25 @@ impl Bvh {
     /// # Ok::<(), lookfrom_bvh::BuildError>(())
     /// ```
     pub fn hit_point(&self, ray: &Ray, hit: &Hit) -> Option<HitPoint> {
+        self.hit_point_at(ray, hit, 0.0)
+    }
+
+    /// [`Self::hit_point`] at a time.
+    pub(crate) fn hit_point_at(&self, ray: &Ray, hit: &Hit, time: f32) -> Option<HitPoint> {
         let in_world =
             ExactRay { origin: wide(ray.origin), direction: wide(ray.direction), t_min: ray.t_min };
         let (point, normal) = match self.instances.get(hit.instance as usize) {
-            None => self.point_in_place(&in_world, hit)?,
+            None => self.point_in_place(&in_world, hit, time)?,
             Some(instance) => {
-                let (point, n) = instance.bvh.point_in_place(&instance.ray_in_object(&in_world), hit)?;
-                let columns = instance.object_from_world;
+                let moved = match self.instance_map_at(hit.instance, time) {
+                    Some(map) => &Instance::new(instance.bvh.clone(), map)?,
+                    None => instance,
+                };
+                let in_object = moved.ray_in_object(&in_world);
+                let (point, n) = moved.bvh.point_in_place(&in_object, hit, time)?;
+                let columns = moved.object_from_world;
                 let normal = [0, 1, 2].map(|axis| (0..3).map(|row| columns[row][axis] * n[row]).sum());
-                (point.transformed(&instance.world_from_object), normal)
+                (point.transformed(&moved.world_from_object), normal)
             }
         };
         let length = dot(normal, normal).sqrt();
@@ -83,15 +93,15 @@ impl Bvh {
     }
 
     /// The point and a normal of any length, for a ray in the space of this tree, of a hit outside of instances.
-    fn point_in_place(&self, ray: &ExactRay, hit: &Hit) -> Option<(Point, [f64; 3])> {
+    fn point_in_place(&self, ray: &ExactRay, hit: &Hit, time: f32) -> Option<(Point, [f64; 3])> {
         let way = ray.direction.map(|d| d * f64::from(hit.t));
         let position = [0, 1, 2].map(|axis| ray.origin[axis] + way[axis]);
         let size = ray.origin.iter().chain(&way).fold(0.0_f64, |most, x| most.max(x.abs()));
         let ids = (hit.geometry, hit.primitive);
         let primitive = self
-            .primitive_near(position, ROOM * size, ids)
+            .primitive_near(position, ROOM * size, ids, time)
             // A triangle seen edge-on: its hit's t is less exact.
-            .or_else(|| self.primitive_near(position, f64::INFINITY, ids))?;
+            .or_else(|| self.primitive_near(position, f64::INFINITY, ids, time))?;
         Some(match primitive {
             Primitive::Triangle([p0, p1, p2]) => Point::on_triangle_with_normal(p0, p1, p2, hit.u, hit.v),
             Primitive::Sphere(Sphere { center, radius }) => {
@@ -102,12 +112,25 @@ impl Bvh {
     }
 
     /// The primitive with these ids, if it is in boxes that are at most `room` from a position along each axis.
-    fn primitive_near(&self, position: [f64; 3], room: f64, ids: (u32, u32)) -> Option<Primitive> {
-        let mut children = if self.nodes.is_empty() { Vec::new() } else { vec![Child::ROOT] };
+    fn primitive_near(&self, position: [f64; 3], room: f64, ids: (u32, u32), time: f32) -> Option<Primitive> {
+        let standing = (!self.nodes.is_empty()).then_some(Part::Standing(self));
+        let moving = self.moving.as_deref().filter(|moving| !moving.is_empty());
+        let moving = moving.map(|moving| Part::Moving(moving, moving.moment(time)));
+        standing.into_iter().chain(moving).find_map(|part| self.primitive_of(part, position, room, ids))
+    }
+
+    fn primitive_of(
+        &self,
+        part: Part<'_>,
+        position: [f64; 3],
+        room: f64,
+        ids: (u32, u32),
+    ) -> Option<Primitive> {
+        let mut children = vec![Child::ROOT];
         while let Some(child) = children.pop() {
             match child.content() {
                 Content::Node(number) => {
-                    let node = &self.nodes[number];
+                    let node = part.node(number);
                     let near = node.children().filter(|(_, bounds, _)| {
                         (0..3).all(|axis| {
                             let [min, max] = [bounds.min, bounds.max].map(|side| f64::from(side[axis]));
@@ -117,13 +140,13 @@ impl Bvh {
                     children.extend(near.map(|(slot, ..)| node.child(slot)));
                 }
                 Content::Triangles(block) => {
-                    let block = &self.triangles[block];
+                    let block = part.block(block);
                     if let Some(lane) = (0..block.count()).find(|&lane| block.ids(lane) == ids) {
                         return Some(Primitive::Triangle(block.corners(lane)));
                     }
                 }
                 Content::Leaf(leaf) => {
-                    if let Leaf::Spheres { block } = self.leaves[leaf] {
+                    if let Leaf::Spheres { block } = part.leaf(leaf) {
                         let mut items = self.spheres[block as usize].items();
                         if let Some(item) = items.find(|item| (item.geometry, item.primitive) == ids) {
                             return Some(Primitive::Sphere(item.shape));

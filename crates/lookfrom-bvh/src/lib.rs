@@ -64,7 +64,7 @@ pub use capsule::Capsule;
 pub use closest_point::{ClosestPoint, ClosestPointF64};
 pub use faces::Faces;
 pub use hit_point::HitPoint;
-pub use observer::Observer;
+pub use observer::{Listener, Observer};
 pub use origin::Point;
 pub use origin_primitive::OriginPrimitive;
 pub use procedural::{Procedural, ProceduralHit};

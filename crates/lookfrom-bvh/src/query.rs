@@ -4,6 +4,7 @@ use crate::batch::for_each;
 use crate::bvh::Bvh;
 use crate::closest_point::{self, ClosestPoint};
 use crate::faces::Faces;
+use crate::hit_point::HitPoint;
 use crate::observer::{Listener, Observer};
 use crate::origin_primitive::OriginPrimitive;
 use crate::ray::{Hit, Ray};
@@ -236,6 +237,26 @@ impl<'a, O> Query<'a, O> {
     pub fn times(mut self, times: &'a [f32]) -> Self {
         self.settings.times = times;
         self
+    }
+
+    /// The point of `hit`, which is one of `ray` with this tree at the query's time ([`Self::time`]; of [`Self::times`], the first):
+    /// as [`Bvh::hit_point`], whatever else the query selects.
+    ///
+    /// ```
+    /// use lookfrom_bvh::{Affine, Builder, Ray, Sphere};
+    /// let mut ball = Builder::new();
+    /// ball.spheres(&[Sphere { center: [0.0; 3], radius: 1.0 }]);
+    /// let up = Affine { translation: [0.0, 0.0, 4.0], ..Affine::IDENTITY };
+    /// let mut builder = Builder::new();
+    /// builder.moving_instance(ball.build()?.into(), &[Affine::IDENTITY, up]);
+    /// let (bvh, ray) = (builder.build()?, Ray::new([0.0, 0.0, -2.0], [0.0, 0.0, 1.0]));
+    /// let query = bvh.query().time(0.5);
+    /// let at = query.hit_point(&ray, &query.closest_hit(&ray)).unwrap();
+    /// assert_eq!((at.point.position, at.normal), ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]));
+    /// # Ok::<(), lookfrom_bvh::BuildError>(())
+    /// ```
+    pub fn hit_point(&self, ray: &Ray, hit: &Hit) -> Option<HitPoint> {
+        self.settings.bvh.hit_point_at(ray, hit, self.settings.time_of(0))
     }
 
     /// Notifies an observer of every node and candidate, including primitives that the query does not see. The

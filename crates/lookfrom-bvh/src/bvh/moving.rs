@@ -142,9 +142,9 @@ impl Moving {
         earlier.between(later, moment.fraction)
     }
 
-    /// The map of an instance, world from object, at a moment; `None` where it stands still.
+    /// The map of an instance, world from object, at a moment; `None` where it stands still, and for no instance.
     pub(crate) fn map(&self, instance: u32, time: f32) -> Option<Affine> {
-        let maps = &self.maps[instance as usize];
+        let maps = self.maps.get(instance as usize)?;
         (!maps.is_empty()).then(|| Affine::at_time(maps, time))
     }
 

@@ -3,7 +3,7 @@
 //! `LOOKFROM_ROUNDS=2000 cargo test --release -p lookfrom-bvh extremes` tries more. (Beyond 2¹²⁰ the f32 reciprocals of the box test leave
 //! their range: of 600 000 rays among exponents of 10 up to ±20, one was answered otherwise by one tree than by another.)
 
-use lookfrom_bvh::{Builder, Bvh, Hit, Quality, Ray, Sphere, Triangles};
+use lookfrom_bvh::{Builder, Bvh, Hit, Quality, Ray, RayF64, Sphere, Triangles};
 
 use crate::testing::Random;
 
@@ -139,4 +139,37 @@ fn noise_does_not_depend_on_the_tree() {
         bad += disagreements(&corners, &spheres, &rays);
     }
     assert_eq!(bad, 0);
+}
+
+/// Rays at the middles of triangles, in scenes as small as what products lose by underflow: single precision has the answers of double.
+#[test]
+fn the_smallest_scenes_are_hit_as_in_double_precision() {
+    let mut random = Random::new(73);
+    for exponent in 9..21 {
+        let scale = 0.1_f32.powi(exponent);
+        for _ in 0..rounds() {
+            let corners: Vec<Corners> = (0..20)
+                .map(|_| {
+                    let center = random.near([0.0; 3], scale);
+                    [0; 3].map(|_| random.near(center, 0.5 * scale))
+                })
+                .collect();
+            let bvh = tree(&corners, &[], Quality::Balanced);
+            let rays: Vec<Ray> = (0..200)
+                .map(|_| {
+                    let [a, b, c] = corners[random.below(20) as usize];
+                    let origin = random.near([0.0; 3], 2.0 * scale);
+                    Ray::new(origin, [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0 - origin[axis]))
+                })
+                .collect();
+            let mut batch = vec![Hit::MISS; rays.len()];
+            bvh.closest_hits(&rays, &mut batch);
+            for (ray, batch) in rays.iter().zip(batch) {
+                let (hit, exact) = (bvh.closest_hit(ray), bvh.query().closest_hit(&RayF64::from(*ray)));
+                assert_eq!((hit.is_hit(), hit), (exact.is_hit(), batch), "10^-{exponent}: {exact:?}");
+                let off = (f64::from(hit.t) - exact.t).abs();
+                assert!(!hit.is_hit() || off < 1e-5 * exact.t, "10^-{exponent}: {hit:?} {exact:?}");
+            }
+        }
+    }
 }

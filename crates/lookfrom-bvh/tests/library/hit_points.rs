@@ -96,3 +96,56 @@ fn points_and_normals_are_those_of_the_primitives_computed_directly() {
     }
     assert!(triangles > 1000 && spheres > 300, "{triangles} {spheres}");
 }
+
+/// Triangles, spheres and instances at random times, against the tree of that moment, in which all stands still.
+#[test]
+fn points_of_what_moves_are_where_it_is_at_the_time() {
+    let mut random = Random::new(78);
+    let mut counts = [0; 3];
+    for _ in 0..60 {
+        let indices: Vec<[u32; 3]> = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let ends: Vec<Vec<[f32; 3]>> =
+            (0..2).map(|_| (0..60).map(|_| random.near([0.0; 3], 3.0)).collect()).collect();
+        let balls: Vec<Sphere> = (0..5)
+            .map(|_| Sphere { center: random.near([0.0; 3], 2.0), radius: 0.1 + 0.5 * random.unit() })
+            .collect();
+        let maps: Vec<[Affine; 2]> = (0..3).map(|_| [0; 2].map(|_| random_map(&mut random))).collect();
+        let mut object = Builder::new();
+        object.triangles(Triangles { positions: &ends[0], indices: &indices });
+        object.spheres(&balls);
+        let object = Arc::new(object.build().unwrap());
+        let mut builder = Builder::new();
+        builder.moving_triangles(&[&ends[0], &ends[1]], &indices);
+        builder.spheres(&balls);
+        maps.iter().for_each(|maps| _ = builder.moving_instance(object.clone(), maps));
+        let moving = builder.build().unwrap();
+
+        let time = random.unit();
+        let between = |a: f32, b: f32| a + time * (b - a);
+        let positions: Vec<[f32; 3]> = ends[0]
+            .iter()
+            .zip(&ends[1])
+            .map(|(a, b)| [0, 1, 2].map(|axis| between(a[axis], b[axis])))
+            .collect();
+        let mut builder = Builder::new();
+        builder.triangles(Triangles { positions: &positions, indices: &indices });
+        builder.spheres(&balls);
+        maps.iter().for_each(|maps| _ = builder.instance(object.clone(), Affine::at_time(maps, time)));
+        let still = builder.build().unwrap();
+
+        let query = moving.query().time(time);
+        for _ in 0..200 {
+            let ray = Ray::new(random.near([0.0; 3], 10.0), random.direction());
+            let hit = query.closest_hit(&ray);
+            let (found, expected) =
+                (query.hit_point(&ray, &hit), still.hit_point(&ray, &still.closest_hit(&ray)));
+            assert_eq!(found.is_some(), hit.is_hit());
+            let (Some(found), Some(expected)) = (found, expected) else { continue };
+            counts[usize::from(hit.instance != NONE) + usize::from(hit.geometry == 1)] += 1;
+            let [off, turn] =
+                [minus(found.point.position, expected.point.position), minus(found.normal, expected.normal)];
+            assert!(dot(off, off).sqrt() < 1e-4 && dot(turn, turn).sqrt() < 1e-4, "{found:?} {expected:?}");
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 10), "{counts:?}");
+}
