@@ -9,7 +9,7 @@ use super::light_paths::LightPathSums;
 use super::pixel::Pixel;
 use super::stored::{Stored, Sums, channels_of, store_fields};
 use super::{Film, xyz};
-use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64, fixed_point};
+use crate::core::fixed_point::{TWO_TO_48, TWO_TO_64, fixed_point, nearest_f64, nearest_f64_of_squares};
 
 /// The sums of the filter weights of a pixel's samples, in multiples of 2⁻⁶⁴. Additions wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,13 +51,13 @@ pub(super) struct Weighted {
 impl Weights {
     pub(super) fn new(samples: u64, sums: Option<WeightSums>) -> Self {
         let samples = samples as f64;
-        let mean = |sum: i128| sum as f64 / (samples * TWO_TO_64);
+        let mean = |sum: i128| nearest_f64(sum) / (samples * TWO_TO_64);
         Self { samples, means: sums.map(|WeightSums { sum, magnitude }| [mean(sum), mean(magnitude)]) }
     }
 
     /// The mean of w L, and that of L where weights differ.
     fn means(self, Weighted { signed, unsigned }: Weighted) -> [f64; 2] {
-        let mean = |sum: i128| sum as f64 / (self.samples * TWO_TO_64);
+        let mean = |sum: i128| nearest_f64(sum) / (self.samples * TWO_TO_64);
         let signed = mean(signed);
         match (unsigned, self.means) {
             (Some(unsigned), Some([_, magnitude])) => [signed, mean(unsigned) / magnitude],
@@ -85,7 +85,7 @@ impl Weights {
         if n < 2.0 {
             return f64::INFINITY;
         }
-        let mean_of_squares = squares as f64 / (n * TWO_TO_48);
+        let mean_of_squares = nearest_f64_of_squares(squares) / (n * TWO_TO_48);
         // Of w (L − m): the mean of its square less the square of its mean.
         let of_means = match self.means {
             None => signed * signed,
