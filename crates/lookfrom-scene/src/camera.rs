@@ -84,8 +84,8 @@ pub struct Look {
 }
 
 impl Camera {
-    /// Position and orientation as points and a vector; `None` for a matrix that shears, reflects or is degenerate. The
-    /// `lookat` of a matrix is the point of its view axis that is nearest to `middle`, if that is in front of the camera.
+    /// Position and orientation as points and a vector; `None` for a matrix that shears or is degenerate; one that also
+    /// mirrors ([`Self::is_mirrored`]) has those of its picture. The `lookat` of a matrix is the point of its view axis that is nearest to `middle`, if that is in front of the camera.
     pub fn look(&self, middle: DVec3) -> Option<Look> {
         let matrix = match self.view {
             View::Look { lookfrom, lookat, up } => return Some(Look { lookfrom, lookat, up }),
@@ -95,14 +95,33 @@ impl Camera {
         let scale = linear.z_axis.length();
         let turned =
             (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
-        if !turned || linear.determinant() <= 0.0 {
+        if !turned {
             return None;
         }
         let lookfrom = matrix.w_axis.truncate();
         let w = linear.z_axis / scale;
-        let along = (middle - lookfrom).dot(w);
-        let distance = if along > 0.0 && along.is_finite() { along } else { 1.0 };
-        Some(Look { lookfrom, lookat: lookfrom + distance * w, up: linear.y_axis })
+        Some(Look {
+            lookfrom,
+            lookat: lookfrom + distance_along(w, middle - lookfrom) * w,
+            up: linear.y_axis,
+        })
+    }
+
+    /// [`Self::look`] also of a matrix that shears, without that. `None` for a degenerate one.
+    pub fn nearest_look(&self, middle: DVec3) -> Option<Look> {
+        let View::Matrix(matrix) = self.view else { return self.look(middle) };
+        let lookfrom = matrix.w_axis.truncate();
+        let w = matrix.z_axis.truncate().try_normalize()?;
+        Some(Look {
+            lookfrom,
+            lookat: lookfrom + distance_along(w, middle - lookfrom) * w,
+            up: matrix.y_axis.truncate().try_normalize()?,
+        })
+    }
+
+    /// Whether it mirrors the image, as those of many scenes of pbrt do.
+    pub fn is_mirrored(&self) -> bool {
+        matches!(self.view, View::Matrix(matrix) if matrix.determinant() < 0.0)
     }
 
     /// The distance of the plane of focus along the view axis, of a thin lens or a lens system.
@@ -122,7 +141,8 @@ impl Camera {
         }
     }
 
-    /// Changes position and orientation. A lens that was focused on `lookat` ([`Camera::look`]) stays so.
+    /// Changes position and orientation. A lens that was focused on `lookat` ([`Camera::look`]) stays so, and a mirrored image
+    /// mirrored.
     pub fn set_look(&mut self, look: Look, middle: DVec3) {
         let before = self.look(middle).map(|look| look.lookfrom.distance(look.lookat));
         if let (Some(focus_distance), Some(before)) = (self.focus_distance(), before)
@@ -130,8 +150,28 @@ impl Camera {
         {
             self.set_focus_distance(look.lookfrom.distance(look.lookat));
         }
-        self.view = View::Look { lookfrom: look.lookfrom, lookat: look.lookat, up: look.up };
+        let Look { lookfrom, lookat, up } = look;
+        self.view = match look.matrix().filter(|_| self.is_mirrored()) {
+            Some(matrix) => View::Matrix(matrix * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0))),
+            None => View::Look { lookfrom, lookat, up },
+        };
     }
+}
+
+impl Look {
+    /// From the space of the camera, as in [`View::Matrix`], to the world; `None` where it has no direction.
+    fn matrix(&self) -> Option<DMat4> {
+        let w = (self.lookat - self.lookfrom).try_normalize()?;
+        let u = self.up.cross(w).try_normalize()?;
+        let columns = [u, w.cross(u), w].map(|axis| axis.extend(0.0));
+        Some(DMat4::from_cols(columns[0], columns[1], columns[2], self.lookfrom.extend(1.0)))
+    }
+}
+
+/// The distance of a place along a direction of unit length, or 1 if it is behind.
+fn distance_along(w: DVec3, place: DVec3) -> f64 {
+    let along = place.dot(w);
+    if along > 0.0 && along.is_finite() { along } else { 1.0 }
 }
 
 /// The target of a camera. The image does not depend on it; a turntable orbits around it.

@@ -60,11 +60,10 @@ pub(crate) fn open(
     move_shapes(scene, &poses);
     if let Some(camera) = &mut scene.camera {
         let maps: Option<Vec<DMat4>> = poses.iter().map(|pose| pose.camera).collect();
-        let motion = maps.and_then(|maps| Motion::through(&maps));
-        camera.motion = motion.map(|motion| {
+        if let Some(motion) = maps.and_then(|maps| Motion::through(&maps)) {
             let back = motion.at_opening().inverse();
-            Arc::new(motion.with(|map| *map * back))
-        });
+            camera.motion = Some(Arc::new(motion.with(|map| *map * back)));
+        }
     }
     Ok(())
 }
@@ -168,7 +167,8 @@ fn move_meshes(scene: &mut Scene, later: &mut [Pose]) -> u64 {
 fn move_instances(scene: &mut Scene, poses: &[Pose]) {
     for (index, instance) in scene.instances.iter_mut().enumerate() {
         let maps: Vec<DMat4> = poses.iter().map(|pose| pose.instances[index]).collect();
-        instance.motion = Motion::through(&maps).map(Arc::new);
+        // What does not change between the times has the motion that it is given.
+        instance.motion = Motion::through(&maps).map(Arc::new).or(instance.motion.take());
     }
 }
 

@@ -3,25 +3,44 @@
 //! Files are polled, not watched by the system: that works on network folders, too, and with editors that replace files.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
 /// The interval at which files are polled.
 const POLL: Duration = Duration::from_millis(300);
 
-/// Time of the last change and length of each file; `None` for one that is not there.
+/// What each file is; `None` for one that is not there.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Stamps(BTreeMap<PathBuf, Option<(SystemTime, u64)>>);
+pub struct Stamps(BTreeMap<PathBuf, Option<Stamp>>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Stamp {
+    /// The time of the last change.
+    modified: SystemTime,
+    length: u64,
+    /// Device and number, which differ where a link leads elsewhere or a file has taken the place of another.
+    file: [u64; 2],
+}
+
+impl Stamp {
+    fn of(path: &Path) -> Option<Self> {
+        let found = std::fs::metadata(path).ok()?;
+        #[cfg(unix)]
+        let file = {
+            use std::os::unix::fs::MetadataExt;
+            [found.dev(), found.ino()]
+        };
+        #[cfg(not(unix))]
+        let file = [0; 2];
+        Some(Self { modified: found.modified().ok()?, length: found.len(), file })
+    }
+}
 
 impl Stamps {
     /// Stamps of files as they are now.
     pub fn of<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Self {
-        let stamp = |path: &PathBuf| {
-            let found = std::fs::metadata(path).ok()?;
-            Some((found.modified().ok()?, found.len()))
-        };
-        Self(paths.into_iter().map(|path| (path.clone(), stamp(path))).collect())
+        Self(paths.into_iter().map(|path| (path.clone(), Stamp::of(path))).collect())
     }
 
     /// Whether the files are no longer as they were.
@@ -84,6 +103,27 @@ mod tests {
         std::fs::write(&here, "longer").expect("a temporary file");
         assert!(now.after_reading(&paths).have_changed());
         assert_eq!(Stamps::of(&paths).wait(&|| true), None);
+
+        // A link that leads to another file of the same length and time.
+        #[cfg(unix)]
+        {
+            let link = folder.join("link");
+            let moment = SystemTime::now();
+            for path in &paths {
+                std::fs::write(path, "same").expect("a temporary file");
+                std::fs::File::options()
+                    .write(true)
+                    .open(path)
+                    .unwrap()
+                    .set_modified(moment)
+                    .expect("a time");
+            }
+            std::os::unix::fs::symlink(&here, &link).expect("a link");
+            let before = Stamps::of(std::slice::from_ref(&link));
+            std::fs::remove_file(&link).expect("it is ours");
+            std::os::unix::fs::symlink(&missing, &link).expect("a link");
+            assert!(before.have_changed());
+        }
         std::fs::remove_dir_all(&folder).expect("it is ours");
     }
 }

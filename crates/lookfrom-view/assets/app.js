@@ -43,9 +43,12 @@ export function createApp(socket) {
         complain(error) {
             if (error instanceof Error && !(error instanceof Unanswered)) app.toast(error.message);
         },
-        /** The camera in use: the view's, or the scene's. @returns {import("./protocol.js").Camera | null} */
+        /** The camera in use: the view's; or that of the last picture, which time and turntable move; or the scene's. @returns {import("./protocol.js").Camera | null} */
         camera() {
-            return app.view.get().camera ?? app.scene.get()?.camera ?? null;
+            const own = app.scene.get()?.camera;
+            const shown = app.frame.get()?.camera;
+            const camera = app.view.get().camera;
+            return camera ? { ...camera, is_mirrored: own?.is_mirrored } : shown ?? own ?? null;
         },
         /** The size of the finished picture; coarse ones are smaller. @returns {[number, number]} */
         size() {

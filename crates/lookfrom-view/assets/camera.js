@@ -9,14 +9,17 @@ import { add, cross, dot, length, rotate, scale, subtract, unit } from "./vector
 const STEEPEST = (89 * Math.PI) / 180;
 
 /**
- * The axes of the lecture notes: u to the left, v up, w forward.
+ * The axes of the lecture notes: u to the left of the picture, v up, w forward.
  * @param {Camera} camera
  */
-export function axes({ lookfrom, lookat, up }) {
+export function axes({ lookfrom, lookat, up, is_mirrored }) {
     const w = unit(subtract(lookat, lookfrom));
-    const u = unit(cross(up, w));
-    return { u, v: cross(w, u), w };
+    const left = unit(cross(up, w));
+    return { u: is_mirrored ? scale(left, -1) : left, v: cross(w, left), w };
 }
+
+/** The sense in which a picture turns. @param {Camera} camera */
+const sense = ({ is_mirrored }) => (is_mirrored ? -1 : 1);
 
 /**
  * Turns the eye about `lookat`: by `yaw` about `up`, then by `pitch` up or down, both in radians.
@@ -27,7 +30,7 @@ export function axes({ lookfrom, lookat, up }) {
  */
 export function orbit(camera, yaw, pitch) {
     const up = unit(camera.up);
-    const back = rotate(subtract(camera.lookfrom, camera.lookat), up, yaw);
+    const back = rotate(subtract(camera.lookfrom, camera.lookat), up, sense(camera) * yaw);
     return { ...camera, lookfrom: add(camera.lookat, tilted(back, up, pitch)) };
 }
 
@@ -40,7 +43,7 @@ export function orbit(camera, yaw, pitch) {
  */
 export function look(camera, yaw, pitch) {
     const up = unit(camera.up);
-    const forward = rotate(subtract(camera.lookat, camera.lookfrom), up, yaw);
+    const forward = rotate(subtract(camera.lookat, camera.lookfrom), up, sense(camera) * yaw);
     return { ...camera, lookat: add(camera.lookfrom, tilted(forward, up, pitch)) };
 }
 

@@ -1,7 +1,7 @@
 // The loupe: the pixels around the pointer, enlarged, and the film's values of the one under it.
 
 import { byId, h, replace } from "./html.js";
-import { lanes, swatch } from "./format.js";
+import { lanes, short, swatch } from "./format.js";
 import { Unanswered } from "./socket.js";
 
 /** Pixels to each side of the middle. */
@@ -56,14 +56,13 @@ export function showLoupe(app, { pixelAt, canvas, overlay }) {
     }
 
     /** @param {import("./protocol.js").Value} value */
-    function show({ x, y, rgb, samples, variance, reference }) {
-        const deviation = samples > 1 && variance?.map((v) => Math.sqrt(Math.max(Number(v), 0)));
+    function show({ x, y, rgb, samples, deviation, reference }) {
         replace(
             readout,
             h("span", { class: "where" }, `${x}, ${y}`),
             swatch(rgb),
             h("span", {}, lanes(rgb)),
-            deviation && h("span", { class: "faint", title: "standard deviation of the samples" }, `σ ${lanes(deviation, 3)}`),
+            samples > 1 && h("span", { class: "faint", title: "standard deviation of the samples' luminance" }, `σ ${short(Number(deviation), 3)}`),
             reference && h("span", { class: "faint" }, `reference ${lanes(reference)}`),
             h("span", { class: "faint" }, `${samples} sample${samples === 1 ? "" : "s"}`),
         );

@@ -1,6 +1,6 @@
 // The picture: frames as they come, fitted into the stage, with the wipe, the selected pixel and its rays.
 
-import { project, screenFromWorld } from "./camera.js";
+import { project } from "./camera.js";
 import { attachControls } from "./controls.js";
 import { byId } from "./html.js";
 import { drawRays } from "./rays.js";
@@ -91,14 +91,18 @@ export function showPicture(app) {
         const context = /** @type {CanvasRenderingContext2D} */ (overlay.getContext("2d"));
         context.scale(ratio, ratio);
         context.translate(left, top);
-        const [inspection, camera, pixel] = [app.inspection.get(), app.camera(), app.pixel.get()];
-        if (inspection && camera && camera.fov !== null && app.raysOverPicture.get() && app.scene.get()?.camera.projection === "perspective") {
+        const [inspection, matrix, pixel] = [app.inspection.get(), app.frame.get()?.screen_from_world, app.pixel.get()];
+        if (inspection && matrix && app.raysOverPicture.get()) {
             context.save();
             context.beginPath();
             context.rect(0, 0, width, height);
             context.clip();
-            const matrix = screenFromWorld(camera, [width, height]);
-            drawRays(context, { inspection, selected: app.ray.get(), project: (p) => project(matrix, p), isCameraRayShown: false });
+            /** @param {import("./vector.js").Vector} p @returns {[number, number, number]} */
+            const projected = (p) => {
+                const [x, y, depth] = project(matrix, p);
+                return [x * scale, y * scale, depth];
+            };
+            drawRays(context, { inspection, selected: app.ray.get(), project: projected, isCameraRayShown: false });
             context.restore();
         }
         if (pixel) drawMarker(context, pixel, scale);
@@ -143,7 +147,7 @@ export function showPicture(app) {
     });
 
     new ResizeObserver(drawOverlay).observe(overlay);
-    for (const signal of [app.pixel, app.inspection, app.ray, app.raysOverPicture]) signal.on(() => requestAnimationFrame(drawOverlay));
+    for (const signal of [app.pixel, app.frame, app.inspection, app.ray, app.raysOverPicture]) signal.on(() => requestAnimationFrame(drawOverlay));
     return { pixelAt, canvas, overlay };
 }
 

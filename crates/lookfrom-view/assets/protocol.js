@@ -2,7 +2,7 @@
 // Keys are in snake_case. Types of inspections are made from the schema of `lookfrom inspect --json`.
 
 /** @typedef {import("../types/inspection.js").Vector} Vector */
-/** @typedef {{lookfrom: Vector, lookat: Vector, up: Vector, fov: number | null}} Camera */
+/** In a mirrored picture u is to the right. @typedef {{lookfrom: Vector, lookat: Vector, up: Vector, fov: number | null, is_mirrored?: boolean}} Camera */
 /** @typedef {"wipe" | "reference" | "difference" | "flip" | "z"} Compare */
 
 /**
@@ -51,6 +51,11 @@
  * @property {{name: string, seconds: number}[]} animations
  * @property {number | null} duration
  * @property {boolean} turntable
+ * @property {number | null} turn degrees
+ * @property {number | null} rotate_environment degrees
+ * @property {number | null} at seconds
+ * @property {string | null} variant
+ * @property {number | null} animation
  * @property {Record<string, Count>} counts
  * @property {{name: string, position: Vector | null}[]} lights
  * @property {string | null} reference
@@ -60,8 +65,8 @@
 
 /** @typedef {{type: "progress", view: number, samples: number, of: number, seconds: number, rays_per_second: number, done: boolean, hash: string | null}} Progress */
 /** @typedef {{type: "error", id: number | null, message: string, place: {file: string, line: number, column: number} | null, excerpt: string | null}} Failure */
-/** @typedef {{type: "value", x: number, y: number, rgb: Vector, samples: number, variance: Vector, reference: Vector | null}} Value */
-/** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, sizes?: number[]}} PictureHeader */
+/** @typedef {{type: "value", x: number, y: number, rgb: Vector, samples: number, deviation: number | string, reference: Vector | null}} Value */
+/** @typedef {{kind: "picture", view: number, width: number, height: number, scale: number, samples: number, of: number, done: boolean, layer: string, seconds: number, camera: Camera, screen_from_world: number[] | null, sizes?: number[]}} PictureHeader */
 /** @typedef {{kind: "space", id: number, width: number, height: number, screen_from_world: number[], sizes: number[]}} SpaceHeader */
 /** @typedef {{kind: "file", id: number, name: string, mime: string}} FileHeader */
 /** A table of the scene format: its title is `[camera]`, `[[light]] point`, `[materials.NAME] whitted`, or the name of a table within one. @typedef {{title: string, keys: string[]}} Table */

@@ -18,6 +18,9 @@ const COMPARISONS = /** @type {const} */ ([
     ["z", "z-score"],
 ]);
 
+/** The limits of the server. */
+const [MOST_DEPTH, MOST_SAMPLES] = [256, 2 ** 24];
+
 /** @param {App} app */
 export function showSettings(app) {
     const rebuild = () => {
@@ -30,6 +33,14 @@ export function showSettings(app) {
     };
     app.scene.on(rebuild);
     app.view.on((_, moving) => void (moving || rebuild()));
+    // Time and turntable move the camera of the scene.
+    let shown = "";
+    app.frame.on(() => {
+        const [scene, group, camera] = [app.scene.get(), document.getElementById("camera-group"), JSON.stringify(app.camera())];
+        if (!scene || !group || camera === shown || group.contains(document.activeElement)) return;
+        shown = camera;
+        group.replaceWith(cameraGroup(app, scene));
+    });
 }
 
 /** @param {App} app @param {Scene} scene */
@@ -81,7 +92,8 @@ function showRendering(app, scene) {
     /** @param {Partial<View>} change */
     const set = (change) => app.view.set(change);
     const sizes = sizesOf(scene, view.size ?? scene.size);
-    const animation = view.animation === null ? null : scene.animations[view.animation];
+    const chosen = view.animation ?? scene.animation;
+    const animation = chosen === null ? null : scene.animations[chosen];
     // Expressions have no end: ten seconds of them.
     const seconds = animation ? animation.seconds : scene.duration === 0 ? 10 : scene.duration;
     replace(
@@ -89,19 +101,19 @@ function showRendering(app, scene) {
         group(
             "Light transport",
             field("Integrator", select(scene.integrators.map((name) => [name, name]), view.integrator ?? scene.integrator, (integrator) => set({ integrator }))),
-            field("Depth", number(view.depth, { min: 0, max: 1000, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
-            field("Samples", number(view.samples, { min: 1, max: 1e6, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
+            field("Depth", number(view.depth, { min: 0, max: MOST_DEPTH, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
+            field("Samples", number(view.samples, { min: 1, max: MOST_SAMPLES, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
             field("Min. contribution", number(view.min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree with a smaller share are not followed"),
             field("Size", select(sizes, (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {[number, number]} */ (text.split("x").map(Number)) }))),
         ),
         group(
             "Scene",
-            scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], view.variant ?? "", (variant) => set({ variant: variant || null }))),
+            scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], view.variant ?? scene.variant ?? "", (variant) => set({ variant: variant || null }))),
             scene.animations.length > 0 &&
-                field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], view.animation === null ? "" : String(view.animation), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
-            seconds !== null && slider("Time", { min: 0, max: seconds, step: seconds / 200 }, view.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
-            scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
-            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotate_environment ?? 0, (rotate_environment) => set({ rotate_environment }), (turn) => `${turn}°`).element,
+                field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], chosen === null ? "" : String(chosen), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
+            seconds !== null && slider("Time", { min: 0, max: seconds, step: seconds / 200 }, view.at ?? scene.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
+            scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? scene.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
+            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotate_environment ?? scene.rotate_environment ?? 0, (rotate_environment) => set({ rotate_environment }), (turn) => `${turn}°`).element,
         ),
         cameraGroup(app, scene),
         group(
@@ -139,7 +151,7 @@ function contents(n) {
 
 /** @param {App} app @param {Scene} scene */
 function cameraGroup(app, scene) {
-    const camera = app.view.get().camera ?? scene.camera;
+    const camera = app.camera() ?? scene.camera;
     /** @param {"lookfrom" | "lookat" | "up"} name */
     const vector = (name) =>
         h("div", { class: "field vector", role: "group", "aria-label": name }, h("span", { class: "label" }, name),
@@ -153,7 +165,9 @@ function cameraGroup(app, scene) {
             }));
     const fov = camera.fov !== null && field("fov", number(Number(camera.fov.toPrecision(6)), { min: 1, max: 179 }, (value) =>
         app.view.set({ camera: value === null ? null : { lookfrom: camera.lookfrom, lookat: camera.lookat, up: camera.up, fov: value } })), "Vertical field of view, degrees");
-    return group("Camera", vector("lookfrom"), vector("lookat"), vector("up"), fov, h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
+    const element = group("Camera", vector("lookfrom"), vector("lookat"), vector("up"), fov, h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
+    element.id = "camera-group";
+    return element;
 }
 
 /** @param {string} title @param {...(import("./html.js").Child | import("./html.js").Child[])} children */

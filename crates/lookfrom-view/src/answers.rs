@@ -5,6 +5,7 @@ use lookfrom::session::{Format, Session};
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use lookfrom_scene::{Error, Result, toml};
 
+use crate::compare::luminance_variance;
 use crate::develop::Shown;
 use crate::mailbox::Outgoing;
 use crate::message::{Answer, FileFormat, Header, Request, TableAnswer};
@@ -114,17 +115,19 @@ impl Window {
             y,
             rgb: film.mean(x, y),
             samples: film.samples(x, y),
-            variance: film.variance(x, y),
+            deviation: luminance_variance(film, [x, y]).sqrt(),
             reference: reference.map(|image| image.texel(y as usize * image.width as usize + x as usize)),
         })
     }
 
     /// The view in words. The scene file is whole where there is none beside which it could be saved, or imports the scene's.
     pub(crate) fn words(&self, id: u64, is_whole: bool) -> Result<Answer> {
-        let (Some(render), Some(request)) = (&self.render, &self.request) else { return Err(nothing_yet()) };
+        let (Some(render), Some(request), Some(own)) = (&self.render, &self.request, &self.loaded) else {
+            return Err(nothing_yet());
+        };
         let settings = self.document.settings();
-        let source = if is_whole { source::of_toml(&settings.scene, self.document.files()) } else { None };
-        let toml = words::toml(&render.session, request, source.as_deref());
+        let source = source::of_toml(&settings.scene, self.document.files());
+        let toml = words::toml(&render.session, own, request, source.as_deref(), is_whole)?;
         let command = words::command(&render.session, request, &settings.typed);
         Ok(Answer::Words { id, toml, command })
     }

@@ -1,5 +1,6 @@
 //! Comparison of a picture with a reference.
 
+use lookfrom::core::math::luminance;
 use lookfrom::film::{Film, Picture};
 use lookfrom::post::develop::srgb8;
 use lookfrom::session::Developed;
@@ -48,14 +49,18 @@ pub(crate) fn pictures(
         Comparing::Z => {
             let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
             let scores = pairs().zip(places).map(|((a, b), (x, y))| {
-                let errors =
-                    film.variance(x, y).map(|variance| (variance / film.samples(x, y).max(1) as f32).sqrt());
-                let sum = |of: &[f32; 3]| of.iter().sum::<f32>();
-                (sum(a) - sum(b)) / sum(&errors).max(1e-12)
+                let variance = luminance_variance(film, [x, y]) / film.samples(x, y).max(1) as f32;
+                (luminance(*a) - luminance(*b)) / variance.sqrt().max(1e-12)
             });
             vec![colored(scores.map(signed).collect())?]
         }
     })
+}
+
+/// The variance of one sample's luminance.
+pub(crate) fn luminance_variance(film: &Film, [x, y]: [u32; 2]) -> f32 {
+    let [_, luminance, _] = film.variance(x, y);
+    luminance
 }
 
 /// Blue for too dark, red for too bright, saturated where noise does not explain it.

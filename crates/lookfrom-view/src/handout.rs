@@ -18,7 +18,7 @@ use crate::mailbox::Mailbox;
 use crate::message::{Answer, Header, ViewRequest};
 use crate::render::Window;
 use crate::view::refused;
-use crate::{Settings, bundle, source};
+use crate::{Settings, bundle, source, space, told};
 
 /// The most samples whose rays are held.
 const MOST_SAMPLES: usize = 8;
@@ -99,6 +99,8 @@ impl Window {
             done: render.is_done(),
             layer: "color".to_owned(),
             seconds: render.spent.as_secs_f64(),
+            camera: told::camera(&session),
+            screen_from_world: space::of_points(&session),
             sizes: vec![png.len()],
         };
         let [x, y] = pixel;

@@ -142,8 +142,8 @@ pub(crate) enum Answer {
         y: u32,
         rgb: [f32; 3],
         samples: u64,
-        /// Variance of one sample.
-        variance: [f32; 3],
+        /// Standard deviation of one sample's luminance; infinite of fewer than two.
+        deviation: f32,
         reference: Option<[f32; 3]>,
     },
     Lobe(Box<LobeAnswer>),
@@ -198,6 +198,12 @@ pub(crate) struct SceneAnswer {
     /// Duration of keyframes and expressions of the scene, in seconds.
     pub(crate) duration: Option<f64>,
     pub(crate) turntable: bool,
+    /// What the options say of it, in degrees, seconds, a name and a number.
+    pub(crate) turn: Option<f64>,
+    pub(crate) rotate_environment: Option<f64>,
+    pub(crate) at: Option<f64>,
+    pub(crate) variant: Option<String>,
+    pub(crate) animation: Option<usize>,
     pub(crate) counts: Counts,
     pub(crate) lights: Vec<LightAnswer>,
     pub(crate) reference: Option<String>,
@@ -213,6 +219,8 @@ pub(crate) struct CameraAnswer {
     /// `None` where rays do not leave a point into a frustum.
     pub(crate) fov: Option<f64>,
     pub(crate) projection: &'static str,
+    /// Whether its picture is mirrored: `u` of the notes is to the right in it.
+    pub(crate) is_mirrored: bool,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -272,6 +280,10 @@ pub(crate) enum Header {
         done: bool,
         layer: String,
         seconds: f64,
+        /// The camera that made it.
+        camera: CameraAnswer,
+        /// From the world to the pixels of the view, as in `Space`; `None` where points have no single place in the picture.
+        screen_from_world: Option<[f64; 16]>,
         /// Bytes of the pictures that follow.
         sizes: Vec<usize>,
     },

@@ -21,6 +21,7 @@ use crate::mailbox::{Mailbox, Task};
 use crate::message::{Answer, Header, Request, ViewRequest};
 use crate::view::Variation;
 use crate::view_render::{Stage, ViewRender};
+use crate::{space, told};
 
 /// Runs until the window is closed.
 #[cfg(feature = "server")]
@@ -235,6 +236,8 @@ impl Window {
             done: render.is_done(),
             layer: request.layer.clone().unwrap_or_else(|| "color".to_owned()),
             seconds: render.spent.as_secs_f64(),
+            camera: told::camera(&render.session),
+            screen_from_world: space::of_points(&render.session),
             sizes: pictures.iter().map(Vec::len).collect(),
         };
         let parts: Vec<&[u8]> = pictures.iter().map(Vec::as_slice).collect();
@@ -260,6 +263,8 @@ impl Window {
             done: render.is_done(),
             layer: request.layer.clone().unwrap_or_default(),
             seconds: render.spent.as_secs_f64(),
+            camera: told::camera(&render.session),
+            screen_from_world: space::of_points(&render.session),
             sizes: vec![png.len()],
         };
         render.cost = Some(map);

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use axum::Router;
-use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::ws::{Message, WebSocketUpgrade};
 use axum::extract::{Path, Query, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
@@ -22,7 +22,7 @@ use serde::Deserialize;
 use crate::Settings;
 use crate::assets::asset;
 use crate::document::Document;
-use crate::message::LONGEST;
+use crate::message::{Answer, LONGEST};
 use crate::patience::{self, PatientListener};
 use crate::window::{self, Counted};
 
@@ -240,8 +240,12 @@ async fn socket(
         return no_token();
     }
     let Some(counted) = Counted::new(&state.windows, MOST_WINDOWS) else {
-        let message = format!("{MOST_WINDOWS} windows are open: close one\n");
-        return (StatusCode::SERVICE_UNAVAILABLE, message).into_response();
+        // A page cannot read why a connection was refused, so it is made, for one message.
+        let answer = Answer::refusal(None, format!("{MOST_WINDOWS} windows are open: close one"));
+        return upgrade.on_upgrade(|mut socket| async move {
+            // Who is gone need not be told.
+            let _ = socket.send(Message::Text(answer.text().into())).await;
+        });
     };
     // Longer messages than the longest are read, so that they can be answered, up to a limit.
     let upgrade = upgrade.max_message_size(16 * LONGEST).max_frame_size(16 * LONGEST);

@@ -42,6 +42,14 @@ pub(crate) fn without(text: &str, tables: &[&str]) -> Option<String> {
     Some(kept)
 }
 
+/// A key of an outermost table of a text of TOML, with its value, as they are written.
+pub(crate) fn line_of(text: &str, table: &str, key: &str) -> Option<String> {
+    let parsed = DeTable::parse(text).ok()?;
+    let (_, table) = parsed.get_ref().iter().find(|(name, _)| name.get_ref() == table)?;
+    let (_, value) = table.get_ref().as_table()?.iter().find(|(name, _)| name.get_ref() == key)?;
+    Some(format!("{key} = {}", text.get(value.span())?))
+}
+
 /// Adds the places of a value and of all within it. That of a table is its braces or its header; a table that only others name has none.
 fn add(value: &Spanned<DeValue<'_>>, spans: &mut Vec<Range<usize>>) {
     spans.push(value.span());

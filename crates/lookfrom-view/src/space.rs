@@ -76,6 +76,13 @@ fn headlight(aovs: &Aovs) -> [u8; 4] {
     [r, g, b, 255]
 }
 
+/// [`screen_from_world`] of a session's camera, row by row; `None` where rays do not leave a point into a frustum.
+pub(crate) fn of_points(session: &Session) -> Option<[f64; 16]> {
+    let camera = session.renderer().view().camera();
+    matches!(camera.projection, Projection::Perspective { .. })
+        .then(|| screen_from_world(camera).transpose().to_cols_array())
+}
+
 /// From the world to pixels, x to the right and y down from the top left, divided by w; w is the depth.
 fn screen_from_world(camera: &Camera) -> DMat4 {
     let d = camera.distance;

@@ -1,9 +1,11 @@
 //! The message that tells a page of a scene.
 
+use glam::DVec3;
 use lookfrom::inspect::{self, LightPlace};
 use lookfrom::session::Session;
 use lookfrom::world::World;
-use lookfrom_scene::camera::{Camera, Look, Projection, View};
+use lookfrom_scene::camera::{Look, Projection};
+use lookfrom_scene::contents::AnimationEntry;
 use lookfrom_scene::settings::{Integrator, Tonemap};
 use lookfrom_scene::{WarningGroup, WarningKind};
 
@@ -26,7 +28,7 @@ impl Loaded {
             name: session.name().to_owned(),
             size: [image.width, image.height],
             is_sized: self.options.width.is_some() || self.options.height.is_some(),
-            camera: camera(session.camera(), info.bounds.center()),
+            camera: camera(session),
             bounds: BoundsAnswer { min: info.bounds.min.into(), max: info.bounds.max.into() },
             integrator: settings.integrator.word(),
             integrators: Integrator::WORDS.iter().map(|&(word, _)| word).collect(),
@@ -51,6 +53,14 @@ impl Loaded {
                 .collect(),
             duration: info.contents.duration,
             turntable: self.options.turn.is_some(),
+            turn: self.options.turn,
+            rotate_environment: self.options.rotate_environment,
+            at: self.options.import.at,
+            variant: self.options.import.variant.clone(),
+            animation: self.options.import.animation.as_ref().and_then(|typed| {
+                let named = |animation: &AnimationEntry| animation.name.as_ref() == Some(typed);
+                info.contents.animations.iter().position(named).or_else(|| typed.parse().ok())
+            }),
             counts: info.counts.clone(),
             lights: lights(session.world()),
             reference: self.reference.as_ref().map(|image| image.name.clone()),
@@ -64,15 +74,12 @@ impl Loaded {
     }
 }
 
-fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
-    // A matrix that mirrors or shears has a position and an axis, at least.
-    let look = camera.look(middle).unwrap_or_else(|| {
+/// The camera of a session.
+pub(crate) fn camera(session: &Session) -> CameraAnswer {
+    let (camera, middle) = (session.camera(), session.info().bounds.center());
+    let look = camera.nearest_look(middle).unwrap_or_else(|| {
         let lookfrom = camera.view.lookfrom();
-        let (w, up) = match camera.view {
-            View::Matrix(matrix) => (matrix.z_axis.truncate(), matrix.y_axis.truncate()),
-            View::Look { lookat, up, .. } => (lookat - lookfrom, up),
-        };
-        Look { lookfrom, lookat: lookfrom + w, up }
+        Look { lookfrom, lookat: lookfrom + DVec3::Z, up: DVec3::Y }
     });
     let (fov, projection) = match camera.projection {
         Projection::Perspective { fov } => (Some(fov), "perspective"),
@@ -88,6 +95,7 @@ fn camera(camera: &Camera, middle: glam::DVec3) -> CameraAnswer {
         up: look.up.into(),
         fov,
         projection,
+        is_mirrored: camera.is_mirrored(),
     }
 }
 

@@ -3,21 +3,32 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use glam::DVec3;
 use lookfrom::session::Session;
-use lookfrom_scene::camera::{Camera, Look, Projection, View};
-use lookfrom_scene::lens::{ApertureShape, LensSystem};
-use lookfrom_scene::settings::{Filter, RenderSettings};
+use lookfrom_scene::camera::{Camera, Projection};
+use lookfrom_scene::settings::{ImageSettings, PixelBounds};
+use lookfrom_scene::toml::write::{Sources, write_view};
+use lookfrom_scene::{Budget, Disk, Result, Scene};
 
+use crate::document::Loaded;
 use crate::message::ViewRequest;
 use crate::source;
 
-/// A view as a scene file: the text of the scene with the camera and the settings of the view, or without that text a file to be saved beside the
-/// scene's, which it imports. A scene of pbrt cannot be imported; of that these are all tables but its contents.
-pub(crate) fn toml(session: &Session, request: &ViewRequest, source: Option<&str>) -> String {
-    let (image, settings, camera) = (session.image(), session.settings(), session.camera());
+/// A view as a scene file: the text of the scene with the camera and the settings of the view, or a file to be saved beside the scene's, which it
+/// imports. A scene of pbrt cannot be imported; of that these are all tables but its contents. What no table says is in comments. `source` is
+/// the text of a scene in our own format.
+///
+/// # Errors
+/// As those of [`write_view`].
+pub(crate) fn toml(
+    session: &Session,
+    own: &Loaded,
+    request: &ViewRequest,
+    source: Option<&str>,
+    is_whole: bool,
+) -> Result<String> {
     let file = Path::new(session.name()).file_name().unwrap_or_default().to_string_lossy();
-    let contents = source.and_then(|text| source::without(text, &["camera", "image", "render"]));
+    let contents = source.filter(|_| is_whole);
+    let contents = contents.and_then(|text| source::without(text, &["camera", "image", "render"]));
     let mut text = match contents {
         Some(contents) => format!("{}\n\n", contents.trim_end()),
         None if has_format_of_pbrt(&file) => format!(
@@ -31,127 +42,56 @@ pub(crate) fn toml(session: &Session, request: &ViewRequest, source: Option<&str
             serde_json::Value::from(file.as_ref())
         ),
     };
-    let line = |text: &mut String, key: &str, value: &str| {
-        let _ = writeln!(text, "{key} = {value}");
+    for (what, unit, value) in [
+        ("time", " s", request.at.or(own.options.import.at)),
+        ("turntable", "°", request.turn.or(own.options.turn)),
+        ("turn of the surroundings", "°", request.rotate_environment.or(own.options.rotate_environment)),
+    ] {
+        if let Some(value) = value {
+            let _ = writeln!(text, "# No table says the {what}: {value}{unit}.");
+        }
+    }
+    let camera = session.camera();
+    if camera.medium.is_some() {
+        text.push_str("# `medium` of the scene's own camera is to be added.\n");
+    }
+    let (image, layers) = (session.image(), own.session.image());
+    let view = Scene {
+        camera: Some(Camera { medium: None, ..camera.clone() }),
+        image: ImageSettings {
+            exposure: request.exposure,
+            tonemap: request.tonemap(image.tonemap)?,
+            denoise: request.denoise,
+            layers: layers.layers,
+            spectral_film: layers.spectral_film.clone(),
+            ..image.clone()
+        },
+        render: session.settings().clone(),
+        ..Scene::default()
     };
-    let middle = session.info().bounds.center();
-    let look = camera.look(middle);
-    if look.is_none() {
-        // A matrix that mirrors or shears, as that of many scenes of pbrt.
-        text.push_str(
-            "# The scene's own picture is mirrored or sheared, which the keys of a camera cannot say.\n",
-        );
+    let sources = Sources { files: &Disk, paths: Vec::new(), budget: Budget::default() };
+    let written = write_view(&view, "", &sources)?;
+    for line in written.text.lines() {
+        // A file beside the scene's, under the name that the scene has for it.
+        let key = ["lens", "aperture_shape"].into_iter().find(|key| {
+            let names_file = line.strip_prefix(key).is_some_and(|rest| rest.starts_with(" = \"/"));
+            names_file && !written.files.is_empty()
+        });
+        let _ = match key {
+            None => writeln!(text, "{line}"),
+            Some(key) => match source.and_then(|text| source::line_of(text, "camera", key)) {
+                Some(line) => writeln!(text, "{line}"),
+                None => writeln!(text, "# `{key}` of the scene's own camera is to be added."),
+            },
+        };
     }
-    if let Some(look) = look.or_else(|| nearest_look(camera, middle)) {
-        text.push_str("[camera]\n");
-        for (key, vector) in [("lookfrom", look.lookfrom), ("lookat", look.lookat), ("up", look.up)] {
-            line(&mut text, key, &list(&vector.to_array()));
-        }
-        for (key, value) in lens_and_window(camera) {
-            line(&mut text, key, &value);
-        }
-        if camera.medium.is_some() {
-            text.push_str("# `medium` of the scene's own camera is to be added.\n");
-        }
+    let of_contents = ["add_light", "vertex_normals"];
+    for line in
+        source.into_iter().flat_map(|text| of_contents.map(|key| source::line_of(text, "render", key)))
+    {
+        line.into_iter().for_each(|line| text.extend([&line, "\n"]));
     }
-    let _ = write!(text, "\n[image]\nwidth = {}\nheight = {}\n", image.width, image.height);
-    line(&mut text, "exposure", &number(request.exposure.into()));
-    line(&mut text, "tonemap", &format!("{:?}", tonemap(session, request)));
-    line(&mut text, "filter", &filter(image.filter));
-    line(&mut text, "denoise", &request.denoise.to_string());
-    text.push_str("\n[render]\n");
-    for (key, value) in rendering(settings) {
-        line(&mut text, key, &value);
-    }
-    text
-}
-
-/// Keys of `[camera]` besides position and orientation.
-fn lens_and_window(camera: &Camera) -> Vec<(&'static str, String)> {
-    let mut keys = match &camera.projection {
-        Projection::Perspective { fov } => vec![("fov", number(*fov))],
-        Projection::Orthographic { height } => {
-            vec![("projection", "\"orthographic\"".to_owned()), ("height", number(*height))]
-        }
-        Projection::Equirectangular | Projection::EquirectangularPbrt => {
-            vec![("projection", "\"equirectangular\"".to_owned())]
-        }
-        Projection::Octahedral => vec![("projection", "\"octahedral\"".to_owned())],
-        Projection::LensSystem(system) => lens_system(system),
-        Projection::Irradiance { surface } => {
-            vec![("projection", "\"irradiance\"".to_owned()), ("surface", format!("{surface:?}"))]
-        }
-    };
-    if matches!(camera.projection, Projection::Perspective { .. } | Projection::Orthographic { .. }) {
-        if let Some(lens) = &camera.lens {
-            keys.push(("aperture", number(lens.radius)));
-            keys.push(("focus_distance", number(lens.focus_distance)));
-        }
-        if let Some(window) = &camera.window {
-            keys.push(("window", format!("{{ x = {}, y = {} }}", list(&window.x), list(&window.y))));
-        }
-    }
-    keys.push(("distance", number(camera.distance)));
-    keys.extend(camera.clip.map(|planes| ("clip", list(&planes))));
-    keys
-}
-
-/// The keys of a lens system.
-fn lens_system(system: &LensSystem) -> Vec<(&'static str, String)> {
-    let mut keys = vec![("lens", format!("{:?}", system.name)), ("film", number(system.film_diagonal))];
-    if let Some(diameter) = system.stop_diameter {
-        keys.push(("aperture", number(0.5 * diameter * system.millimetre)));
-    }
-    if system.shape != ApertureShape::Circle {
-        keys.push(("aperture_shape", format!("{:?}", system.shape.name())));
-    }
-    if system.millimetre != 1e-3 {
-        keys.push(("millimetre", number(system.millimetre)));
-    }
-    keys.push(("focus_distance", number(system.focus_distance)));
-    keys
-}
-
-fn filter(Filter { shape, radius: [x, y] }: Filter) -> String {
-    let radius = if x == y { x.to_string() } else { format!("[{x}, {y}]") };
-    let parameters = shape.parameters().into_iter().map(|(key, value)| format!(", {key} = {value}"));
-    format!("{{ type = {:?}, radius = {radius}{} }}", shape.word(), parameters.collect::<String>())
-}
-
-/// Keys of `[render]`; those that only few scenes have, where they are not the default.
-fn rendering(settings: &RenderSettings) -> Vec<(&'static str, String)> {
-    let default = RenderSettings::default();
-    let word = |word: &str| format!("{word:?}");
-    let mut keys = vec![
-        ("integrator", word(settings.integrator.word())),
-        ("samples", settings.samples.to_string()),
-        ("depth", settings.depth.to_string()),
-        ("min_contribution", settings.min_contribution.to_string()),
-    ];
-    let rare = [
-        ("sampler", settings.sampler != default.sampler, word(settings.sampler.word())),
-        ("seed", settings.seed != default.seed, settings.seed.to_string()),
-        ("color", settings.color != default.color, word(settings.color.word())),
-        (
-            "light_sampler",
-            settings.light_sampler != default.light_sampler,
-            word(settings.light_sampler.word()),
-        ),
-        ("portals", settings.portals != default.portals, word(settings.portals.word())),
-        ("regularize", settings.regularize, "true".to_owned()),
-        ("transparent_shadows", !settings.transparent_shadows, "false".to_owned()),
-        ("thin_passages_count", !settings.thin_passages_count, "false".to_owned()),
-        ("endless_media", settings.endless_media, "true".to_owned()),
-        ("open_fronts", settings.open_fronts, "true".to_owned()),
-        ("hide_lights", settings.hide_lights, "true".to_owned()),
-        (
-            "occlusion_distance",
-            settings.occlusion_distance.is_finite(),
-            number(settings.occlusion_distance.into()),
-        ),
-    ];
-    keys.extend(rare.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)));
-    keys
+    Ok(text)
 }
 
 fn has_format_of_pbrt(file: &str) -> bool {
@@ -162,17 +102,6 @@ fn has_format_of_pbrt(file: &str) -> bool {
 /// A name within a comment.
 fn one_line(name: &str) -> String {
     name.replace(char::is_control, " ")
-}
-
-/// A number of TOML: without a point or an exponent it would be an integer of 64 bits.
-fn number(number: f64) -> String {
-    // A negative zero is told as 0.
-    let number = number + 0.0;
-    if number.abs() < 1e15 { number.to_string() } else { format!("{number:?}") }
-}
-
-fn list(numbers: &[f64]) -> String {
-    format!("[{}]", numbers.iter().map(|&x| number(x)).collect::<Vec<_>>().join(", "))
 }
 
 /// The command that renders the view of a scene; `typed` are the options that its session was opened with.
@@ -204,7 +133,9 @@ pub(crate) fn command(session: &Session, request: &ViewRequest, typed: &[String]
             }
         }
     }
+    let crop = image.crop.map(|PixelBounds { x0, y0, x1, y1 }| format!("{x0},{y0},{x1},{y1}"));
     let optional = [
+        ("crop", crop),
         ("rotate-environment", request.rotate_environment.map(|degrees| degrees.to_string())),
         ("animation", request.animation.map(|number| number.to_string())),
         ("at", request.at.map(|seconds| seconds.to_string())),
@@ -227,20 +158,6 @@ pub(crate) fn command(session: &Session, request: &ViewRequest, typed: &[String]
 fn tonemap(session: &Session, request: &ViewRequest) -> &'static str {
     let own = session.image().tonemap;
     request.tonemap(own).unwrap_or(own).word()
-}
-
-/// Position and direction of a camera that is given by a matrix, without what else the matrix does.
-fn nearest_look(camera: &Camera, middle: DVec3) -> Option<Look> {
-    let View::Matrix(matrix) = camera.view else { return None };
-    let lookfrom = matrix.w_axis.truncate();
-    let forward = matrix.z_axis.truncate().try_normalize()?;
-    let distance = (middle - lookfrom).dot(forward);
-    let distance = if distance > 0.0 { distance } else { 1.0 };
-    Some(Look {
-        lookfrom,
-        lookat: lookfrom + forward * distance,
-        up: matrix.y_axis.truncate().try_normalize()?,
-    })
 }
 
 /// The number of a projection, with its key.

@@ -30,6 +30,7 @@ use self::names::{FileNames, Names};
 use self::picture::{For, Picture};
 use self::placing::{put_motion, put_transform};
 use self::reach::Reached;
+use self::settings::is_dark;
 use self::text::{Fields, Text};
 use super::shape::{ANY, KEYS};
 use crate::budget::Budget;
@@ -93,27 +94,22 @@ impl Sources<'_> {
 /// cells, curves of several profiles in one shape, a measured material whose file is gone, a medium with both a temperature and an emission.
 pub fn write(scene: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Written> {
     scene.validate()?;
-    let reached = Reached::of(scene);
-    let textures: Vec<String> = scene.textures.iter().map(name_of).collect();
-    let mut writer = Writer {
-        scene,
-        folder,
-        sources,
-        materials: Names::new("material", scene.materials.iter().map(|part| &*part.name), &reached.materials),
-        textures: Names::new("texture", textures.iter().map(|name| &**name), &reached.textures),
-        media: Names::new("medium", scene.media.iter().map(|part| &*part.name), &reached.media),
-        objects: Names::new("object", scene.objects.iter().map(|part| &*part.name), &reached.objects),
-        shared: shared_meshes(scene),
-        file_names: FileNames::default(),
-        files: Vec::new(),
-        pictures: BTreeMap::new(),
-        copies: BTreeMap::new(),
-        meshes: BTreeMap::new(),
-        spectra: BTreeMap::new(),
-        measured: BTreeMap::new(),
-    };
+    let mut writer = Writer::new(scene, folder, sources);
     let text = writer.document()?;
     Ok(Written { text, files: writer.files })
+}
+
+/// Writes `[camera]`, `[image]` and `[render]` of a view alone, of which everything else is in another document: what an empty scene has of
+/// it. A camera's medium has no name here, and must be none; the table of a lens is a file beside the text, as in [`write`].
+///
+/// # Errors
+/// As [`write`].
+pub fn write_view(view: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Written> {
+    let mut writer = Writer::new(view, folder, sources);
+    let mut text = Text::default();
+    let render = writer.render();
+    writer.view(&mut text, &render)?;
+    Ok(Written { text: text.0, files: writer.files })
 }
 
 /// The state of a document that is written.
@@ -139,14 +135,38 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
+    fn new(scene: &'a Scene, folder: &'a str, sources: &'a Sources<'a>) -> Self {
+        let reached = Reached::of(scene);
+        let textures: Vec<String> = scene.textures.iter().map(name_of).collect();
+        Self {
+            scene,
+            folder,
+            sources,
+            materials: Names::new(
+                "material",
+                scene.materials.iter().map(|part| &*part.name),
+                &reached.materials,
+            ),
+            textures: Names::new("texture", textures.iter().map(|name| &**name), &reached.textures),
+            media: Names::new("medium", scene.media.iter().map(|part| &*part.name), &reached.media),
+            objects: Names::new("object", scene.objects.iter().map(|part| &*part.name), &reached.objects),
+            shared: shared_meshes(scene),
+            file_names: FileNames::default(),
+            files: Vec::new(),
+            pictures: BTreeMap::new(),
+            copies: BTreeMap::new(),
+            meshes: BTreeMap::new(),
+            spectra: BTreeMap::new(),
+            measured: BTreeMap::new(),
+        }
+    }
+
     fn document(&mut self) -> Result<String> {
         let scene: &'a Scene = self.scene;
         let mut text = Text::default();
-        if let Some(camera) = &scene.camera {
-            text.table(&["camera"], &self.camera(camera)?);
-        }
-        text.table(&["image"], &self.image());
-        text.table(&["render"], &self.render());
+        let mut render = self.render();
+        render.put_unless("add_light", !is_dark(scene), true);
+        self.view(&mut text, &render)?;
         for index in self.media.in_order() {
             let fields = self.medium(&scene.media[index])?;
             text.table(&["media", self.media.of(index)], &fields);
@@ -177,6 +197,16 @@ impl<'a> Writer<'a> {
             text.array(&["light"], &self.light(light)?);
         }
         Ok(text.0)
+    }
+
+    /// The tables of a view.
+    fn view(&mut self, text: &mut Text, render: &Fields) -> Result<()> {
+        if let Some(camera) = &self.scene.camera {
+            text.table(&["camera"], &self.camera(camera)?);
+        }
+        text.table(&["image"], &self.image());
+        text.table(&["render"], render);
+        Ok(())
     }
 
     /// The tables of shapes: each in the array of its kind, if their order is that in which these are read, else in one array of all.

@@ -299,7 +299,7 @@ impl Options {
     ///
     /// # Errors
     /// `Request` for a field of view where rays are parallel, and for a new position or direction of a camera that
-    /// shears or reflects.
+    /// shears.
     pub(super) fn apply_to_camera(&self, camera: &mut Camera, middle: DVec3) -> Result<bool> {
         let moved = self.lookfrom.is_some() || self.lookat.is_some() || self.up_of_camera().is_some();
         if let Some(degrees) = self.fov {
@@ -335,9 +335,7 @@ impl Options {
 
     fn look(&self, camera: &mut Camera, middle: DVec3) -> Result<()> {
         let mut look = camera.look(middle).ok_or_else(|| {
-            unsuitable(
-                "lookfrom, lookat and up cannot change a camera whose matrix shears or reflects".to_owned(),
-            )
+            unsuitable("lookfrom, lookat and up cannot change a camera whose matrix shears".to_owned())
         })?;
         replace(&mut look.lookfrom, self.lookfrom);
         replace(&mut look.lookat, self.lookat);

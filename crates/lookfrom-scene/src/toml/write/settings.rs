@@ -138,13 +138,12 @@ impl Writer<'_> {
         if self.scene.vertex_normals != VertexNormals::default() {
             fields.put("vertex_normals", word_of(VERTEX_NORMALS, &self.scene.vertex_normals));
         }
-        fields.put_unless("add_light", !is_dark(self.scene), true);
         fields
     }
 }
 
 /// Whether a light would be added that the scene is not to have.
-fn is_dark(scene: &Scene) -> bool {
+pub(super) fn is_dark(scene: &Scene) -> bool {
     let is_backdrop = |light: &Light| matches!(light.kind, LightKind::Environment { illuminates: false, .. });
     let placed = scene.instances.iter().flat_map(|instance| &scene.objects[instance.object.index()].shapes);
     let mut shapes = scene.shapes.iter().chain(placed);
