@@ -5,6 +5,9 @@
 /** The error of a question that gets no answer: a later one has replaced it, or the connection is lost. */
 export class Unanswered extends Error {}
 
+/** There is no connection, or it is lost. */
+export class Disconnected extends Unanswered {}
+
 /**
  * The parts of a binary message: a JSON header after its length, then the payload.
  * @param {ArrayBuffer} buffer
@@ -52,7 +55,8 @@ export function connect(transport) {
     function settle(id, answer) {
         const question = waiting.get(id);
         if (!question) return false;
-        waiting.delete(id);
+        // Answers come in the order of questions: earlier ones of this type have been replaced on their way, and get none.
+        for (const [other, { type }] of waiting) if (type === question.type && other <= id) waiting.delete(other);
         if (answer.type === "error") question.reject(new Error(answer.message));
         else question.resolve(answer);
         return true;
@@ -71,7 +75,7 @@ export function connect(transport) {
             if (!settle(message.id ?? -1, message)) tell(message.type, message);
         },
         closed() {
-            for (const question of waiting.values()) question.reject(new Unanswered("the connection is lost"));
+            for (const question of waiting.values()) question.reject(new Disconnected("The connection is lost"));
             waiting.clear();
             tell("close", null);
         },
@@ -94,19 +98,19 @@ export function connect(transport) {
         whenLost: transport.whenLost,
         whenBroken: transport.whenBroken,
         /**
-         * Sends a question. The promise is rejected by the error of the other end, and as {@link Unanswered} where a later question of
-         * the same type replaces this one, or the connection is or gets lost.
+         * Sends a question. The promise is rejected by the error of the other end, as {@link Unanswered} where a later question of
+         * the same type replaces this one, and as {@link Disconnected} where the connection is or gets lost.
          * @template {keyof import("./protocol.js").Answers} T
          * @param {T} type
          * @param {object} [body]
          * @returns {Promise<import("./protocol.js").Answers[T]>}
          */
         request(type, body = {}) {
-            // They keep their places: what still comes for them, an error too, concerns nobody.
-            for (const question of waiting.values()) if (question.type === type) question.reject(new Unanswered("a later question has replaced this one"));
+            // They keep their places until a later one is answered: what still comes for them, an error too, concerns nobody.
+            for (const question of waiting.values()) if (question.type === type) question.reject(new Unanswered("A later question has replaced this one"));
             return new Promise((resolve, reject) => {
                 if (transport.isOpen()) waiting.set(send(type, body), { type, resolve, reject });
-                else reject(new Unanswered("there is no connection"));
+                else reject(new Disconnected("There is no connection"));
             });
         },
         /**

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { Unanswered, connect } from "../../../assets/socket.js";
+import { Disconnected, Unanswered, connect } from "../../../assets/socket.js";
 import { webSocket } from "../../../assets/web-socket.js";
 
 /** The connection that was made last. */
@@ -61,7 +61,20 @@ test("a later question of the same type replaces a question, which is rejected",
 test("a lost connection rejects what waits, and what is asked while there is none", async () => {
     const [pixel, value] = [socket.request("pixel"), socket.request("value")];
     server.close();
-    await assert.rejects(pixel, Unanswered);
-    await assert.rejects(value, Unanswered);
-    await assert.rejects(socket.request("pixel"), Unanswered);
+    await assert.rejects(pixel, Disconnected);
+    await assert.rejects(value, Disconnected);
+    await assert.rejects(socket.request("pixel"), Disconnected);
+});
+
+test("a question that was replaced on its way, and is never answered, is forgotten once a later one is", async () => {
+    const first = socket.request("pixel", { x: 1 });
+    const second = socket.request("pixel", { x: 2 });
+    await assert.rejects(first, (error) => error instanceof Unanswered && !(error instanceof Disconnected));
+    server.answer({ type: "pixel", id: 2 });
+    await second;
+    // A question that waits would have been settled by this, and nobody told.
+    const told = [];
+    socket.on("pixel", (message) => told.push(message.id));
+    server.answer({ type: "pixel", id: 1 });
+    assert.deepEqual(told, [1]);
 });
