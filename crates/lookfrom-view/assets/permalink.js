@@ -4,7 +4,8 @@ import { SCENES_OWN } from "./state.js";
 
 /** @typedef {import("./protocol.js").View} View */
 
-const NUMBERS = ["depth", "samples", "min_contribution", "turn", "rotate_environment", "animation", "at", "exposure"];
+const NUMBERS = ["min_contribution", "turn", "rotate_environment", "at", "exposure"];
+const COUNTS = ["depth", "samples", "animation"];
 const WORDS = ["integrator", "variant", "tonemap", "layer", "compare"];
 
 /**
@@ -24,8 +25,8 @@ export function fragment(view, pixel, sample, ray) {
         else parameters.set(key, String(value));
     }
     if (pixel) parameters.set("pixel", pixel.join(","));
-    if (sample !== null) parameters.set("sample", String(sample));
-    if (ray !== null) parameters.set("ray", String(ray));
+    if (pixel && sample !== null) parameters.set("sample", String(sample));
+    if (pixel && sample !== null && ray !== null) parameters.set("ray", String(ray));
     // Links stay readable.
     return parameters.toString().replaceAll("%2C", ",").replaceAll("%2F", "/");
 }
@@ -33,10 +34,13 @@ export function fragment(view, pixel, sample, ray) {
 /** Thirteen digits place the eye to a micrometre on a continent. @param {number} x */
 const rounded = (x) => Number(x.toPrecision(13));
 
-/** @param {string} text @param {string} separator @param {number} length */
-function numbers(text, separator, length) {
+/** @param {number} x */
+const isCount = (x) => Number.isInteger(x) && x >= 0;
+
+/** @param {string} text @param {string} separator @param {number} length @param {(x: number) => boolean} [isPossible] */
+function numbers(text, separator, length, isPossible = Number.isFinite) {
     const found = text.split(separator).map(Number);
-    return found.length === length && found.every(Number.isFinite) ? found : null;
+    return found.length === length && found.every(isPossible) ? found : null;
 }
 
 /**
@@ -45,23 +49,24 @@ function numbers(text, separator, length) {
  */
 export function parse(text) {
     const parameters = new URLSearchParams(text.replace(/^#/, ""));
+    /** @type {(key: string) => number | null} */
+    const index = (key) => (/^\d+$/.test(parameters.get(key) ?? "") ? Number(parameters.get(key)) : null);
     /** @type {Record<string, unknown>} */
     const view = { ...SCENES_OWN };
     for (const key of NUMBERS) {
         const value = parameters.get(key);
         if (value !== null && Number.isFinite(Number(value))) view[key] = Number(value);
     }
+    for (const key of COUNTS) view[key] = index(key);
     for (const key of WORDS) if (parameters.has(key)) view[key] = parameters.get(key);
     if (parameters.has("denoise")) view.denoise = parameters.get("denoise") === "true";
-    view.size = numbers(parameters.get("size") ?? "", "x", 2);
+    view.size = numbers(parameters.get("size") ?? "", "x", 2, isCount);
     const [lookfrom, lookat, up, fov] = (parameters.get("camera") ?? "").split("/");
     const vectors = [lookfrom, lookat, up].map((v) => numbers(v ?? "", ",", 3));
     if (vectors.every((v) => v !== null)) {
         view.camera = { lookfrom: vectors[0], lookat: vectors[1], up: vectors[2], fov: fov ? Number(fov) : null };
     }
-    /** @type {(key: string) => number | null} */
-    const index = (key) => (/^\d+$/.test(parameters.get(key) ?? "") ? Number(parameters.get(key)) : null);
-    const pixel = /** @type {[number, number] | null} */ (numbers(parameters.get("pixel") ?? "", ",", 2));
+    const pixel = /** @type {[number, number] | null} */ (numbers(parameters.get("pixel") ?? "", ",", 2, isCount));
     return { view: /** @type {View} */ (/** @type {unknown} */ (view)), pixel, sample: index("sample"), ray: index("ray") };
 }
 
@@ -83,9 +88,10 @@ export function keepPermalink(app) {
     app.view.on((_, moving) => void (moving || write()));
     for (const signal of [app.source, app.pixel, app.sample, app.ray]) signal.on(write);
     window.addEventListener("hashchange", () => {
-        const { view, pixel, sample } = parse(location.hash);
+        const { view, pixel, sample, ray } = parse(location.hash);
         app.view.set(view);
         app.pixel.set(pixel);
         if (sample !== null) app.sample.set(sample);
+        if (ray !== null) app.ray.set(ray);
     });
 }

@@ -22,3 +22,13 @@ test("eyes far from the origin come back to a micrometre, and links stay readabl
     const near = { lookfrom: [0, 1, 5], lookat: [0, 0, 0], up: [0, 1, 0], fov: null };
     assert.equal(fragment({ ...SCENES_OWN, camera: near }, null, null, null), "camera=0,1,5/0,0,0/0,1,0");
 });
+
+test("a sample and a ray are those of a pixel: without one the address has none", () => {
+    assert.equal(fragment(SCENES_OWN, null, 5, 6), "");
+    assert.equal(fragment(SCENES_OWN, [1, 2], null, 6), "pixel=1,2");
+});
+
+test("numbers that count things are whole", () => {
+    const { view, pixel } = parse("#samples=0.5&depth=-1&animation=x&size=1.5x2&pixel=3,-4&at=0.5");
+    assert.deepEqual([view, pixel], [{ ...SCENES_OWN, at: 0.5 }, null]);
+});
