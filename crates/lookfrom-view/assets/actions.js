@@ -1,6 +1,9 @@
 // What the buttons of the header and single keys do: undo, copy, save, full help.
 
 import { byId, h, replace } from "./html.js";
+import { Disconnected } from "./socket.js";
+
+const CONTROLS = "input, select, button";
 
 /** @param {import("./app.js").App} app */
 export function attachActions(app) {
@@ -13,21 +16,37 @@ export function attachActions(app) {
     });
     attachMenu(app);
     attachHelp();
+    byId("skip").addEventListener("click", (event) => {
+        // The fragment of the address is the view.
+        event.preventDefault();
+        byId("picture-overlay").focus();
+    });
     document.addEventListener("keydown", (event) => {
-        const isTyping = event.target instanceof HTMLElement && event.target.matches("input, select, textarea");
+        const isOn = (/** @type {string} */ controls) => event.target instanceof HTMLElement && event.target.matches(controls);
+        const isTyping = isOn('textarea, input:not([type="range"], [type="checkbox"])');
         const key = event.key.toLowerCase();
         if ((event.ctrlKey || event.metaKey) && key === "z" && !isTyping) {
             event.preventDefault();
-            if (event.shiftKey) app.view.redo();
-            else app.view.undo();
+            keepingFocus(event.shiftKey ? app.view.redo : app.view.undo);
         } else if ((event.ctrlKey || event.metaKey) && key === "y" && !isTyping) {
             event.preventDefault();
-            app.view.redo();
-        } else if (isTyping || event.ctrlKey || event.metaKey || event.altKey) return;
+            keepingFocus(app.view.redo);
+        } else if (isTyping || isOn("select") || event.ctrlKey || event.metaKey || event.altKey) return;
         else if (event.key === "?") /** @type {HTMLDialogElement} */ (byId("help")).showModal();
         else if (key === "l") byId("loupe-button").click();
         else if (key === "home" && event.target === byId("picture-overlay")) app.view.set({ camera: null });
     });
+}
+
+/** Changes the view, which a control that has the focus shows, too, as those do that have none. @param {() => void} change */
+function keepingFocus(change) {
+    const active = document.activeElement;
+    const group = active?.closest("#development, #settings");
+    const place = group && active ? [...group.querySelectorAll(CONTROLS)].indexOf(active) : -1;
+    if (group && active instanceof HTMLElement) active.blur();
+    change();
+    const control = group?.querySelectorAll(CONTROLS)[place];
+    if (control instanceof HTMLElement) control.focus();
 }
 
 /** @param {import("./app.js").App} app */
@@ -44,7 +63,8 @@ function attachMenu(app) {
     for (const [id, action] of Object.entries(actions)) {
         byId(id).addEventListener("click", () => {
             /** @type {HTMLDetailsElement | null} */ (byId(id).closest("details"))?.removeAttribute("open");
-            action().catch(app.complain);
+            // Who asks for a file waits for it.
+            action().catch((error) => (error instanceof Disconnected ? app.toast(error.message) : app.complain(error)));
         });
     }
     const menu = /** @type {HTMLDetailsElement} */ (byId("menu"));

@@ -14,6 +14,9 @@ export function createApp(socket) {
         view: viewState(),
         scene: signal(/** @type {import("./protocol.js").Scene | null} */ (null)),
         frame: signal(/** @type {import("./protocol.js").PictureHeader | null} */ (null)),
+        /** Why the view is not shown, where there is none to go back to. */
+        refusal: signal(/** @type {string | null} */ (null)),
+        isConnected: signal(false),
         /** The selected pixel. */
         pixel: signal(/** @type {[number, number] | null} */ (null)),
         report: signal(/** @type {import("./protocol.js").PixelReport | null} */ (null)),
@@ -60,5 +63,7 @@ export function createApp(socket) {
         },
     };
     let toastTimer = 0;
+    socket.on("open", () => app.isConnected.set(true));
+    socket.on("close", () => app.isConnected.set(false));
     return app;
 }

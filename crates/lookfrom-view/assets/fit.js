@@ -20,27 +20,32 @@ export function fitted([width, height]) {
 
 /** @param {import("./app.js").App} app */
 export function keepFitting(app) {
-    /** The size that fitted before the window changed: a view of this size follows. @type {string | null} */
+    /** The size that fitted last: views of this size follow. @type {string | null} */
     let before = null;
+    /** Width over height of the scene. */
+    let shape = 0;
     let timer = 0;
-    let isFirst = true;
+
+    /** Gives views the size that fits now. That is no step to undo, and no step leads back from it. @param {import("./protocol.js").Scene} scene @param {boolean} isForAll */
+    function fit(scene, isForAll) {
+        const [size, last] = [fitted(scene.size), before];
+        before = size.join("x");
+        if (isForAll || before !== last) app.view.revise((view) => (isForAll || view.size?.join("x") === last ? { ...view, size } : view));
+    }
 
     app.scene.on((scene) => {
-        if (!scene) return;
+        if (!scene || scene.size[0] / scene.size[1] === shape) return;
+        const isFirst = shape === 0;
+        shape = scene.size[0] / scene.size[1];
         // Pixels of a link are those of the scene's own size where it says no other.
-        if (isFirst && !scene.is_sized && location.hash === "") app.view.reset({ ...app.view.get(), size: fitted(scene.size) });
-        isFirst = false;
-        before = fitted(scene.size).join("x");
+        fit(scene, isFirst && !scene.is_sized && location.hash === "");
     });
     new ResizeObserver(() => {
         clearTimeout(timer);
         timer = window.setTimeout(() => {
             const scene = app.scene.get();
             // A selected pixel would become another one.
-            if (!scene || app.pixel.get()) return;
-            const [size, isFollowing] = [fitted(scene.size), app.view.get().size?.join("x") === before];
-            before = size.join("x");
-            if (isFollowing && app.view.get().size?.join("x") !== before) app.view.set({ size });
+            if (scene && !app.pixel.get()) fit(scene, false);
         }, 300);
     }).observe(byId("picture-overlay"));
 }

@@ -2,6 +2,7 @@
 
 import { attachActions } from "./actions.js";
 import { createApp } from "./app.js";
+import { askForViews } from "./asking.js";
 import { attachDivider } from "./divider.js";
 import { showEquations } from "./equations.js";
 import { keepFitting } from "./fit.js";
@@ -32,35 +33,14 @@ export function showPage(socket, { fits = false } = {}) {
     app.sample.set(link.sample);
     app.ray.set(link.ray);
 
-    /** Asks for the whole view; while the hand moves, once per frame of the screen. */
-    let scheduled = false;
-    let isMoving = false;
-    function sendView() {
-        scheduled = false;
-        const scene = app.scene.get();
-        if (!scene) return;
-        const view = app.view.get();
-        app.socket.send("view", {
-            ...view,
-            moving: isMoving,
-            exposure: view.exposure ?? scene.exposure,
-            tonemap: view.tonemap ?? scene.tonemap,
-            denoise: view.denoise ?? scene.denoise,
-            compare: view.compare && { mode: view.compare },
-        });
-    }
-    app.view.on((_, moving) => {
-        isMoving = moving;
-        if (!scheduled) requestAnimationFrame(sendView);
-        scheduled = true;
-    });
-
-    attachInspector(app);
     const picture = showPicture(app);
     showStatus(app);
     attachDivider();
     showSettings(app);
     if (fits) keepFitting(app);
+    // Questions about pixels are about the view before them.
+    askForViews(app);
+    attachInspector(app);
     showLegend(app);
     showLoupe(app, picture);
     showPixel(app);
@@ -72,7 +52,7 @@ export function showPage(socket, { fits = false } = {}) {
     keepPermalink(app);
     attachTheme(() => app.frame.get() && window.dispatchEvent(new Event("resize")));
 
-    const tabs = attachTabs(byId("tabs"), (panel) => void (panel === "notes" && notes.show()));
+    const tabs = attachTabs(byId("tabs"), (panel) => (panel === "notes" ? notes.show() : notes.leave()));
     app.pixel.on((pixel) => {
         // A click on the picture asks why; a lesson that is open shows the new pixel itself.
         if (pixel && byId("notes").hidden) tabs.select("why");
@@ -80,13 +60,7 @@ export function showPage(socket, { fits = false } = {}) {
     tabs.select("view");
 
     app.socket.on("scene", (/** @type {import("./protocol.js").Scene} */ scene) => {
-        const name = scene.name.split(/[/\\]/).at(-1) ?? scene.name;
-        byId("scene-name").textContent = name;
-        byId("scene-name").title = scene.name;
-        document.title = `${name} · lookfrom`;
-        app.announce(`${name} is loaded`);
         app.scene.set(scene);
-        sendView();
         if (link.pixel) app.pixel.set(link.pixel);
         link.pixel = null;
     });

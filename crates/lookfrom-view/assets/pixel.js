@@ -32,7 +32,10 @@ export function showPixel(app) {
         const report = app.report.get();
         const pixel = app.pixel.get();
         if (!report) {
-            replace(summary, h("p", { class: "hint" }, pixel ? "Tracing the pixel's samples …" : "Click a pixel of the picture, or press I in it, to see why it has its colour."));
+            const hint = !pixel
+                ? "Click a pixel of the picture, or press I in it, to see why it has its colour."
+                : app.isConnected.get() ? "Tracing the pixel's samples …" : "There is no connection: the pixel's samples are traced when it is back.";
+            replace(summary, h("p", { class: "hint" }, hint));
             replace(samples);
             return;
         }
@@ -102,6 +105,7 @@ export function showPixel(app) {
     app.pixel.on(showPlace);
     app.pixel.on(show);
     app.report.on(show);
+    app.isConnected.on(() => void (app.report.get() || show()));
     app.inspection.on(showSample);
     app.sample.on(() => selectInList());
     showPlace();

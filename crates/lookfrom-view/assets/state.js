@@ -27,7 +27,23 @@ const DEVELOPMENT = new Set(["exposure", "tonemap", "denoise", "layer", "compare
 
 /** Whether two views have the same film. @param {View} a @param {View} b */
 export const sameFilm = (a, b) =>
-    Object.keys(SCENES_OWN).every((key) => DEVELOPMENT.has(key) || JSON.stringify(a[/** @type {keyof View} */ (key)]) === JSON.stringify(b[/** @type {keyof View} */ (key)]));
+    /** @type {(keyof View)[]} */ (Object.keys(SCENES_OWN)).every((key) => DEVELOPMENT.has(key) || same(a[key], b[key]));
+
+/** @param {unknown} a @param {unknown} b */
+const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+
+/**
+ * The way back from a view that is refused: what it has changed of an accepted one, all other changes stay. Null where it has changed nothing.
+ * @param {View} refused
+ * @param {View} accepted
+ * @returns {((view: View) => View) | null} Views without the whole change are returned as they are.
+ */
+export function returned(refused, accepted) {
+    const keys = /** @type {(keyof View)[]} */ (Object.keys(SCENES_OWN)).filter((key) => !same(refused[key], accepted[key]));
+    if (keys.length === 0) return null;
+    const before = Object.fromEntries(keys.map((key) => [key, accepted[key]]));
+    return (view) => (keys.every((key) => same(view[key], refused[key])) ? { ...view, ...before } : view);
+}
 
 const MOST_UNDONE = 200;
 
@@ -62,7 +78,7 @@ export function viewState() {
          */
         set(change, moving = false) {
             const next = { ...view, ...change };
-            if (!moving && JSON.stringify(next) !== JSON.stringify(rested)) {
+            if (!moving && !same(next, rested)) {
                 const keys = Object.keys(change).join();
                 const isSameStep = keys === lastKeys && performance.now() - lastTime < 800;
                 if (!isSameStep || done.length === 0) done = [...done.slice(-MOST_UNDONE), rested];
@@ -74,6 +90,19 @@ export function viewState() {
         reset(start) {
             [done, undone] = [[], []];
             show(start, false);
+        },
+        /**
+         * Changes the view, and those that undo and redo return to: no step that could be undone.
+         * @param {(view: View) => View} change
+         */
+        revise(change) {
+            const isMoving = view !== rested;
+            lastKeys = "";
+            [done, undone, rested] = [done.map(change), undone.map(change), change(rested)];
+            // Steps that would lead to what is shown anyway.
+            while (done.length > 0 && same(done.at(-1), rested)) done.pop();
+            while (undone.length > 0 && same(undone.at(-1), rested)) undone.pop();
+            show(isMoving ? change(view) : rested, isMoving);
         },
         undo() {
             const last = done.pop();

@@ -133,7 +133,8 @@ impl Window {
             self.mailbox.say(&Answer::Scene(Box::new(loaded.told(&loaded.session))));
             (self.loaded, self.variation, self.render) = (Some(loaded), None, None);
             if let Some(request) = self.request.clone() {
-                self.look(request)?;
+                // A view that this scene cannot be shown in is refused as such.
+                self.guarded(Some(request.id), |window| window.look(request));
             }
         }
         if let Some(error) = error {

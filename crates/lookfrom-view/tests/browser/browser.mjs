@@ -1,5 +1,6 @@
 // A server, a browser and a page for a test, and what a person does with them.
 
+import assert from "node:assert/strict";
 import { execFile, spawn } from "node:child_process";
 import { cp, mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
@@ -19,11 +20,11 @@ const FLAGS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-ru
 
 export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM, args: FLAGS });
 
-/** A copy of an example scene that a test may edit, in a folder of its own. @param {string} name */
-export async function copyOf(name) {
+/** A copy of an example scene that a test may edit, in a folder of its own. @param {string} name @param {string} [from] */
+export async function copyOf(name, from = SCENES) {
     const folder = await mkdtemp(join(tmpdir(), "lookfrom-view-"));
     const scene = join(folder, name);
-    await cp(join(SCENES, name), scene);
+    await cp(join(from, name), scene);
     return { scene, remove: () => rm(folder, { recursive: true, force: true }) };
 }
 
@@ -39,18 +40,40 @@ export async function serve(scene, options = []) {
     return { url, stop: () => new Promise((resolve) => void (server.once("exit", resolve), server.kill("SIGINT"))) };
 }
 
-/** A page that shows a picture. Errors of its scripts and its policy fail the test. */
-export async function open(browser, url, options = {}) {
+/**
+ * A page that may have no picture to show. Errors of its scripts and its policy fail the test.
+ * @param {(page: import("playwright-core").Page) => Promise<unknown>} [prepare] What is done before the page is there.
+ */
+export async function visit(browser, url, options = {}, prepare = async () => {}) {
     const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
     const page = await context.newPage();
     page.setDefaultTimeout(PATIENCE);
     const errors = [];
     page.on("pageerror", (error) => errors.push(error.message));
     page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+    await prepare(page);
     await page.goto(url);
-    await page.locator("body.has-picture").waitFor();
     return { page, context, errors };
 }
+
+/** A page that shows a picture. */
+export async function open(browser, url, options = {}, prepare = async () => {}) {
+    const visited = await visit(browser, url, options, prepare);
+    await visited.page.locator("body.has-picture").waitFor();
+    return visited;
+}
+
+/** Waits until something is true. */
+export async function until(what, isTrue) {
+    const start = Date.now();
+    while (!(await isTrue())) {
+        if (Date.now() - start > PATIENCE) assert.fail(`never: ${what}`);
+        await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+}
+
+/** Waits until the picture has all of its samples. */
+export const finished = (page) => page.locator('#picture[data-done="true"]').waitFor();
 
 /** A place on the screen in the middle of a pixel of the picture. */
 export const placeOf = (page, x, y) =>
