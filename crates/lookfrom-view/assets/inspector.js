@@ -8,20 +8,29 @@ export function attachInspector(app) {
     let lastView = app.view.get();
     let timer = 0;
     let tracing = 0;
+    /** Whether the rays of the sample are those of another pixel or film. Its report alone has colours as they are developed. */
+    let isStale = false;
     /** The sample that a link asks for, until its pixel is there. */
     let wanted = app.sample.get();
     let wantedRay = app.ray.get();
 
     app.pixel.on(() => {
+        isStale = true;
         app.report.set(null);
         app.sample.set(wanted);
         if (wanted === null) app.inspection.set(null);
         load();
     });
     app.sample.on(inspect);
-    app.scene.on(load);
+    app.scene.on(() => {
+        isStale = true;
+        load();
+    });
     app.view.on((view, moving) => {
-        if (moving || sameFilm(view, lastView)) return;
+        if (moving) return;
+        const isSameFilm = sameFilm(view, lastView);
+        if (isSameFilm && view.exposure === lastView.exposure && view.tonemap === lastView.tonemap) return;
+        isStale ||= !isSameFilm;
         lastView = view;
         clearTimeout(timer);
         timer = window.setTimeout(load, 250);
@@ -56,6 +65,8 @@ export function attachInspector(app) {
 
     /** Keeps the sample that is chosen, or that the link asks for. @param {number} otherwise */
     function choose(otherwise) {
+        if (!isStale) return;
+        isStale = false;
         const sample = wanted ?? app.sample.get() ?? otherwise;
         wanted = null;
         if (app.sample.get() === sample) inspect(sample);
@@ -75,7 +86,14 @@ export function attachInspector(app) {
             app.ray.set(known ? address : brightest(inspection));
         } catch (error) {
             app.complain(error);
+            if (!(error instanceof Unanswered)) keep(sample);
         }
+    }
+
+    /** Goes on with the sample that is shown, or with the brightest, where another one cannot be. @param {number} refused */
+    function keep(refused) {
+        const other = app.inspection.get()?.sample ?? app.report.get()?.all[0]?.sample ?? null;
+        app.sample.set(other === refused ? null : other);
     }
 }
 
