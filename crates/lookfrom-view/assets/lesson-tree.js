@@ -17,17 +17,19 @@ export function treeLesson(app) {
     /** The exponent of min_contribution; the lowest stands for 0. */
     let power = -6;
     let timer = 0;
-    /** @type {Inspection | null} */
+    /** The sample as it is. @type {Inspection | null} */
+    let whole = null;
+    /** That or a tree of the sliders. @type {Inspection | null} */
     let last = null;
     const leastShare = () => (power <= -6 ? 0 : 10 ** power);
-    return { element, show };
+    return { element, show, leave };
 
     function show() {
         const inspection = app.inspection.get();
         const scene = app.scene.get();
         if (!inspection || !scene) return replace(element, noPixel());
         if (inspection === last) return draw(inspection);
-        last = inspection;
+        last = whole = inspection;
         depth = app.view.get().depth ?? scene.depth;
         const least = app.view.get().min_contribution ?? scene.min_contribution;
         power = least > 0 ? Math.max(-5.9, Math.log10(least)) : -6;
@@ -44,13 +46,26 @@ export function treeLesson(app) {
             const [pixel, sample] = [app.pixel.get(), app.sample.get()];
             if (!pixel || sample === null) return;
             try {
+                const before = last;
                 const { inspection } = await app.socket.request("inspect", { x: pixel[0], y: pixel[1], sample, depth, min_contribution: leastShare() });
+                // Another sample, or the lesson is left.
+                if (last !== before) return;
                 last = inspection;
                 app.inspection.set(inspection);
             } catch (error) {
                 app.complain(error);
             }
         }, 60);
+    }
+
+    /** Outside of the lesson the sample is as the picture has it. */
+    function leave() {
+        clearTimeout(timer);
+        if (last !== null && last !== whole && app.inspection.get() === last) {
+            app.inspection.set(whole);
+            if (!app.selectedRay()) app.ray.set(whole?.rays[0].address ?? null);
+        }
+        last = null;
     }
 
     /** @param {Inspection} inspection */

@@ -14,7 +14,7 @@ import { treeLesson } from "./lesson-tree.js";
 import { triangleLesson } from "./lesson-triangle.js";
 
 /** @typedef {import("./app.js").App} App */
-/** @typedef {{element: HTMLElement, show: () => void}} Lesson */
+/** @typedef {{element: HTMLElement, show: () => void, leave?: () => void}} Lesson */
 /** @typedef {(app: App) => import("./exercise.js").Exercise | null} Question */
 
 /** @type {readonly [title: string, lesson: (app: App) => Lesson, question?: Question][]} */
@@ -42,6 +42,7 @@ export function showNotes(app) {
 
     /** @param {number} lesson */
     function choose(lesson) {
+        leave();
         chosen = lesson;
         choice.value = String(lesson);
         replace(body, lessons[lesson].element);
@@ -50,6 +51,7 @@ export function showNotes(app) {
     const show = () => {
         if (!place.hidden) lessons[chosen].show();
     };
+    const leave = () => lessons[chosen].leave?.();
     // On paper there is the whole course.
     window.addEventListener("beforeprint", () => {
         if (place.hidden) return;
@@ -61,7 +63,7 @@ export function showNotes(app) {
     replace(place, h("h2", { class: "unseen" }, "Notes, alive"), h("div", { class: "row" }, choice, next, print), body);
     choose(0);
     for (const signal of [app.inspection, app.ray, app.scene, app.pixel]) signal.on(show);
-    return { show };
+    return { show, leave };
 }
 
 /**
@@ -85,5 +87,5 @@ function withExercise(app, title, lesson, question) {
         before = now;
         replace(exercise, asked && exerciseForm(asked));
     }
-    return { element, show };
+    return { element, show, leave: lesson.leave };
 }
