@@ -1,6 +1,7 @@
 // Where an observer stands to see the rays of a sample.
 
 import { orbit, project, screenFromWorld } from "./camera.js";
+import { isShadow } from "./rays.js";
 import { add, cross, length, mix, scale, subtract, unit } from "./vector.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
@@ -9,6 +10,9 @@ import { add, cross, length, mix, scale, subtract, unit } from "./vector.js";
 /** Beside the scene, with the camera in sight; or near the camera, within the walls of a room. @typedef {"beside" | "near"} Place */
 
 const FOV = 36;
+
+/** The vertices of a sample, on surfaces and in media: where its rays end, but at lights and far away. @param {Inspection} inspection @returns {Vector[]} */
+export const vertices = ({ segments }) => segments.filter((segment) => !isShadow(segment) && !segment.is_endless).map(({ to }) => to);
 
 /**
  * @param {Inspection} inspection
@@ -21,7 +25,8 @@ const FOV = 36;
 export function observer(inspection, viewed, size, sceneSize, place) {
     const eye = viewed.lookfrom;
     const ends = inspection.segments.map(({ to }) => to);
-    const points = place === "beside" ? [eye, ...ends] : ends;
+    const near = vertices(inspection);
+    const points = place === "beside" ? [eye, ...ends] : near.length > 0 ? near : ends;
     /** @type {(pick: (...values: number[]) => number) => Vector} */
     const corner = (pick) => /** @type {Vector} */ ([0, 1, 2].map((i) => pick(...points.map((p) => p[i]))));
     const middle = mix(corner(Math.min), corner(Math.max), 0.5);
@@ -52,15 +57,16 @@ function fitted(points, camera, size) {
 }
 
 /**
- * Whether an observer has all hits in sight, were nothing between.
+ * The share of the vertices that an observer would have in sight, were nothing between: 1 for all.
  * @param {Inspection} inspection
  * @param {Camera} camera
  */
-export function sees(inspection, camera) {
+export function sight(inspection, camera) {
     const matrix = screenFromWorld(camera, [1, 1]);
-    return inspection.rays.every(({ met }) => {
-        if (!met?.point) return true;
-        const [x, y, depth] = project(matrix, met.point);
+    const points = vertices(inspection);
+    const seen = points.filter((point) => {
+        const [x, y, depth] = project(matrix, point);
         return depth > 0 && Math.abs(x - 0.5) < 0.9 && Math.abs(y - 0.5) < 0.5;
     });
+    return points.length > 0 ? seen.length / points.length : 1;
 }

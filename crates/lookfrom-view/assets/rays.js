@@ -20,7 +20,7 @@ import { add, length, mix, scale } from "./vector.js";
 export const color = (name) => getComputedStyle(byId("picture-overlay")).getPropertyValue(`--ray-${name.replace(" ", "-")}`).trim() || "#888";
 
 /** @param {Segment} segment */
-const isShadow = ({ kind }) => kind === "shadow" || kind === "blocked";
+export const isShadow = ({ kind }) => kind === "shadow" || kind === "blocked";
 
 /** The lines of rays by their addresses, without those of shadow rays. @param {Inspection} inspection @returns {Map<number, Segment>} */
 export const linesOfRays = ({ segments }) => new Map(segments.filter((segment) => !isShadow(segment)).map((segment) => [segment.address, segment]));

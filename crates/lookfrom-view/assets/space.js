@@ -5,7 +5,7 @@ import { attachControls } from "./controls.js";
 import { project, screenFromWorld } from "./camera.js";
 import { byId } from "./html.js";
 import { drawSpace } from "./space-drawing.js";
-import { observer, sees } from "./observer.js";
+import { observer, sight, vertices } from "./observer.js";
 
 /** @typedef {import("./protocol.js").Camera} Camera */
 /** @typedef {import("./protocol.js").Vector} Vector */
@@ -47,12 +47,13 @@ export function showSpace(app) {
         again = false;
         const [width, height] = [overlay.clientWidth, overlay.clientHeight];
         const fine = Math.min(SIDE_OF_PIXEL * (window.devicePixelRatio || 1), Math.sqrt(MOST_PIXELS / (width * height)));
-        const scale = isMoving || !frame ? 1 / COARSE : fine;
-        again = !isMoving && !frame;
+        const isFirst = !frame;
+        const scale = isMoving || isFirst ? 1 / COARSE : fine;
         const size = [width, height].map((n) => Math.max(8, Math.round(n * scale)));
         const timeout = setTimeout(() => (asked = false), 10_000);
         try {
             await show(await app.socket.request("space", { camera, size }));
+            again ||= isFirst && !isMoving;
         } catch {
             // The scene is being loaded: the next one asks again.
         }
@@ -70,7 +71,7 @@ export function showSpace(app) {
         [canvas.width, canvas.height] = [width, height];
         canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
         hint.hidden = true;
-        if (isFresh && isBlind()) stand("near");
+        if (isFresh && isBlind()) comeNearer();
         isFresh = false;
         draw();
     }
@@ -112,24 +113,37 @@ export function showSpace(app) {
         return frame.depths[row * frame.width + column] < depth * 0.995;
     }
 
-    /** @param {import("./observer.js").Place} next */
-    function stand(next) {
+    /** @param {import("./observer.js").Place} place */
+    function cameraAt(place) {
         const inspection = app.inspection.get();
         const viewed = app.camera();
-        if (!inspection || !viewed) return;
-        place = next;
-        camera = observer(inspection, viewed, [overlay.clientWidth || 1, overlay.clientHeight || 1], sceneSize(), place);
+        return inspection && viewed && observer(inspection, viewed, [overlay.clientWidth || 1, overlay.clientHeight || 1], sceneSize(), place);
+    }
+
+    /** @param {import("./observer.js").Place} next */
+    function stand(next) {
+        const there = cameraAt(next);
+        if (!there) return;
+        [place, camera] = [next, there];
         ask();
     }
 
-    /** Whether walls stand between the observer and most of the hits. */
+    /** Goes within the walls, unless most would be out of sight from there. */
+    function comeNearer() {
+        const inspection = app.inspection.get();
+        const there = cameraAt("near");
+        if (inspection && there && sight(inspection, there) > 0.5) stand("near");
+    }
+
+    /** Whether walls stand between the observer and most of the vertices. */
     function isBlind() {
-        const hits = (app.inspection.get()?.rays ?? []).flatMap(({ met }) => (met ? [met.point] : []));
-        const hidden = hits.filter((point) => {
+        const inspection = app.inspection.get();
+        const points = inspection ? vertices(inspection) : [];
+        const hidden = points.filter((point) => {
             const [x, y, depth] = projected(point);
             return isHidden(x, y, depth);
         });
-        return hits.length > 0 && hidden.length > 0.5 * hits.length;
+        return points.length > 0 && hidden.length > 0.5 * points.length;
     }
 
     attachControls(overlay, {
@@ -166,9 +180,10 @@ export function showSpace(app) {
     byId("space-frame").addEventListener("click", () => stand(place === "near" ? "beside" : "near"));
     app.inspection.on((inspection) => {
         document.body.classList.toggle("has-sample", inspection !== null);
+        showKinds(inspection?.segments ?? []);
         lobe = null;
         // The eye of the observer stays while it still sees the rays.
-        if (inspection && (!camera || !sees(inspection, camera))) {
+        if (inspection && (!camera || sight(inspection, camera) < 1)) {
             stand("beside");
             isFresh = true;
         } else ask();
@@ -196,4 +211,13 @@ export function showSpace(app) {
         draw();
         ask();
     }).observe(overlay);
+}
+
+/** Keeps those colours in the legend that there are. @param {import("./protocol.js").Segment[]} segments */
+function showKinds(segments) {
+    const kinds = new Set(segments.map(({ kind }) => kind));
+    for (const row of byId("rays-legend").children) {
+        const named = row.getAttribute("data-kinds")?.split(", ") ?? [];
+        /** @type {HTMLElement} */ (row).hidden = !named.some((kind) => kinds.has(/** @type {any} */ (kind)));
+    }
 }
