@@ -42,9 +42,9 @@ export function scatter(rows, hand) {
     ticks.push([svg("line", { x1: LEFT, x2: WIDTH - RIGHT, y1: y(0), y2: y(0), class: "grid" }), svg("text", { x: LEFT - 6, y: y(0) + 3.5, class: "end" }, "0")]);
     const step = Math.ceil((deepest + 1) / 12);
     const depths = Array.from({ length: deepest + 1 }, (_, depth) => depth).filter((depth) => depth % step === 0).map((depth) =>
-        svg("text", { x: LEFT + ((depth + 0.5) / (deepest + 1)) * (WIDTH - LEFT - RIGHT), y: HEIGHT - 10, class: "middle" }, String(depth)));
+        svg("text", { x: LEFT + ((depth + 0.5) / (deepest + 1)) * (WIDTH - LEFT - RIGHT), y: HEIGHT - 15, class: "middle" }, String(depth)));
     const picture = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "scatter", role: "img", "aria-label": `${rows.length} samples: luminance over depth. The table below has the same.` },
-        ticks.flat(), depths, svg("text", { x: WIDTH - RIGHT, y: HEIGHT - 1, class: "end" }, "bounces"), area, dots);
+        ticks.flat(), depths, svg("text", { x: WIDTH - RIGHT, y: HEIGHT - 3, class: "end" }, "bounces"), area, dots);
 
     /** @param {number | null} sample */
     function select(sample) {

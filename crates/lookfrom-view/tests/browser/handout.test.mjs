@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { promisify } from "node:util";
-import { BINARY, SCENES, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
+import { BINARY, SCENES, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve, until } from "./browser.mjs";
 
 const SCENE = join(SCENES, "glass-and-mirror.toml");
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
@@ -57,6 +57,22 @@ for (const [width, height, colorScheme] of [[1280, 800, "light"], [360, 740, "da
         await context.close();
     });
 }
+
+test("a sample that a file does not hold leaves the one that is shown, in its address, too", async () => {
+    const file = join(folder, "some.html");
+    await promisify(execFile)(BINARY, ["view", SCENE, "--export", file, "--pixel", "60,75", "--width", "160", "--height", "120", "--samples", "12", "--depth", "2"]);
+    const { page, context, errors } = await open(browser, pathToFileURL(file).href);
+    await page.locator("#tree li").first().waitFor();
+    const shown = (await page.locator("#sample-summary h3 >> nth=0").textContent()) ?? "";
+    const toast = () => page.locator("#toast").textContent();
+    // Eight are held: the darkest is not.
+    await page.locator("#samples tbody tr").last().getByRole("button").click();
+    await until("a word", async () => /holds these samples/.test((await toast()) ?? ""));
+    await until("the address of what is shown", async () => page.url().includes(`sample=${/\d+/.exec(shown)[0]}&`));
+    assert.equal(await page.locator("#sample-summary h3 >> nth=0").textContent(), shown);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
 
 test("Share saves the page of the view as it is, with its pixel and sample", async () => {
     const server = await serve(SCENE, SMALL);

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { PATIENCE, SCENES, copyOf, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve } from "./browser.mjs";
+import { SCENES, copyOf, finished, inspect, inspection, launch, open, pictureHash, placeOf, screenshot, serve, until } from "./browser.mjs";
 
 const SMOKE = ["--width", "240", "--height", "150", "--samples", "2"];
 const SMALL = ["--width", "160", "--height", "160", "--samples", "4"];
@@ -20,19 +20,6 @@ after(async () => {
     await server?.stop();
     await copy?.remove();
 });
-
-/** Waits until something is true. */
-async function until(what, isTrue) {
-    const start = Date.now();
-    while (!(await isTrue())) {
-        if (Date.now() - start > PATIENCE) assert.fail(`never: ${what}`);
-        await new Promise((resolve) => setTimeout(resolve, 50));
-    }
-}
-
-async function finished(page) {
-    await page.locator('#picture[data-done="true"]').waitFor();
-}
 
 test("a drag orbits, undo goes back, and the link keeps the view", async () => {
     const { page, context, errors } = await open(browser, server.url);
@@ -108,6 +95,62 @@ test("a pixel: its mean and all of its samples, and from a contribution to its r
     await context.close();
 });
 
+test("the lesson on the tree prunes it for itself: outside, the sample is that of the picture", async () => {
+    const glass = await serve(join(SCENES, "glass-and-mirror.toml"), ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"]);
+    const { page, context, errors } = await open(browser, glass.url);
+    await inspect(page, 60, 75);
+    await page.locator("#pixel-summary .numbers").waitFor();
+    const rays = () => page.locator("#tree [role=treeitem]").count();
+    const whole = await rays();
+    await page.getByRole("tab", { name: "Notes, alive" }).click();
+    await page.getByLabel("Lesson").selectOption({ label: "8. The tree, and its sum" });
+    await page.getByRole("slider", { name: "Depth" }).fill("0");
+    await until("a tree of one ray", async () => (await rays()) === 1);
+    await page.getByRole("tab", { name: "Why this pixel" }).click();
+    assert.notEqual(whole, 1);
+    assert.equal(await rays(), whole);
+    assert.equal(await page.locator("#tree [aria-selected=true]").count(), 1);
+    assert.deepEqual(errors, []);
+    await context.close();
+    await glass.stop();
+});
+
+test("a pixel's colour in 8 bits follows exposure and tone map, and its rays stay as they are", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await inspect(page, 120, 80);
+    const color = async () => /8 bit([\d ]+)samples/.exec((await page.locator("#pixel-summary .numbers").textContent()) ?? "")?.[1];
+    const before = await color();
+    await page.locator("#tree li").first().evaluate((item) => item.setAttribute("data-is-old", ""));
+    await page.getByRole("slider", { name: "Exposure" }).fill("1");
+    await until("a brighter colour", async () => (await color()) !== before);
+    const bright = await color();
+    await page.getByLabel("Tone map").selectOption({ index: 1 });
+    await until("another tone", async () => (await color()) !== bright);
+    assert.equal(await page.locator("#tree li[data-is-old]").count(), 1);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
+test("the words at the plot of samples do not overlap", async () => {
+    // Twelve depths or less have a tick each, of more the last may have one.
+    const deep = await serve(join(SCENES, "cornell.toml"), ["--width", "60", "--height", "60", "--samples", "8"]);
+    const { page, context, errors } = await open(browser, deep.url);
+    await inspect(page, 30, 40);
+    await page.locator(".scatter").waitFor();
+    await page.locator(".scatter").scrollIntoViewIfNeeded();
+    await screenshot(page, "scatter");
+    const overlaps = await page.locator(".scatter").evaluate((plot) => {
+        const texts = [...plot.querySelectorAll("text")];
+        const unit = texts.find(({ textContent }) => textContent === "bounces").getBBox();
+        return texts.map((text) => [text.textContent, text.getBBox()]).filter(([name, box]) => name !== "bounces" && box.y + box.height > unit.y + 3 && box.y < unit.y + unit.height && /^\d+$/.test(name) && box.x > 50).map(([name]) => name);
+    });
+    assert.deepEqual(overlaps, []);
+    assert.deepEqual(errors, []);
+    await context.close();
+    await deep.stop();
+});
+
 test("the exercise of the notes: M_vw = I", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await inspect(page, 50, 90);
@@ -140,7 +183,7 @@ test("each step of the course has something to drag, by keys too", async () => {
     await until("the step rests", async () => {
         const before = await text();
         await new Promise((resolve) => setTimeout(resolve, 500));
-        return (await text()) === before && (await page.locator("#picture").getAttribute("data-done")) === "true";
+        return (await text()) === before && (await page.locator("body:not(.is-tracing) #picture[data-done=true]").count()) === 1;
     });
     const box = await page.getByRole("slider", { name: "The centre of the sphere" }).boundingBox();
     const drag = async (right, down) => {
@@ -239,6 +282,30 @@ test("a ray in smoke has a plot of the density with its collisions", async () =>
     await screenshot(page, "density");
     await context.close();
     await smoke.stop();
+});
+
+test("in fog, the observer keeps the points of the fog in sight, and the legend has their colour", async () => {
+    const fog = await serve(join(SCENES, "../docs/guide/scenes/media-fog.toml"), ["--size", "150x100", "--depth", "3", "--samples", "16"]);
+    const { page, context, errors } = await open(browser, fog.url);
+    await finished(page);
+    await inspect(page, 75, 30);
+    const rows = await page.locator("#samples tbody tr").evaluateAll((rows) => rows.map((row) => row.dataset.sample));
+    const legend = () => page.locator("#rays-legend li:visible").allTextContents();
+    const kinds = new Set();
+    for (const sample of rows) {
+        await page.locator(`#samples tr[data-sample="${sample}"] button`).click();
+        await until("the sample's rays", async () => (await page.locator("#sample-summary h3 >> nth=0").textContent()) === `Sample ${sample}`);
+        const drawn = await page.locator("#tree .kind").evaluateAll((marks) => marks.map((mark) => mark.classList[1]));
+        const shown = await legend();
+        assert.equal(shown.includes("scattered"), drawn.includes("scattered"), `${shown} of ${drawn}`);
+        for (const kind of shown) kinds.add(kind);
+    }
+    assert.ok(kinds.has("scattered") && kinds.has("camera"), [...kinds].join());
+    await page.waitForTimeout(1500);
+    await screenshot(page, "fog");
+    assert.deepEqual(errors, []);
+    await context.close();
+    await fog.stop();
 });
 
 test("an edit of the file reloads it, a broken one shows the error over the last picture", async () => {
