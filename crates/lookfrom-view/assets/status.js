@@ -20,7 +20,9 @@ export function showStatus(app) {
         document.body.classList.toggle("is-done", done);
         const rate = rays_per_second > 0 ? ` · ${count(rays_per_second)} rays/s` : "";
         text.textContent = `${samples} / ${of} samples · ${duration(seconds)}${rate}${hash ? ` · ${hash}` : ""}`;
-        text.title = hash ? `${hash} is the hash of this picture: that of lookfrom render --json is the same` : "";
+        // A scene whose camera was moved is not built around it, as that of a command is.
+        const isOwn = !app.view.get().camera;
+        text.title = hash ? `${hash} is the hash of this picture${isOwn ? ": that of lookfrom render --json is the same" : ""}` : "";
         text.dataset.hash = hash ?? "";
         // Screen readers hear of each quarter only.
         const quarter = done ? 4 : Math.floor((4 * samples) / Math.max(of, 1));

@@ -381,3 +381,17 @@ fn thousands_of_errors_are_no_burden() {
         assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
     }
 }
+
+/// A camera and an instance with motions of their own, beside a sphere that moves by an expression.
+#[test]
+fn what_stands_still_by_expressions_keeps_its_own_motion() {
+    let moved = "motion = [[1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1], [1, 0, 0, 1,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1]]";
+    let scene = read(&format!(
+        "[camera]\nlookfrom = [0, 1, 5]\nlookat = [0, 0, 0]\nshutter = 0.5\n{moved}\n\
+         [[objects.ball.sphere]]\ncenter = [0, 0, 0]\nradius = 1\n\
+         [[instance]]\nobject = \"ball\"\n{moved}\n\
+         [[sphere]]\ncenter = [\"t\", 3, 0]\nradius = 1\n"
+    ));
+    assert!(scene.camera.expect("a camera").motion.is_some());
+    assert_eq!(scene.instances.iter().filter(|instance| instance.motion.is_some()).count(), 2);
+}
