@@ -33,7 +33,7 @@ pub use candidate::{Candidate, Number, Test, TestNumbers, TraversalReport};
 pub use expression::Contribution;
 pub(crate) use expression::light_seen_by_bounces;
 pub use lights::{LightPlace, lights};
-pub use microfacets::MicrofacetReport;
+pub use microfacets::{MicrofacetReport, MultipleScatteringReport};
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,

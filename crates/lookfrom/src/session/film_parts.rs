@@ -4,6 +4,7 @@
 //! than the memory. Parts with other samples of the same pixels would all be in memory at once: those are better merged as
 //! [films](FilmFile::merge).
 
+use std::fmt;
 use std::io::{Seek, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,14 @@ pub struct FilmParts<'a> {
     parts: Vec<PartFile>,
 }
 
+impl fmt::Debug for FilmParts<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FilmParts").field("parts", &self.parts).finish_non_exhaustive()
+    }
+}
+
 /// A film's file.
+#[derive(Debug)]
 struct PartFile {
     path: PathBuf,
     area: PixelBounds,

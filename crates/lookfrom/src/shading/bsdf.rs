@@ -50,9 +50,10 @@ use lobes::Lobes;
 use microfacet::Microfacets;
 use thin_dielectric::ThinDielectric;
 
-pub use class::{Bsdf, BsdfClass, Description, Parameter, ScatteringFunction};
+pub use class::{Bsdf, BsdfClass, Description, Parameter, PreparedClass, ScatteringFunction};
 pub(crate) use class::{Variant, bsdf_classes, types};
 pub use factors::MicrofacetFactors;
+pub use one::PreparedBsdf;
 pub(crate) use one::Uniform;
 
 /// A direction sampled by [`Bsdf::sample`].

@@ -9,6 +9,7 @@ use crate::core::vector::Vector;
 use crate::core::warp;
 
 /// A BSDF of any class seen from an outgoing direction, `P`.
+#[derive(Debug)]
 pub struct PreparedBsdf<P> {
     pub(super) is_grazing: bool,
     pub(super) class: P,
@@ -32,6 +33,8 @@ macro_rules! scattering_functions {
         }
 
         /// One of them, and what it has prepared for an outgoing direction.
+        #[derive(Debug)]
+        #[non_exhaustive]
         pub enum PreparedClass {
             $($(#[$lane_doc])* $lane($lane_type, <$lane_type as LaneBsdf<f32>>::Prepared),)*
             $($(#[$doc])* $one($type, <$type as LaneBsdf<f32>>::Prepared),)*

@@ -7,6 +7,7 @@ use super::Model;
 use super::prepared::PreparedSurface;
 
 /// Probabilities of the lobes.
+#[derive(Debug)]
 pub(super) struct Choice<R: Real> {
     pub(super) coat: R,
     pub(super) sheen: R,

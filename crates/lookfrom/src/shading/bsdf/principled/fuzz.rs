@@ -16,7 +16,7 @@ use crate::core::warp;
 const SMOOTHEST: f32 = 0.01;
 
 /// Fuzz of a roughness, seen from a direction.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Fuzz<R> {
     /// The horizontal direction toward the viewer.
     toward: [R; 2],

@@ -20,12 +20,14 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 const COAT_F0: f32 = 0.04;
 
 /// The fibres of a model, seen from a direction.
+#[derive(Debug)]
 enum Kind<R: Real> {
     Sheen(Sheen<R>),
     Fuzz(Fuzz<R>),
 }
 
 /// glTF's sheen below the coat, or OpenPBR's fuzz on top of all layers.
+#[derive(Debug)]
 pub(super) struct Fibres<R: Real> {
     fibres: Kind<R>,
     pub(super) color: Spectrum<R>,
@@ -104,6 +106,7 @@ impl<R: Real> Fibres<R> {
 }
 
 /// A clear coat.
+#[derive(Debug)]
 pub(super) struct Coat<R: Real> {
     pub(super) amount: R,
     roughness: TrowbridgeReitz<R>,

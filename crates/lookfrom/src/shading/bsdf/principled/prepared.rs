@@ -18,6 +18,7 @@ use crate::shading::bsdf::across;
 use crate::shading::bsdf::albedo::{self, Split};
 
 /// A surface with the terms that depend on `wo` alone.
+#[derive(Debug)]
 pub(super) struct PreparedSurface<R: Real, M> {
     pub(super) wo: Vector<R>,
     pub(super) is_inside: R::Mask,

@@ -18,6 +18,7 @@ use crate::shading::bsdf::{DirectionSample, across, is_grazing};
 /// A principled BSDF for an outgoing direction ω_o. Other directions are those of [`crate::shading::bsdf::Bsdf`].
 ///
 /// Methods that are needed twice, or are long, are not inlined: compilers would take minutes.
+#[derive(Debug)]
 pub struct LocalScattering<R: Real = f32, M = Gltf> {
     prepared: PreparedSurface<R, M>,
     choice: Choice<R>,

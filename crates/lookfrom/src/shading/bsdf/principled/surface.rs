@@ -15,6 +15,7 @@ use crate::shading::bsdf::microfacet::TrowbridgeReitz;
 pub(super) const MEAN_COSINE: f32 = 0.7;
 
 /// The base under coat and sheen.
+#[derive(Debug)]
 pub(super) struct Surface<R: Real, M> {
     pub(super) model: M,
     pub(super) base: Spectrum<R>,
@@ -44,6 +45,7 @@ pub(super) struct Surface<R: Real, M> {
 }
 
 /// Reflected and transmitted light of a facet.
+#[derive(Debug)]
 pub(super) struct Facet<R> {
     pub(super) mirrored: Spectrum<R>,
     pub(super) passed: Spectrum<R>,
