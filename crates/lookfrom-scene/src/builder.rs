@@ -92,7 +92,10 @@ impl Scene {
     /// Adds the box along the axes between two opposite corners, in either order.
     pub fn cuboid(&mut self, a: impl Into<DVec3>, b: impl Into<DVec3>, material: MaterialId) -> &mut Self {
         let (a, b) = (a.into(), b.into());
-        let mesh = self.mesh(composite::cuboid(a.min(b), a.max(b)));
+        // Not by minimum and maximum, which drop what is not a number: validation has to see it.
+        let is_sorted = a.cmple(b);
+        let (min, max) = (DVec3::select(is_sorted, a, b), DVec3::select(is_sorted, b, a));
+        let mesh = self.mesh(composite::cuboid(min, max));
         self.shape(Geometry::Mesh(mesh), material);
         self
     }

@@ -219,14 +219,15 @@ impl Scene {
         self.shapes.iter().filter(move |shape| shape.name.as_deref() == Some(name))
     }
 
-    /// The bounding box of everything that is placed in the world, at all times of the shutter.
+    /// The bounding box of everything that is placed in the world, at all times of the shutter. What is made of meshes,
+    /// vertices and objects that are not there, for which [`Scene::validate`] has an error, takes no place.
     pub fn bounds(&self) -> Bounds {
         let of = |shapes: &[Shape]| {
             shapes.iter().fold(Bounds::EMPTY, |bounds, shape| bounds.union(shape.bounds(&self.meshes)))
         };
         let objects: Vec<Bounds> = self.objects.iter().map(|object| of(&object.shapes)).collect();
         self.instances.iter().fold(of(&self.shapes), |bounds, instance| {
-            let of_object = objects[instance.object.index()];
+            let of_object = objects.get(instance.object.index()).copied().unwrap_or(Bounds::EMPTY);
             match &instance.motion {
                 None => bounds.union(of_object.transformed(&instance.world_from_object)),
                 Some(motion) => {

@@ -362,10 +362,14 @@ impl Geometry {
             }),
             Self::Mesh(id) => {
                 // Each vertex once: on average it is a corner of six triangles, but it may be one of none.
-                let Mesh { positions, triangles, later, .. } = &meshes[id.index()];
+                let Some(Mesh { positions, triangles, later, .. }) = meshes.get(id.index()) else {
+                    return Bounds::EMPTY;
+                };
                 let mut is_corner = vec![false; positions.len()];
                 for &vertex in triangles.as_flattened() {
-                    is_corner[vertex as usize] = true;
+                    if let Some(is_corner) = is_corner.get_mut(vertex as usize) {
+                        *is_corner = true;
+                    }
                 }
                 let times = std::iter::once(positions).chain(later.iter().map(|pose| &pose.positions));
                 let vertices = times.flat_map(|positions| positions.iter().zip(&is_corner));

@@ -185,7 +185,7 @@ impl Renderer {
         scene.validate()?;
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene, scene.bounds());
-        let renderer = Self::new(Arc::new(World::compile(scene, warnings)?), view, settings)?;
+        let renderer = Self::new(Arc::new(World::compile_valid(scene, warnings)?), view, settings)?;
         renderer.check_view(&subject, warnings);
         Ok(renderer)
     }

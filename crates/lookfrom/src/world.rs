@@ -169,6 +169,9 @@ impl World {
     }
 
     /// The primitives that a hit belongs to and the instance, if it is in one, at a time of the shutter (0 … 1).
+    ///
+    /// # Panics
+    /// As [`World::surface`].
     #[inline]
     pub fn primitives(&self, hit: &Hit, time: f32) -> (&Primitives, Option<PlacedInstance<'_>>) {
         let instance = (hit.instance != NONE).then(|| self.instance(hit.instance, time));
@@ -176,6 +179,9 @@ impl World {
     }
 
     /// The surface interaction of `ray` at `hit`; of what moves when the shutter opens.
+    ///
+    /// # Panics
+    /// If the ray hit nothing ([`Hit::is_hit`]), or something of another world.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         self.surface_at(ray, hit, 0.0)
     }
@@ -194,6 +200,9 @@ impl World {
     }
 
     /// The surface interaction of `ray` at `hit` at a time of the shutter (0 … 1), at which the ray was traced.
+    ///
+    /// # Panics
+    /// As [`World::surface`].
     pub fn surface_at(&self, ray: &Ray, hit: &Hit, time: f32) -> SurfaceInteraction {
         let SurfacePoint { point, ng, ns, uv, dpdu, dpdv, shading_dpdu, shading_dpdv, lift, color, binding } =
             self.surface_point(ray, hit, time, true);

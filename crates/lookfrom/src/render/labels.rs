@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, NONE};
+use lookfrom_scene::settings::ImageSettings;
 
 use super::Renderer;
 use crate::core::parallel;
@@ -46,17 +47,19 @@ impl Renderer {
     /// The labels of all pixels of the picture, row by row from the top left; of those outside of the crop, too. Seen through are
     /// backs of single-sided surfaces, and what has an alpha below one half.
     pub fn labels(&self) -> Vec<Label> {
-        let [width, height] = [self.view.image.width, self.view.image.height];
+        let ImageSettings { width, height, .. } = self.view.image;
         let row = |row: usize| (0..width).map(move |column| self.label([column, row as u32]));
         parallel::collect(height as usize, |y| row(y).collect::<Vec<_>>()).concat()
     }
 
-    /// The label of a pixel when the shutter opens, by column and row from the top left; nothing is seen in a measurement.
+    /// The label of a pixel when the shutter opens, by column and row from the top left; nothing is seen in a measurement, and outside
+    /// of the picture.
     pub fn label(&self, [x, y]: [u32; 2]) -> Label {
-        if self.surface.is_some() {
+        let ImageSettings { width, height, .. } = self.view.image;
+        if self.surface.is_some() || x >= width || y >= height {
             return Label::NOTHING;
         }
-        let middle = [f64::from(x) + 0.5, f64::from(self.view.image.height - 1 - y) + 0.5];
+        let middle = [f64::from(x) + 0.5, f64::from(height - 1 - y) + 0.5];
         let mut path: Path = self.root(self.kernel_ray(&self.view.camera.ray(middle, [0.5; 2])));
         for _ in 0..MOST_PASSED {
             let hit: Hit = self.world.bvh.query().origin(path.origin_primitive).closest_hit(&path.ray);

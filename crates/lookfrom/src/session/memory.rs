@@ -10,7 +10,7 @@ use super::{Session, in_file};
 use crate::film::Film;
 use crate::world::World;
 
-/// Compiles a scene, whose own memory is `of_scene`; returns the world's with it.
+/// Compiles a valid scene, whose own memory is `of_scene`; returns the world's with it.
 ///
 /// # Errors
 /// As [`World::compile`], and `Limit` if the budget is exceeded.
@@ -24,7 +24,7 @@ pub(super) fn compile(
     let memory = budget.reserve(World::memory(&scene), "the compiled scene", &Location::file(path))?;
     // The world takes the pictures over, and nothing else.
     let mut images = scene.images.iter().map(Image::bytes).sum::<u64>();
-    let world = World::compile(scene, warnings).map_err(in_file(path))?;
+    let world = World::compile_valid(scene, warnings).map_err(in_file(path))?;
     for reservation in &mut of_scene {
         reservation.shrink(images);
         images -= reservation.bytes();

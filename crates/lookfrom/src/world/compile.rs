@@ -37,9 +37,15 @@ impl World {
     /// position of the scene's camera (of the default camera where it has none).
     ///
     /// # Errors
-    /// `Invalid` for a camera whose position is not finite or a transform that cannot be inverted; `Limit` for more
-    /// than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
+    /// As [`Scene::validate`]; `Invalid` for a camera whose position is not finite or a transform that cannot be inverted;
+    /// `Limit` for more than 2³² vertices or triangles in one shape, or 2³¹ materials and media.
     pub fn compile(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
+        scene.validate()?;
+        Self::compile_valid(scene, warnings)
+    }
+
+    /// [`World::compile`] for a scene that was read or has been validated.
+    pub(crate) fn compile_valid(scene: Scene, warnings: &mut Vec<Warning>) -> Result<Self> {
         Self::compile_on(None, scene, warnings)
     }
 

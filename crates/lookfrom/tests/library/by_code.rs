@@ -57,6 +57,17 @@ fn a_scene_made_by_code_is_that_of_the_file_with_the_same_words() {
 }
 
 #[test]
+fn a_box_with_a_corner_that_is_no_point_is_refused() {
+    let nan = f64::NAN;
+    for [a, b] in [[[nan, 0.0, 0.0], [1.0; 3]], [[1.0; 3], [0.0, nan, 0.0]], [[nan; 3]; 2]] {
+        let mut scene = Scene::new();
+        let gray = gray(&mut scene);
+        let error = scene.cuboid(a, b, gray).validate().expect_err("no box");
+        assert!(error.kind == ErrorKind::Invalid && error.message.contains("positions"), "{error}");
+    }
+}
+
+#[test]
 fn a_picture_is_saved_in_the_format_of_its_name() {
     let mut scene = Scene::new();
     let gray = gray(&mut scene);

@@ -57,6 +57,10 @@ fn labels_name_what_is_seen_and_where() {
     assert!(beside.shape != middle.shape && beside.material == middle.material);
     // Nothing in the corners.
     assert!(labels[0].shape == Label::NONE && labels[0].point.is_nan(), "{:?}", labels[0]);
+    // Nor outside of the picture.
+    for pixel in [[width, 0], [0, height], [500, 500]] {
+        assert_eq!(renderer.label(pixel).shape, Label::NONE, "{pixel:?}");
+    }
     // Each point is seen in the middle of its pixel.
     let camera = renderer.view().camera();
     for (index, label) in labels.iter().enumerate().filter(|(_, label)| label.shape != Label::NONE) {

@@ -338,7 +338,7 @@ fn frames_of_tangents_follow_their_hands_through_mirrors() {
 fn further_coordinates_and_opacities_come_with_the_surface() {
     let mut mesh = square(1);
     let moved = |by: f32| mesh.uvs.iter().map(|uv| *uv + by).collect::<Vec<Vec2>>();
-    mesh.more_uvs = vec![moved(1.0), Vec::new(), moved(3.0), moved(4.0)];
+    mesh.more_uvs = vec![moved(1.0), vec![Vec2::ZERO; 4], moved(3.0), moved(4.0)];
     mesh.opacities = mesh.uvs.iter().map(|uv| uv.x).collect();
     for as_instance in [false, true] {
         let mut scene = scene();

@@ -2,19 +2,20 @@
 
 use std::path::Path;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec3};
 use lookfrom::render::Renderer;
+use lookfrom::world::World;
 use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::{
     BumpMapping, Coat, Color, Ior, MaterialKind, Metal, Pigment, Roughness, Scalar, SubsurfaceMedium, Tint,
 };
 use lookfrom_scene::medium::Extinction;
-use lookfrom_scene::scene::{MaterialId, MeshId, Scene};
-use lookfrom_scene::shape::{Geometry, Profile, Shape, Sphere};
+use lookfrom_scene::scene::{Instance, MaterialId, MeshId, ObjectId, Scene};
+use lookfrom_scene::shape::{Geometry, Mesh, Profile, Shape, Sphere};
 use lookfrom_scene::spectrum::Curve;
 use lookfrom_scene::texture::{Mapping, MipFilter, TexelFilter, TextureKind};
-use lookfrom_scene::{Error, ErrorKind, LoadContext, Memory, Result};
+use lookfrom_scene::{Error, ErrorKind, LoadContext, Location, Memory, Result};
 use proptest::prelude::*;
 
 use crate::support::own_scene;
@@ -545,4 +546,29 @@ fn what_is_wrong_is_told_with_what_there_is() {
         wrong.message.contains("shape 1") && wrong.message.contains("world_from_object has NaN"),
         "{wrong}"
     );
+}
+
+#[test]
+fn ids_without_a_target_are_refused_where_a_scene_is_compiled_and_take_no_place() {
+    let mut scene = Scene::new();
+    let (none, sphere) = (MaterialId(77), Sphere { center: DVec3::ZERO, radius: 1.0 });
+    let unpainted = scene.sphere(sphere.center, sphere.radius, none).clone();
+    let wrong = World::compile(unpainted.clone(), &mut Vec::new()).expect_err("no such material");
+    assert!(wrong.message.contains("there is no material 77"), "{wrong}");
+
+    scene.shape(Geometry::Mesh(MeshId(77)), none);
+    scene.instances.push(Instance {
+        object: ObjectId(77),
+        material: None,
+        world_from_object: DMat4::IDENTITY,
+        motion: None,
+        at: Location::default(),
+    });
+    assert_eq!(scene.bounds(), unpainted.bounds());
+    let triangle =
+        Mesh { positions: vec![Vec3::ZERO, Vec3::X], triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    let mesh = scene.mesh(triangle);
+    scene.shape(Geometry::Mesh(mesh), none);
+    assert_eq!(scene.bounds(), unpainted.bounds());
+    assert!(World::compile(scene, &mut Vec::new()).is_err());
 }

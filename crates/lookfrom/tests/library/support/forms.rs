@@ -165,15 +165,19 @@ pub(crate) fn shining(geometry: Geometry, map: DMat4, two_sided: bool, reverse_o
 }
 
 /// One shape, seen from an eye at the origin, so that render space is the world.
-pub(crate) fn world(shape: Shape, meshes: Vec<Mesh>) -> World {
+pub(crate) fn scene_of(shape: Shape, meshes: Vec<Mesh>) -> Scene {
     let view = View::Look { lookfrom: DVec3::ZERO, lookat: DVec3::NEG_Z, up: DVec3::Y };
     let camera = Some(Camera { view, ..Camera::default() });
     // A material that asks for derivatives.
     let bump_mapping = BumpMapping::Bump(Scalar::Value(0.0));
     let kind = MaterialKind::Diffuse { reflectance: Color::gray(0.5) };
     let materials = vec![Material { bump_mapping, ..Material::new("bumped", Location::default(), kind) }];
-    let scene = Scene { camera, materials, meshes, shapes: vec![shape], ..Scene::default() };
-    World::compile(scene, &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"))
+    Scene { camera, materials, meshes, shapes: vec![shape], ..Scene::default() }
+}
+
+/// The world of one shape.
+pub(crate) fn world(shape: Shape, meshes: Vec<Mesh>) -> World {
+    World::compile(scene_of(shape, meshes), &mut Vec::new()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The twin's world.
