@@ -52,6 +52,7 @@ pub use cost::Cost;
 use start::Start;
 use transport::Transport;
 
+pub use crate::core::parallel::MOST_THREADS;
 pub use driver::FEWEST_SAMPLES;
 pub use labels::Label;
 pub use progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};

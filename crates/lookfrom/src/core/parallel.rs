@@ -9,6 +9,9 @@ use lookfrom_scene::Result;
 #[cfg(feature = "parallel")]
 use lookfrom_scene::{Error, ErrorKind, Location};
 
+/// The most threads of a render: more than machines have processors. Many more would mostly wait for each other.
+pub const MOST_THREADS: usize = 1024;
+
 /// Tasks that [`collect`] makes at most.
 const MOST_TASKS: usize = 4096;
 
@@ -68,13 +71,14 @@ pub(crate) fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> 
     (one(), other())
 }
 
-/// Runs `work` so that its parallel loops use `threads` threads (`None`: one per hardware thread).
+/// Runs `work` so that its parallel loops use `threads` threads, but at most [`MOST_THREADS`] (`None`: one per hardware thread).
 ///
 /// # Errors
 /// `Limit` if the threads cannot be started.
 #[cfg(feature = "parallel")]
 pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> Result<T> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+    let threads = threads.map_or(0, |threads| threads.min(MOST_THREADS));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|error| Error::new(ErrorKind::Limit, &Location::default(), error.to_string()))?;
     Ok(pool.install(work))
 }
@@ -86,4 +90,15 @@ pub(crate) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() ->
 #[cfg(not(feature = "parallel"))]
 pub(crate) fn on_threads<T>(_threads: Option<usize>, work: impl FnOnce() -> T) -> Result<T> {
     Ok(work())
+}
+
+#[cfg(all(test, feature = "parallel"))]
+mod tests {
+    use crate::core::parallel::{MOST_THREADS, on_threads, threads};
+
+    #[test]
+    fn no_number_of_threads_is_too_large() {
+        assert_eq!(on_threads(Some(3), threads).expect("threads"), 3);
+        assert_eq!(on_threads(Some(usize::MAX), threads).expect("threads"), MOST_THREADS);
+    }
 }

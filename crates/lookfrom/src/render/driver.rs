@@ -43,8 +43,8 @@ const VERY_SLOW: u64 = 600_000_000;
 pub const FEWEST_SAMPLES: u32 = 16;
 
 impl Renderer {
-    /// Renders the whole picture with all its samples on `threads` threads (`None` is one per processor). Without the
-    /// feature `parallel` it renders on the caller's thread.
+    /// Renders the whole picture with all its samples on `threads` threads, but at most [`MOST_THREADS`](super::MOST_THREADS)
+    /// (`None` is one per processor). Without the feature `parallel` it renders on the caller's thread.
     ///
     /// The samples of a pixel are taken in passes of 1, 1, 2, 4 … over the whole picture, or of as many as take a moment, so that a
     /// render that is stopped leaves a whole picture behind. The film is the same for any number of threads.

@@ -116,7 +116,7 @@ pub struct Options {
     pub keep_scene: bool,
     /// The format that the picture will be encoded in, if it is known: AOVs that it cannot hold are not computed.
     pub format: Option<Format>,
-    /// Number of threads; `None` is one per processor.
+    /// Number of threads, of which there are at most [`MOST_THREADS`](crate::render::MOST_THREADS); `None` is one per processor.
     pub threads: Option<usize>,
     /// The memory for all that the session reads, compiles and renders: by default, what this machine has.
     pub budget: Budget,
