@@ -32,7 +32,8 @@ impl Scene {
     /// that is made of itself; `Limit` for too deep chains of textures or materials, and too large a picture.
     pub fn validate(&self) -> Result<()> {
         camera::check(self)?;
-        settings::check(self)?;
+        self.image.validate()?;
+        self.render.validate()?;
         let nowhere = Location::default();
         for (index, curve) in self.curves.iter().enumerate() {
             check_curve(&Part::new(self, &nowhere, "spectrum").numbered(index, None), curve)?;

@@ -118,13 +118,13 @@ impl Renderer {
     /// A renderer of a picture of `world` as `view` sees it.
     ///
     /// # Errors
-    /// `Invalid` for no samples, or a crop without pixels.
+    /// `Invalid` for no samples, or a crop without pixels; as [`ImageSettings::validate`] and [`RenderSettings::validate`].
     pub fn new(world: Arc<World>, view: View, settings: RenderSettings) -> Result<Self> {
         Self::check(&view, &settings)?;
         Ok(Self::without_guide(world.unguided(), view, settings)?.with_guide())
     }
 
-    /// Whether there are samples and pixels.
+    /// Whether there are samples and pixels, and all settings have a meaning.
     fn check(view: &View, settings: &RenderSettings) -> Result<()> {
         let invalid = |message: String| Err(Error::new(ErrorKind::Invalid, &Location::default(), message));
         let image = &view.image;
@@ -139,6 +139,8 @@ impl Renderer {
                 image.width, image.height
             ));
         }
+        image.validate()?;
+        settings.validate()?;
         spectral_film::check(image, settings)
     }
 

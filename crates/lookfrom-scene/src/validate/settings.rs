@@ -10,14 +10,36 @@ use crate::settings::{
 /// Maximum of a filter's radius in pixels.
 const WIDEST: f32 = 16.0;
 
-pub(super) fn check(scene: &Scene) -> Result<()> {
-    let nowhere = Location::default();
-    check_image(&Part::new(scene, &nowhere, "the picture"), &scene.image)?;
-    check_render(&Part::new(scene, &nowhere, "the integrator"), &scene.render)
+impl ImageSettings {
+    /// Checks that size, filter, exposure, background, sensor and spectral film are as their documentation says.
+    ///
+    /// # Errors
+    /// `Invalid` for a picture without pixels and for a number out of range; `Limit` for too large a picture.
+    pub fn validate(&self) -> Result<()> {
+        check(|part| check_image(part, self), "the picture")
+    }
+}
+
+impl RenderSettings {
+    /// Checks that the numbers are as their documentation says.
+    ///
+    /// # Errors
+    /// `Invalid` for a number out of range.
+    pub fn validate(&self) -> Result<()> {
+        check(|part| check_render(part, self), "the integrator")
+    }
+}
+
+/// Checks settings, which refer to nothing in a scene and have no place in a file.
+fn check(settings: impl Fn(&Part<'_>) -> Result<()>, kind: &str) -> Result<()> {
+    settings(&Part::new(&Scene::default(), &Location::default(), kind))
 }
 
 fn check_image(part: &Part<'_>, image: &ImageSettings) -> Result<()> {
     let (width, height) = (u64::from(image.width), u64::from(image.height));
+    if width == 0 || height == 0 {
+        return Err(part.fault(format!("it has {width} × {height} pixels; both must be at least 1")));
+    }
     if width * height > MOST_PIXELS {
         let message = format!("{width}×{height} pixels are more than the limit of {MOST_PIXELS}");
         return Err(Error::new(ErrorKind::Limit, part.at, message));

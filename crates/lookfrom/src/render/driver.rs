@@ -58,7 +58,8 @@ impl Renderer {
     /// As [`Renderer::render`], but ends early when a stop criterion is met.
     ///
     /// # Errors
-    /// As [`Renderer::render`].
+    /// As [`Renderer::render`]; `Request` for a limit of noise that is negative or not a number, and together with adaptive
+    /// allocation.
     pub fn render_until(
         &self,
         stop: &StopCriteria,
@@ -74,8 +75,8 @@ impl Renderer {
     /// [checkpoint](Progress::checkpoint) or the end of a render with the same limit.
     ///
     /// # Errors
-    /// As [`Renderer::render`]; `Request` for adaptive allocation together with a limit of noise, and for either of a part of the
-    /// samples.
+    /// As [`Renderer::render`]; `Request` for adaptive allocation together with a limit of noise, for either of a part of the
+    /// samples, and for a limit of noise that is negative or not a number.
     pub fn render_onto(
         &self,
         film: Film,
@@ -84,6 +85,7 @@ impl Renderer {
         threads: Option<usize>,
         progress: &dyn Progress,
     ) -> Result<Rendered> {
+        stop.check()?;
         let pilot = self.pilot();
         let refused = |message: &str| Err(Error::new(ErrorKind::Request, &Location::default(), message));
         if first != 0 && (pilot.is_some() || stop.noise.is_some()) {

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::time::Duration;
 
 use lookfrom_scene::settings::PixelBounds;
+use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use super::Rays;
 use crate::film::{Film, Picture};
@@ -17,6 +18,23 @@ pub struct StopCriteria {
     /// Stop when the picture's [relative error](Film::relative_error) is at most this: rounds of samples go to the pixels
     /// that lower it most. Not with samples that are allocated adaptively.
     pub noise: Option<f64>,
+}
+
+impl StopCriteria {
+    /// Checks that the limit of noise is one that errors can be compared with.
+    ///
+    /// # Errors
+    /// `Request` where it is not a number, or negative.
+    pub(crate) fn check(&self) -> Result<()> {
+        match self.noise {
+            Some(noise) if !(noise >= 0.0) => {
+                let message =
+                    format!("the limit of noise is {noise}; expected a relative error of at least 0");
+                Err(Error::new(ErrorKind::Request, &Location::default(), message))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// The reason why a render ended.

@@ -39,6 +39,7 @@ impl Session {
         }
         let mut changed = self.clone();
         let (mut image, mut settings) = (self.image().clone(), self.settings().clone());
+        options.check_numbers()?;
         options.apply_to_settings(&mut image, &mut settings)?;
         settle_limits(&mut settings, options);
         let StopCriteria { time, noise } = options.stop;
@@ -124,7 +125,8 @@ impl Session {
     /// Changes the image settings: size, crop, filter, background or development.
     ///
     /// # Errors
-    /// `Invalid` for a size or crop without pixels; then nothing has changed.
+    /// `Invalid` for a size or crop without pixels and as [`ImageSettings::validate`]; `Request` for a background that the picture's
+    /// format, if it is known, cannot hold. Then nothing has changed.
     pub fn set_image(&mut self, image: ImageSettings) -> Result<()> {
         self.renderer = self.renderer.with_view(View::new(&self.camera, image)?)?;
         Ok(())
@@ -134,7 +136,7 @@ impl Session {
     /// compiled.
     ///
     /// # Errors
-    /// `Invalid` for no samples; then nothing has changed.
+    /// `Invalid` for no samples and as [`RenderSettings::validate`]; then nothing has changed.
     pub fn set_settings(&mut self, settings: RenderSettings) -> Result<()> {
         self.renderer = self.renderer.with_settings(settings)?;
         Ok(())

@@ -154,15 +154,56 @@ impl Options {
         }
     }
 
+    /// Checks the numbers that become no settings: of the view, what is around the scene, and the criteria to stop by.
+    ///
+    /// # Errors
+    /// `Request` for a number that is out of range.
+    pub(super) fn check_numbers(&self) -> Result<()> {
+        self.stop.check()?;
+        let finite = "a finite number of degrees";
+        check_number("azimuth", self.azimuth, finite, f64::is_finite)?;
+        check_number("rotate_environment", self.rotate_environment, finite, f64::is_finite)?;
+        check_number("turn", self.turn, finite, f64::is_finite)?;
+        check_elevation(self.elevation)?;
+        check_fov(self.fov)?;
+        if let Some(view) = self.view {
+            check_number("azimuth", Some(view.azimuth), finite, f64::is_finite)?;
+            check_elevation(Some(view.elevation))?;
+            check_fov(view.fov)?;
+        }
+        let is_point = |point: DVec3| point.is_finite();
+        check_vector("lookfrom", self.lookfrom, "finite coordinates", is_point)?;
+        check_vector("lookat", self.lookat, "finite coordinates", is_point)?;
+        let is_direction = |up: DVec3| up.is_finite() && up != DVec3::ZERO;
+        check_vector("up", self.up, "a direction, of finite numbers that are not all 0", is_direction)?;
+        check_bounds(self.bounds)
+    }
+
     /// Applies the options to image and render settings.
     ///
     /// # Errors
-    /// `Request` for a picture that is too large or a crop outside of it.
+    /// `Request` for a picture that is too large or has no pixels, and for a crop outside of it; as [`ImageSettings::validate`] and
+    /// [`RenderSettings::validate`].
     pub(super) fn apply_to_settings(
         &self,
         image: &mut ImageSettings,
         render: &mut RenderSettings,
     ) -> Result<()> {
+        let check = |image: &ImageSettings, render: &RenderSettings| {
+            image.validate()?;
+            render.validate()
+        };
+        let of_scene = check(image, render);
+        self.replace_settings(image, render)?;
+        check(image, render).map_err(|error| match of_scene {
+            Ok(()) => Error { at: in_options(), ..error },
+            Err(_) => error,
+        })
+    }
+
+    /// # Errors
+    /// `Request` for a picture that is too large or has no pixels, and for a crop outside of it.
+    fn replace_settings(&self, image: &mut ImageSettings, render: &mut RenderSettings) -> Result<()> {
         self.resize(image)?;
         if let Some(crop) = self.crop {
             if crop.x1 > image.width || crop.y1 > image.height {
@@ -252,6 +293,13 @@ impl Options {
 
     fn resize(&self, image: &mut ImageSettings) -> Result<()> {
         let (old_width, old_height) = (u64::from(image.width), u64::from(image.height));
+        let of_scene = [image.width, image.height];
+        let asked = [self.width.unwrap_or(image.width), self.height.unwrap_or(image.height)];
+        if let Some([width, height]) = [of_scene, asked].into_iter().find(|sides| sides.contains(&0)) {
+            return Err(unsuitable(format!(
+                "a picture of {width} × {height} pixels; expected at least 1 × 1"
+            )));
+        }
         // One side alone: the other one keeps the aspect ratio, to the nearest pixel.
         let (width, height) = match (self.width.map(u64::from), self.height.map(u64::from)) {
             (None, None) => return Ok(()),
@@ -323,7 +371,7 @@ impl Options {
         if moved {
             self.look(camera, middle)?;
             // Errors of the camera from here on have no line in a file.
-            camera.at = Location { file: OPTIONS.into(), ..Location::default() };
+            camera.at = in_options();
         }
         Ok(moved || self.fov.is_some())
     }
@@ -343,6 +391,54 @@ impl Options {
         camera.set_look(look, middle);
         Ok(())
     }
+}
+
+/// The location of errors in options.
+fn in_options() -> Location {
+    Location { file: OPTIONS.into(), ..Location::default() }
+}
+
+/// Checks a number, given what is expected and whether a number is that.
+fn check_number(name: &str, number: Option<f64>, expected: &str, is_valid: fn(f64) -> bool) -> Result<()> {
+    match number {
+        Some(number) if !is_valid(number) => {
+            Err(unsuitable(format!("{name} is {number}; expected {expected}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_elevation(degrees: Option<f64>) -> Result<()> {
+    check_number("elevation", degrees, "degrees from -90 to 90", |degrees| degrees.abs() <= 90.0)
+}
+
+fn check_fov(degrees: Option<f64>) -> Result<()> {
+    check_number("fov", degrees, "degrees between 0 and 180", |degrees| degrees > 0.0 && degrees < 180.0)
+}
+
+fn check_vector(
+    name: &str,
+    vector: Option<DVec3>,
+    expected: &str,
+    is_valid: fn(DVec3) -> bool,
+) -> Result<()> {
+    match vector {
+        Some(vector) if !is_valid(vector) => {
+            Err(unsuitable(format!("{name} is {vector}; expected {expected}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_bounds(bounds: Option<Bounds>) -> Result<()> {
+    // Those of scenes without shapes are empty.
+    let Some(bounds @ Bounds { min, max }) = bounds.filter(|bounds| *bounds != Bounds::EMPTY) else {
+        return Ok(());
+    };
+    if min.is_finite() && max.is_finite() && !bounds.is_empty() {
+        return Ok(());
+    }
+    Err(unsuitable(format!("bounds are {min} to {max}; expected finite coordinates, the lesser first")))
 }
 
 fn replace<T>(setting: &mut T, typed: Option<T>) {

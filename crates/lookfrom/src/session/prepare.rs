@@ -25,13 +25,14 @@ pub(super) struct Prepared {
 /// Applies options to a scene, and chooses defaults for what both leave open.
 ///
 /// # Errors
-/// `Request` where the options do not suit the scene.
+/// `Request` where the options do not suit the scene, and for numbers of them that are out of range.
 pub(super) fn prepare(
     scene: &mut Scene,
     file: &Path,
     options: &Options,
     warnings: &mut Vec<Warning>,
 ) -> Result<Prepared> {
+    options.check_numbers()?;
     options.apply_to_settings(&mut scene.image, &mut scene.render)?;
     if let Some(format) = options.format {
         format.check_background(scene.image.background)?;

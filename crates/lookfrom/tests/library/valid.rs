@@ -541,6 +541,8 @@ fn what_is_wrong_is_told_with_what_there_is() {
     let wrong = error(&|scene| scene.shapes[0].material = MaterialId(70));
     assert_eq!(wrong.kind, ErrorKind::Invalid);
     assert!(wrong.message.contains("there is no material 70; the scene has"), "{wrong}");
+    let wrong = error(&|scene| scene.image.height = 0);
+    assert!(wrong.message.contains("pixels; both must be at least 1"), "{wrong}");
     let wrong = error(&|scene| scene.shapes[1].world_from_object.x_axis.x = f64::NAN);
     assert!(
         wrong.message.contains("shape 1") && wrong.message.contains("world_from_object has NaN"),
