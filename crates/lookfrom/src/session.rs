@@ -94,8 +94,8 @@ pub struct Session {
     name: String,
     renderer: Renderer,
     camera: Camera,
-    /// The scene as it was compiled, if it is kept.
-    kept: Option<Arc<Scene>>,
+    /// The scene as it was compiled and its memory, if it is kept.
+    kept: Option<(Arc<Scene>, Arc<Reservation>)>,
     /// The source from which the scene can be read again.
     source: Source,
     /// The turntable, if enabled by the options.
@@ -261,11 +261,8 @@ impl Session {
         let camera = scene.camera.clone().unwrap_or_default();
         let (view, settings) = (View::of_scene(&scene)?, scene.render.clone());
         let subject = Subject::of_scene(&scene, bounds);
-        let of_kept = if options.keep_scene { scene.bytes() } else { 0 };
-        let of_kept = options.budget.reserve(of_kept, "the scene that is kept", &Location::default())?;
-        let kept = options.keep_scene.then(|| Arc::new(scene.clone()));
-        let (world, mut memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
-        memory.push(of_kept);
+        let kept = if options.keep_scene { Some(keep(&scene, &options.budget)?) } else { None };
+        let (world, memory) = memory::compile(scene, memory, &options.budget, path, &mut warnings)?;
         let renderer = Renderer::new(Arc::new(world), view, settings).map_err(in_file(path))?;
         let (renderer, shows_backs) = seeing_backs(renderer).map_err(in_file(path))?;
         let world = renderer.world().clone();
@@ -443,6 +440,15 @@ impl Session {
     fn has_room_for_layers(&self) -> bool {
         self.format.is_none_or(Format::has_layers)
     }
+}
+
+/// A copy of a scene, and its memory.
+///
+/// # Errors
+/// `Limit` if the budget is exceeded.
+fn keep(scene: &Scene, budget: &Budget) -> Result<(Arc<Scene>, Arc<Reservation>)> {
+    let memory = budget.reserve(scene.bytes(), "the scene that is kept", &Location::default())?;
+    Ok((Arc::new(scene.clone()), Arc::new(memory)))
 }
 
 /// A renderer of the same picture that shows surfaces from both sides, where it would otherwise see nothing but backs of

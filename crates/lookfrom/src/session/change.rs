@@ -9,7 +9,7 @@ use lookfrom_scene::{CameraChoice, ImportOptions, Result};
 
 use super::options::unsuitable;
 use super::prepare::settle_limits;
-use super::{Exposure, Fireflies, Options, Session, Turning};
+use super::{Exposure, Fireflies, Options, Session, Turning, seeing_backs};
 use crate::integrator::Integrator;
 use crate::render::StopCriteria;
 use crate::view::View;
@@ -79,7 +79,7 @@ impl Session {
 
     /// Changes the camera. Nothing is read or built again, unless the camera is so far from the origin of render space,
     /// and so near to a surface, that the world would not be precise there ([`World::is_precise_from`](crate::world::World::is_precise_from)): then the scene
-    /// is read again and its world built around that camera.
+    /// that is kept ([`Options::keep_scene`]), with all its changes, or else the scene read again, is built around that camera.
     ///
     /// # Errors
     /// `Invalid` for a degenerate camera; `Request` where the world is not precise from there and cannot be read again,
@@ -90,11 +90,11 @@ impl Session {
         self.renderer = match self.world().is_precise_from(eye) {
             true => self.renderer.with_view(view)?,
             false => {
-                let (mut world, memory) = self.source.world_around(&camera, self.settings())?;
+                let (mut world, memory) = self.world_around(&camera)?;
                 if let Some(turning) = &self.turntable {
                     world = world.with_surroundings_turned(&turning.rotation());
                 }
-                let renderer = self.renderer.with_world(Arc::new(world), view)?;
+                let (renderer, _) = seeing_backs(self.renderer.with_world(Arc::new(world), view)?)?;
                 self.memory = Arc::new(memory);
                 renderer
             }

@@ -40,14 +40,15 @@ impl Session {
     /// ([`Options::keep_scene`]). What can be changed otherwise is not in it: [`Session::camera`], [`Session::image`],
     /// [`Session::settings`].
     pub fn scene(&self) -> Option<&Scene> {
-        self.kept.as_deref()
+        self.kept.as_ref().map(|(scene, _)| &**scene)
     }
 
     /// The scene as a file could have it that gives this session's picture without options: with what was added, the camera and all
     /// settings. `None` where the scene is not kept. A turned turntable is not in it.
     pub fn into_scene(self) -> Option<Scene> {
         let (image, render) = (self.image().clone(), self.settings().clone());
-        let scene = Arc::unwrap_or_clone(self.kept?);
+        let (scene, _) = self.kept?;
+        let scene = Arc::unwrap_or_clone(scene);
         Some(Scene { camera: Some(self.camera), image, render, ..scene })
     }
 
@@ -99,7 +100,7 @@ impl Session {
 
     /// Changes the scene by exchanging a part of it; where that fails, it is exchanged again.
     fn exchange(&mut self, keeps: Kept, mut exchange: impl FnMut(&mut Scene)) -> Result<()> {
-        let Some(mut kept) = self.kept.take() else {
+        let Some((mut kept, memory)) = self.kept.take() else {
             let message = "this session does not keep its scene: enable it by the option `keep_scene`";
             return Err(options::unsuitable(message.to_owned()));
         };
@@ -108,7 +109,7 @@ impl Session {
         if changed.is_err() {
             exchange(Arc::make_mut(&mut kept));
         }
-        self.kept = Some(kept);
+        self.kept = Some((kept, memory));
         changed
     }
 

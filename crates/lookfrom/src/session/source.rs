@@ -1,16 +1,15 @@
-//! The source of a session's scene, for rebuilding its world around another camera.
+//! The source of a session's scene, and its world built again around another camera.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lookfrom_scene::budget::Reservation;
 use lookfrom_scene::camera::Camera;
 use lookfrom_scene::files::SharedFiles;
-use lookfrom_scene::settings::RenderSettings;
-use lookfrom_scene::{Result, load};
+use lookfrom_scene::{Location, Result, Scene, load};
 
-use super::{Options, memory, options, prepare};
+use super::{Options, Session, memory, options, prepare};
 use crate::world::World;
 
 /// The source of a scene, with the options that it was prepared with.
@@ -32,19 +31,16 @@ impl fmt::Debug for Source {
 }
 
 impl Source {
-    /// The world of the scene with another camera at the origin of render space, and its memory.
+    /// The scene, read and prepared again, and its memory.
     ///
     /// # Errors
-    /// As [`Session::open`](super::Session::open); `Request` where the scene cannot be read again.
-    pub(super) fn world_around(
-        &self,
-        camera: &Camera,
-        settings: &RenderSettings,
-    ) -> Result<(World, Vec<Reservation>)> {
+    /// As [`Session::open`]; `Request` where the scene cannot be read again.
+    fn scene(&self) -> Result<(Scene, Vec<Reservation>)> {
         let Self::Files(path, files, options) = self else {
             return Err(options::unsuitable(
                 "the camera is too far from where the session began, and too near to something, for this world to be \
-                 exact there, and its scene cannot be read again: make a new session with this camera"
+                 exact there, and its scene cannot be read again: make a new session with this camera, or keep the scene \
+                 by the option `keep_scene`"
                     .to_owned(),
             ));
         };
@@ -52,8 +48,27 @@ impl Source {
         let mut scene = load::scene(path, &mut context)?;
         // Its warnings were given when the session was opened.
         prepare::prepare(&mut scene, path, options, &mut Vec::new())?;
+        Ok((scene, context.kept))
+    }
+}
+
+impl Session {
+    /// The world of the scene with another camera at the origin of render space, and its memory. A scene that is kept has what was
+    /// changed in it; one that is read again has no changes.
+    ///
+    /// # Errors
+    /// As [`Session::open`]; `Request` where the scene is not kept and cannot be read again.
+    pub(super) fn world_around(&self, camera: &Camera) -> Result<(World, Vec<Reservation>)> {
+        let (mut scene, of_scene) = match &self.kept {
+            None => self.source.scene()?,
+            Some((kept, _)) => {
+                let bytes = kept.bytes();
+                let memory = self.budget.reserve(bytes, "the scene compiled again", &Location::default())?;
+                (Scene::clone(kept), vec![memory])
+            }
+        };
         scene.camera = Some(camera.clone());
-        scene.render = settings.clone();
-        memory::compile(scene, context.kept, &options.budget, path, &mut Vec::new())
+        scene.render = self.settings().clone();
+        memory::compile(scene, of_scene, &self.budget, Path::new(&self.name), &mut Vec::new())
     }
 }
