@@ -358,13 +358,16 @@ fn push_mesh(scene: &mut Scene, name: &str, vertices: Vertices, triangles: Vec<[
     let Vertices { mut positions, normals, tangents, uvs, colors, opacities, .. } = vertices;
     forget_infinite(&mut positions);
     let mut sets = uvs.into_iter();
+    let vertices = positions.len();
+    // A set that is left out below others is 0 everywhere, which is what look-ups of it find.
+    let whole = |set: Vec<Vec2>| if set.is_empty() { vec![Vec2::ZERO; vertices] } else { set };
     scene.meshes.push(Mesh {
         name: name.to_owned(),
         positions,
         triangles,
         normals,
         uvs: sets.next().unwrap_or_default(),
-        more_uvs: sets.collect(),
+        more_uvs: sets.map(whole).collect(),
         colors,
         opacities,
         tangents,

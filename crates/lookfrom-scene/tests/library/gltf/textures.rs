@@ -59,6 +59,18 @@ fn texture_coordinates_are_turned_over_and_transformed() {
 }
 
 #[test]
+fn a_set_of_texture_coordinates_that_is_left_out_is_zero() {
+    let mut model = Model::default();
+    let positions = model.square();
+    let uvs = model.floats("VEC2", &[0.25, 0.125, 1.0, 0.0, 0.0, 1.0, 3.0, -2.0]);
+    let attributes = json!({"POSITION": positions, "TEXCOORD_0": uvs, "TEXCOORD_2": uvs});
+    let scene = model.scene(one(json!({"attributes": attributes, "mode": 5}), pictures()));
+    let mesh = mesh(&scene, &scene.shapes[0]);
+    assert_eq!(mesh.more_uvs, [vec![Vec2::ZERO; 4], mesh.uvs.clone()]);
+    scene.validate().expect("as readers make scenes");
+}
+
+#[test]
 fn a_picture_is_decoded_once_for_each_meaning() {
     let material = json!({
         "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0}, "roughnessFactor": 0.5},
