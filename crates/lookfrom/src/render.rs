@@ -224,7 +224,7 @@ impl Renderer {
     }
 
     /// Another renderer with the custom integrator of this one, if it has one.
-    fn with_same_integrator(&self, other: Self) -> Self {
+    pub(crate) fn with_same_integrator(&self, other: Self) -> Self {
         match self.is_plugged_in {
             true => Self { integrator: self.integrator.clone(), is_plugged_in: true, ..other },
             false => other,

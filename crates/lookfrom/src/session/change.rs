@@ -45,7 +45,7 @@ impl Session {
         let StopCriteria { time, noise } = options.stop;
         changed.stop = StopCriteria { time: time.or(self.stop.time), noise: noise.or(self.stop.noise) };
         let range = options.range(&settings)?;
-        if options.samples.is_some() || options.part.is_some() {
+        if options.samples.is_some() || options.part.is_some() || options.first_sample != 0 {
             changed.first_sample = range.start;
             settings.samples = range.end;
         }
@@ -61,7 +61,10 @@ impl Session {
         if !changed.has_room_for_layers() {
             image = image.without_layers();
         }
-        changed.set_settings(settings)?;
+        match options.integrator {
+            Some(_) => changed.set_settings(settings)?,
+            None => changed.set_settings_of_same_integrator(settings)?,
+        }
         changed.set_image(image)?;
         if let Some(degrees) = options.turn {
             changed.set_turn(degrees)?;
@@ -82,8 +85,9 @@ impl Session {
     /// that is kept ([`Options::keep_scene`]), with all its changes, or else the scene read again, is built around that camera.
     ///
     /// # Errors
-    /// `Invalid` for a degenerate camera; `Request` where the world is not precise from there and cannot be read again,
-    /// because the session was made of a scene or through [`Session::read`]. Then nothing has changed.
+    /// `Invalid` for a degenerate camera; `Request` where the world is not precise from there and the scene is not kept and cannot be
+    /// read again, because the session was made of a scene or through [`Session::read`]; `Limit` where there is no memory for a second
+    /// world ([`Options::budget`]), until the first is gone. Then nothing has changed.
     pub fn set_camera(&mut self, camera: Camera) -> Result<()> {
         let view = View::new(&camera, self.image().clone())?;
         let eye = view.camera().lookfrom();
@@ -128,6 +132,9 @@ impl Session {
     /// `Invalid` for a size or crop without pixels and as [`ImageSettings::validate`]; `Request` for a background that the picture's
     /// format, if it is known, cannot hold. Then nothing has changed.
     pub fn set_image(&mut self, image: ImageSettings) -> Result<()> {
+        if let Some(format) = self.format {
+            format.check_background(image.background)?;
+        }
         self.renderer = self.renderer.with_view(View::new(&self.camera, image)?)?;
         Ok(())
     }
@@ -142,7 +149,17 @@ impl Session {
         Ok(())
     }
 
-    /// Sets a custom integrator. The next [`Session::set_settings`] removes it again.
+    /// Changes the render settings, but not a custom integrator.
+    ///
+    /// # Errors
+    /// As [`Session::set_settings`].
+    pub(super) fn set_settings_of_same_integrator(&mut self, settings: RenderSettings) -> Result<()> {
+        let other = self.renderer.with_settings(settings)?;
+        self.renderer = self.renderer.with_same_integrator(other);
+        Ok(())
+    }
+
+    /// Sets a custom integrator, which stays until [`Options::integrator`] or the next [`Session::set_settings`] chooses another.
     pub fn set_integrator(&mut self, integrator: impl Integrator + 'static) {
         self.renderer = self.renderer.clone().with_integrator(integrator);
     }

@@ -31,7 +31,7 @@ impl Session {
         let scale = f64::from(SIDE) / f64::from(image.width.max(image.height));
         let side = |pixels: u32| ((f64::from(pixels) * scale).round() as u32).max(1);
         small.set_image(image.of_light(side(image.width), side(image.height)))?;
-        small.set_settings(RenderSettings {
+        small.set_settings_of_same_integrator(RenderSettings {
             samples: SAMPLES,
             allocation: Allocation::Uniform,
             ..self.settings().clone()

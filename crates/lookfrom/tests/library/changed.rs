@@ -156,6 +156,7 @@ fn options_change_the_picture_and_the_camera() {
         Options { width: Some(20), samples: Some(8), seed: Some(3), ..Options::default() },
         Options { exposure: Some(Exposure::Stops(1.0)), depth: Some(2), ..Options::default() },
         Options { integrator: Some(Integrator::Whitted), part: Some([2, 2]), ..Options::default() },
+        Options { first_sample: 1, ..Options::default() },
     ] {
         let mut changed = session.clone();
         changed.change(&options).expect("it suits");
