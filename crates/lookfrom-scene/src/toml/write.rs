@@ -100,10 +100,10 @@ pub fn write(scene: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Writt
 }
 
 /// Writes `[camera]`, `[image]` and `[render]` of a view alone, of which everything else is in another document: what an empty scene has of
-/// it. A camera's medium has no name here, and must be none; the table of a lens is a file beside the text, as in [`write`].
+/// it. A camera's medium has no name here, and must be none; the table of a lens is a file beside the text, as in [`write()`].
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_view(view: &Scene, folder: &str, sources: &Sources<'_>) -> Result<Written> {
     let mut writer = Writer::new(view, folder, sources);
     let mut text = Text::default();
