@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 use crate::error::Location;
 use crate::lens::LensSystem;
@@ -84,39 +84,32 @@ pub struct Look {
 }
 
 impl Camera {
-    /// Position and orientation as points and a vector; `None` for a matrix that shears or is degenerate; one that also
-    /// mirrors ([`Self::is_mirrored`]) has those of its picture. The `lookat` of a matrix is the point of its view axis that is nearest to `middle`, if that is in front of the camera.
+    /// Position and orientation as points and a vector, whether the image is mirrored ([`Self::is_mirrored`]) or not; `None` for a
+    /// matrix that shears or is degenerate. The `lookat` of a matrix is the point of its view axis that is nearest to `middle`, if that
+    /// is in front of the camera.
     pub fn look(&self, middle: DVec3) -> Option<Look> {
-        let matrix = match self.view {
-            View::Look { lookfrom, lookat, up } => return Some(Look { lookfrom, lookat, up }),
-            View::Matrix(matrix) => matrix,
+        let shears = match self.view {
+            View::Look { .. } => false,
+            View::Matrix(matrix) => {
+                let linear = DMat3::from_mat4(matrix);
+                let scale = linear.z_axis.length();
+                let products = linear.transpose() * linear * (1.0 / (scale * scale));
+                !products.abs_diff_eq(DMat3::IDENTITY, 1e-6)
+            }
         };
-        let linear = DMat3::from_mat4(matrix);
-        let scale = linear.z_axis.length();
-        let turned =
-            (linear.transpose() * linear * (1.0 / (scale * scale))).abs_diff_eq(DMat3::IDENTITY, 1e-6);
-        if !turned {
-            return None;
-        }
-        let lookfrom = matrix.w_axis.truncate();
-        let w = linear.z_axis / scale;
-        Some(Look {
-            lookfrom,
-            lookat: lookfrom + distance_along(w, middle - lookfrom) * w,
-            up: linear.y_axis,
-        })
+        self.nearest_look(middle).filter(|_| !shears)
     }
 
     /// [`Self::look`] also of a matrix that shears, without that. `None` for a degenerate one.
     pub fn nearest_look(&self, middle: DVec3) -> Option<Look> {
-        let View::Matrix(matrix) = self.view else { return self.look(middle) };
-        let lookfrom = matrix.w_axis.truncate();
-        let w = matrix.z_axis.truncate().try_normalize()?;
-        Some(Look {
-            lookfrom,
-            lookat: lookfrom + distance_along(w, middle - lookfrom) * w,
-            up: matrix.y_axis.truncate().try_normalize()?,
-        })
+        let matrix = match self.view {
+            View::Look { lookfrom, lookat, up } => return Some(Look { lookfrom, lookat, up }),
+            View::Matrix(matrix) => matrix,
+        };
+        let [up, forward, lookfrom] = [matrix.y_axis, matrix.z_axis, matrix.w_axis].map(DVec4::truncate);
+        let w = forward / forward.length();
+        let lookat = lookfrom + distance_along(w, middle - lookfrom) * w;
+        (w.is_finite() && up != DVec3::ZERO).then_some(Look { lookfrom, lookat, up })
     }
 
     /// Whether it mirrors the image, as those of many scenes of pbrt do.

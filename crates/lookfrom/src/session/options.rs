@@ -537,7 +537,7 @@ mod tests {
     }
 
     #[test]
-    fn a_matrix_that_turns_becomes_a_look_and_one_that_mirrors_does_not() {
+    fn a_matrix_that_turns_becomes_a_look_and_one_that_mirrors_still_mirrors() {
         // at (0, 0, 5), looks along −z; x of its space, the viewer's left, is −x
         let turned = DMat4::from_cols(
             DVec3::NEG_X.extend(0.0),
@@ -550,7 +550,22 @@ mod tests {
         let View::Look { lookat, up, .. } = camera.view else { panic!("{camera:?}") };
         assert_eq!((lookat, up), (DVec3::new(0.0, 0.0, 4.0), DVec3::Y));
         let mirrored = turned * DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        let camera = Camera { view: View::Matrix(mirrored), ..Camera::default() };
+        let camera = moved(&rise, Camera { view: View::Matrix(mirrored), ..Camera::default() }).unwrap();
+        assert!(camera.is_mirrored());
+        let look = camera.look(DVec3::ZERO).unwrap();
+        assert_eq!((look.lookfrom, look.up.dot(DVec3::Y) > 0.0), (DVec3::new(0.0, 4.0, 5.0), true));
+        // Of the same picture, seen in a mirror.
+        let [mirrored, own] =
+            [camera, moved(&rise, Camera { view: View::Matrix(turned), ..Camera::default() }).unwrap()]
+                .map(|camera| crate::view::camera::Camera::new(&camera, 64, 48).unwrap());
+        let [left, right] =
+            [(&mirrored, 10.0), (&own, 54.0)].map(|(camera, x)| camera.ray([x, 20.0], [0.5; 2]).direction);
+        assert!((left - right).length() < 1e-12, "{left} {right}");
+        let sheared = turned
+            * DMat4::from_cols_array(&[
+                1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+            ]);
+        let camera = Camera { view: View::Matrix(sheared), ..Camera::default() };
         assert!(matches!(moved(&rise, camera), Err(Error { kind: ErrorKind::Request, .. })));
     }
 
