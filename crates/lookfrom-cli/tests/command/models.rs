@@ -371,5 +371,7 @@ fn lights_of_a_file_are_exposed() {
 fn what_suits_any_model_is_no_matter_of_gltf() {
     let stage = Stage::new("models-subdivided");
     stage.done("render model.obj --subdivide 1 --strict --size 8 --samples 1 -q -o a.png");
-    stage.run("render model.obj --up 0,0,0 --size 8 -o b.png").fails(2, &["up is zero"]);
+    stage
+        .run("render model.obj --up 0,0,0 --size 8 -o b.png")
+        .fails(2, &["up is [0, 0, 0]; expected a direction"]);
 }

@@ -390,7 +390,7 @@ fn what_stands_still_by_expressions_keeps_its_own_motion() {
         "[camera]\nlookfrom = [0, 1, 5]\nlookat = [0, 0, 0]\nshutter = 0.5\n{moved}\n\
          [[objects.ball.sphere]]\ncenter = [0, 0, 0]\nradius = 1\n\
          [[instance]]\nobject = \"ball\"\n{moved}\n\
-         [[sphere]]\ncenter = [\"t\", 3, 0]\nradius = 1\n"
+         [[sphere]]\ncenter = {{ keyframes = [[0, [0, 3, 0]], [1, [1, 3, 0]]] }}\nradius = 1\n"
     ));
     assert!(scene.camera.expect("a camera").motion.is_some());
     assert_eq!(scene.instances.iter().filter(|instance| instance.motion.is_some()).count(), 2);
