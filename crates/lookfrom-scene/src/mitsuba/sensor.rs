@@ -218,7 +218,11 @@ impl Reader<'_, '_> {
             image.crop = Some(PixelBounds { x0, y0, x1, y1 });
         }
         if let Some(filter) = film.part("rfilter", &self.ids)? {
-            self.scene.image.filter = reconstruction(&filter)?;
+            let (narrowed, wider) = reconstruction(&filter)?.narrowed();
+            if let Some(wider) = wider {
+                self.context.warn(&filter.at, wider);
+            }
+            self.scene.image.filter = narrowed;
         }
         if film.kind == "specfilm" {
             self.scene.render.color = ColorMode::Spectral;

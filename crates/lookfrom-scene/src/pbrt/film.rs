@@ -112,7 +112,11 @@ impl Reader<'_, '_> {
             }
         };
         let radius = [parameters.positive("xradius", radius)?, parameters.positive("yradius", radius)?];
-        self.scene.image.filter = Filter { shape, radius };
+        let (filter, wider) = Filter { shape, radius }.narrowed();
+        if let Some(wider) = wider {
+            self.context.warn(&parameters.place.location(), wider);
+        }
+        self.scene.image.filter = filter;
         Ok(())
     }
 }

@@ -72,6 +72,17 @@ impl FilterShape {
 }
 
 impl Filter {
+    /// The largest radius, in pixels.
+    pub const WIDEST: f32 = 16.0;
+
+    /// The filter within [`Self::WIDEST`], and what is said of one that is wider.
+    pub(crate) fn narrowed(self) -> (Self, Option<String>) {
+        let [x, y] = self.radius;
+        let radius = self.radius.map(|radius| radius.min(Self::WIDEST));
+        let told = format!("a filter of {x} × {y} pixels around each; {} are the most", Self::WIDEST);
+        (Self { radius, ..self }, (radius != self.radius).then_some(told))
+    }
+
     /// The words for the filters, in scene files and on the command line, with their default radii and parameters.
     pub const WORDS: &'static [(&'static str, Self)] = &[
         ("box", FilterShape::Box.of_radius(0.5)),

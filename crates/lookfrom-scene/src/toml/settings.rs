@@ -230,7 +230,7 @@ fn filter(value: Value<'_>) -> Result<Filter> {
 
 /// A length of a filter.
 fn pixels(value: Value<'_>) -> Result<f32> {
-    value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= 16.0)
+    value.single_where("pixels, more than 0 and at most 16", |r| r > 0.0 && r <= Filter::WIDEST)
 }
 
 /// The integrator and its settings.

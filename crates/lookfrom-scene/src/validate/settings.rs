@@ -7,9 +7,6 @@ use crate::settings::{
     Background, Filter, FilterShape, ImageSettings, MOST_PIXELS, RenderSettings, SpectralFilm,
 };
 
-/// Maximum of a filter's radius in pixels.
-const WIDEST: f32 = 16.0;
-
 impl ImageSettings {
     /// Checks that size, filter, exposure, background, sensor and spectral film are as their documentation says.
     ///
@@ -84,7 +81,7 @@ fn check_filter(part: &Part<'_>, filter: Filter) -> Result<()> {
         }
     }
     filter.radius.into_iter().try_for_each(|radius| {
-        let is_valid = radius > 0.0 && radius <= WIDEST;
+        let is_valid = radius > 0.0 && radius <= Filter::WIDEST;
         part.number("radius of the filter", radius.into(), "pixels, more than 0 and at most 16", is_valid)
     })
 }

@@ -605,3 +605,12 @@ fn curves_that_are_alike_are_one_shape() {
         .collect();
     assert_eq!(counts, [2, 0, 1, 3]);
 }
+
+#[test]
+fn a_filter_that_is_too_wide_is_narrowed_with_a_warning() {
+    let text = "PixelFilter \"box\" \"float xradius\" 20 \"float yradius\" 3\nWorldBegin Shape \"sphere\"";
+    let (scene, warnings) = read_files(&[("a.pbrt", text)]);
+    assert_eq!(scene.image.filter.radius, [16.0, 3.0]);
+    scene.validate().expect("it is valid");
+    assert!(warnings.iter().any(|told| told.contains("20 × 3 pixels")), "{warnings:?}");
+}
