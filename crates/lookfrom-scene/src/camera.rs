@@ -153,11 +153,10 @@ impl Camera {
 
 impl Look {
     /// From the space of the camera, as in [`View::Matrix`], to the world; `None` where it has no direction.
-    fn matrix(&self) -> Option<DMat4> {
+    pub(crate) fn matrix(&self) -> Option<DMat4> {
         let w = (self.lookat - self.lookfrom).try_normalize()?;
         let u = self.up.cross(w).try_normalize()?;
-        let columns = [u, w.cross(u), w].map(|axis| axis.extend(0.0));
-        Some(DMat4::from_cols(columns[0], columns[1], columns[2], self.lookfrom.extend(1.0)))
+        Some(DMat4::from_mat3_translation(DMat3::from_cols(u, w.cross(u), w), self.lookfrom))
     }
 }
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-use crate::camera::{Camera, View};
+use crate::camera::{Camera, Look, View};
 use crate::error::{Location, Result};
 use crate::files::{ImportOptions, LoadContext};
 use crate::motion::Motion;
@@ -143,11 +143,7 @@ fn frame_of_geometry(geometry: &Geometry) -> Option<DMat4> {
 fn frame_of_camera(camera: &Camera) -> Option<DMat4> {
     let frame = match camera.view {
         View::Matrix(matrix) => matrix,
-        View::Look { lookfrom, lookat, up } => {
-            let w = (lookat - lookfrom).try_normalize()?;
-            let u = up.cross(w).try_normalize()?;
-            DMat4::from_mat3_translation(DMat3::from_cols(u, w.cross(u), w), lookfrom)
-        }
+        View::Look { lookfrom, lookat, up } => Look { lookfrom, lookat, up }.matrix()?,
     };
     (frame.is_finite() && frame.determinant() != 0.0).then_some(frame)
 }

@@ -10,10 +10,11 @@ use std::time::{Duration, SystemTime};
 /// The interval at which files are polled.
 const POLL: Duration = Duration::from_millis(300);
 
-/// What each file is; `None` for one that is not there.
+/// The stamp of each file; `None` for one that is not there.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stamps(BTreeMap<PathBuf, Option<Stamp>>);
 
+/// What differs after a change of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Stamp {
     /// The time of the last change.

@@ -198,10 +198,13 @@ pub(crate) struct SceneAnswer {
     /// Duration of keyframes and expressions of the scene, in seconds.
     pub(crate) duration: Option<f64>,
     pub(crate) turntable: bool,
-    /// What the options say of it, in degrees, seconds, a name and a number.
+    /// The options' turn of the turntable, in degrees.
     pub(crate) turn: Option<f64>,
+    /// The options' turn of the surroundings, in degrees.
     pub(crate) rotate_environment: Option<f64>,
+    /// The options' time, in seconds.
     pub(crate) at: Option<f64>,
+    /// The options' variant, and the number of their animation.
     pub(crate) variant: Option<String>,
     pub(crate) animation: Option<usize>,
     pub(crate) counts: Counts,

@@ -128,7 +128,7 @@ pub(crate) fn command(session: &Session, request: &ViewRequest, typed: &[String]
             {
                 options.push((name, joined(vector, ",")));
             }
-            if let Some(("fov", degrees)) = projection(session.camera()) {
+            if let Projection::Perspective { fov: degrees } = session.camera().projection {
                 options.push(("fov", degrees.to_string()));
             }
         }
@@ -158,15 +158,6 @@ pub(crate) fn command(session: &Session, request: &ViewRequest, typed: &[String]
 fn tonemap(session: &Session, request: &ViewRequest) -> &'static str {
     let own = session.image().tonemap;
     request.tonemap(own).unwrap_or(own).word()
-}
-
-/// The number of a projection, with its key.
-fn projection(camera: &Camera) -> Option<(&'static str, f64)> {
-    match camera.projection {
-        Projection::Perspective { fov } => Some(("fov", fov)),
-        Projection::Orthographic { height } => Some(("height", height)),
-        _ => None,
-    }
 }
 
 fn joined(numbers: [f64; 3], between: &str) -> String {

@@ -168,7 +168,7 @@ impl Sample for f32 {
     }
 }
 
-/// How samples are stored.
+/// The layout of samples.
 struct Stored {
     width: u32,
     height: u32,

@@ -218,11 +218,8 @@ impl Reader<'_, '_> {
             image.crop = Some(PixelBounds { x0, y0, x1, y1 });
         }
         if let Some(filter) = film.part("rfilter", &self.ids)? {
-            let (narrowed, wider) = reconstruction(&filter)?.narrowed();
-            if let Some(wider) = wider {
-                self.context.warn(&filter.at, wider);
-            }
-            self.scene.image.filter = narrowed;
+            let warn = |told| self.context.warn(&filter.at, told);
+            self.scene.image.filter = reconstruction(&filter)?.narrowed(warn);
         }
         if film.kind == "specfilm" {
             self.scene.render.color = ColorMode::Spectral;

@@ -6,6 +6,7 @@ use roxmltree::Node;
 use super::value;
 use super::xml::Reading;
 use super::xml::Text;
+use crate::camera::{Look, up_across};
 use crate::error::{Error, Result};
 
 /// The matrix of a `transform` element.
@@ -112,10 +113,8 @@ fn rotation(axis: DVec3, degrees: f64) -> DMat4 {
 /// The transform from a space with x to the left, y up and z forward, at `origin`.
 fn look_at(origin: DVec3, target: DVec3, up: Option<DVec3>) -> Option<DMat4> {
     let forward = (target - origin).try_normalize()?;
-    let up = up.filter(|up| *up != DVec3::ZERO).unwrap_or_else(|| crate::camera::up_across(forward));
-    let left = up.cross(forward).try_normalize()?;
-    let up = forward.cross(left);
-    Some(DMat4::from_cols(left.extend(0.0), up.extend(0.0), forward.extend(0.0), origin.extend(1.0)))
+    let up = up.filter(|up| *up != DVec3::ZERO).unwrap_or_else(|| up_across(forward));
+    Look { lookfrom: origin, lookat: target, up }.matrix()
 }
 
 /// Three components: `x`, `y` and `z`, or all in `value`.

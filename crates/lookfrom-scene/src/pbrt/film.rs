@@ -112,11 +112,8 @@ impl Reader<'_, '_> {
             }
         };
         let radius = [parameters.positive("xradius", radius)?, parameters.positive("yradius", radius)?];
-        let (filter, wider) = Filter { shape, radius }.narrowed();
-        if let Some(wider) = wider {
-            self.context.warn(&parameters.place.location(), wider);
-        }
-        self.scene.image.filter = filter;
+        let warn = |told| self.context.warn(&parameters.place.location(), told);
+        self.scene.image.filter = Filter { shape, radius }.narrowed(warn);
         Ok(())
     }
 }

@@ -75,12 +75,14 @@ impl Filter {
     /// The largest radius, in pixels.
     pub const WIDEST: f32 = 16.0;
 
-    /// The filter within [`Self::WIDEST`], and what is said of one that is wider.
-    pub(crate) fn narrowed(self) -> (Self, Option<String>) {
-        let [x, y] = self.radius;
+    /// The filter within [`Self::WIDEST`], with a warning of one that is wider.
+    pub(crate) fn narrowed(self, warn: impl FnOnce(String)) -> Self {
         let radius = self.radius.map(|radius| radius.min(Self::WIDEST));
-        let told = format!("a filter of {x} × {y} pixels around each; {} are the most", Self::WIDEST);
-        (Self { radius, ..self }, (radius != self.radius).then_some(told))
+        if radius != self.radius {
+            let [x, y] = self.radius;
+            warn(format!("a filter of {x} × {y} pixels around each; {} are the most", Self::WIDEST));
+        }
+        Self { radius, ..self }
     }
 
     /// The words for the filters, in scene files and on the command line, with their default radii and parameters.
