@@ -280,11 +280,11 @@ test("Share: a page that answers for its pixel, and a scene that is whole", asyn
     await finished(page);
     await inspect(page, 30, 50);
     await until("the sample is in the link", async () => /sample=\d+/.test(page.url()));
+    const before = await hashOf(page);
     await page.locator("#picture-overlay").press("ArrowRight");
     await until("another camera", async () => page.url().includes("camera="));
-    await finished(page);
+    await until("its picture", async () => ![before, ""].includes(await hashOf(page)));
     await until("its rays", async () => !(await page.locator("body").evaluate((body) => body.classList.contains("is-tracing"))));
-    await page.waitForTimeout(500);
     const shown = await pictureHash(page);
     await page.getByText("Share").click();
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save page" }).click()]);
