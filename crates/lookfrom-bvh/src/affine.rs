@@ -72,7 +72,8 @@ impl Affine {
         [0, 1, 2].map(|i| m[0][i] * n[0] + m[1][i] * n[1] + m[2][i] * n[2])
     }
 
-    /// The map on the way to another: every entry is linear, this map at `fraction` 0, the other at 1.
+    /// The map on the way to another: every entry is linear, this map at `fraction` 0, the other at 1. An entry that both have
+    /// is exactly that.
     ///
     /// ```
     /// use lookfrom_bvh::Affine;
@@ -80,7 +81,8 @@ impl Affine {
     /// assert_eq!(Affine::IDENTITY.between(&up, 0.25).translation, [0.0, 0.0, 1.0]);
     /// ```
     pub fn between(&self, later: &Self, fraction: f64) -> Self {
-        let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] * (1.0 - fraction) + b[i] * fraction);
+        let entry = |a: f64, b: f64| if a == b { a } else { a * (1.0 - fraction) + b * fraction };
+        let mix = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| entry(a[i], b[i]));
         Self {
             matrix: [0, 1, 2].map(|row| mix(self.matrix[row], later.matrix[row])),
             translation: mix(self.translation, later.translation),

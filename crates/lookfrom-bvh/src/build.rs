@@ -82,7 +82,7 @@ pub enum Quality {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BuildError {
-    /// Something moves that has another number of times than all else that moves, or fewer than two.
+    /// Something moves whose number of times does not fit that of all else that moves, or is less than two.
     TimeCount {
         /// Its number.
         times: usize,
@@ -175,8 +175,8 @@ impl fmt::Display for BuildError {
             }
             Self::TimeCount { times, expected } => write!(
                 f,
-                "positions or maps at {times} times, where {expected} are expected; everything that moves in a tree has the \
-                 same number, at least 2"
+                "positions or maps at {times} times, where {expected} are expected; all triangles that move in a tree have the \
+                 same number, at least 2, and instances that, too, or all else 2, 3, 5, 9 …"
             ),
             Self::PositionCount { geometry } => {
                 write!(
@@ -224,8 +224,10 @@ pub struct Builder {
     geometries: Vec<Geometry>,
     instances: Arc<Vec<Instance>>,
     masks: Masks,
-    /// The number of times of what moves.
+    /// The number of times of what moves, and was added first.
     times: Option<usize>,
+    /// The number of times of all triangles that move.
+    triangle_times: Option<usize>,
     /// The maps of instances that move, by id.
     motions: HashMap<u32, Box<[Affine]>>,
     error: Option<BuildError>,

@@ -6,7 +6,7 @@
 
 use crate::aabb::Aabb;
 use crate::batch::for_each;
-use crate::bvh::{Bvh, Instance, Part};
+use crate::bvh::{Bvh, Part};
 use crate::conservative::TriangleBlock;
 use crate::exact::ExactRay;
 use crate::item::{Leaf, ProceduralItem};
@@ -227,7 +227,7 @@ impl Traversal<'_, '_> {
                     let instance = &outer.instances[place];
                     let inside = match outer.instance_map_at(place as u32, self.time) {
                         None => Some(instance.ray_in_object(ray)),
-                        Some(map) => Instance::ray_in_moved(&map, ray),
+                        Some(map) => instance.ray_in_moved(&map, ray),
                     };
                     if let Some(inside) = inside.filter(is_usable)
                         && self.visibility.enter_instance(place)

@@ -12,8 +12,7 @@ const MOST_PARTS: usize = 256;
 /// The motion of a space while the shutter is open: its affine maps to the world at equally spaced times from the opening to the
 /// closing, of which every entry is linear in between.
 ///
-/// The number of parts between two times is a power of two, so that motions of different numbers are the same with the larger
-/// one ([`Self::in_parts`]).
+/// The number of parts between two times is a power of two, so that a motion is the same in a larger number of parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     maps: Vec<DMat4>,
@@ -114,7 +113,7 @@ impl Motion {
     }
 
     /// The maps of this motion in a number of parts that is a multiple of its own.
-    pub fn in_parts(&self, parts: usize) -> Vec<DMat4> {
+    fn in_parts(&self, parts: usize) -> Vec<DMat4> {
         (0..=parts).map(|part| self.at(part as f64 / parts as f64)).collect()
     }
 

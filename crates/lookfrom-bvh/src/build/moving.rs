@@ -12,7 +12,7 @@ impl Builder {
     /// Adds triangles that move, and returns their geometry's number: the positions of their vertices at equally spaced times
     /// from 0 to 1, linear in between. [`Query::times`](crate::Query::times) has the times of rays.
     ///
-    /// Everything that moves has the same number of times in one builder, at least two; another number, lists of different
+    /// All triangles that move have the same number of times in one builder, at least two; another number, lists of different
     /// lengths, and an index out of range make [`Self::build`] fail.
     ///
     /// ```
@@ -32,7 +32,10 @@ impl Builder {
         if !is_complete {
             self.fail(BuildError::PositionCount { geometry });
         }
-        if !self.has_times(positions.len()) || !is_complete {
+        let times = positions.len();
+        let expected = *self.triangle_times.get_or_insert(times);
+        let is_same = self.fits(times, expected);
+        if !(is_same && self.has_times(times) && is_complete) {
             self.geometries.push(Geometry::MovingTriangles(Vec::new()));
             return geometry;
         }
@@ -43,7 +46,10 @@ impl Builder {
     }
 
     /// Adds an instance that moves, and returns its number: its maps, world from object, at equally spaced times from 0 to 1,
-    /// every entry linear in between. Otherwise as [`Self::instance`], and as [`Self::moving_triangles`].
+    /// every entry linear in between. Otherwise as [`Self::instance`].
+    ///
+    /// It has as many times as all that moves in the builder, at least two; or 2ᵏ + 1, if all else has such a number, too, not
+    /// necessarily the same: then what turns fast costs nothing where other things slide. Another number makes [`Self::build`] fail.
     ///
     /// Between two times the map may have no inverse, and then the instance is not hit.
     ///
@@ -72,26 +78,42 @@ impl Builder {
         id
     }
 
-    /// Whether there are as many times as of all that moves.
+    /// Whether so many times fit those of all else that moves.
     fn has_times(&mut self, times: usize) -> bool {
         let expected = *self.times.get_or_insert(times.max(2));
+        let has_halves = |times: usize| times > 1 && (times - 1).is_power_of_two();
+        has_halves(times) && has_halves(expected) || self.fits(times, expected)
+    }
+
+    fn fits(&mut self, times: usize, expected: usize) -> bool {
         if times != expected {
             self.fail(BuildError::TimeCount { times, expected });
         }
         times == expected
     }
 
-    /// The maps of all instances at each time, by id; of those that stand still none. Instances of trees in which something
-    /// moves belong to what moves, too. Then also the number of times, if anything moves.
+    /// The maps of all instances at each of their times, by id; of those that stand still none. Instances of trees in which something
+    /// moves belong to what moves, too. Then also the number of times at which there are boxes, if anything moves.
     pub(super) fn maps(&self) -> (Vec<Box<[Affine]>>, Option<usize>) {
         let is_moving = |instance: &Instance| instance.bvh.moving.is_some();
         let times = self.times.or_else(|| self.instances.iter().any(is_moving).then_some(2));
-        let Some(count) = times else { return (Vec::new(), None) };
+        let Some(times) = times else { return (Vec::new(), None) };
         let of = |(id, instance): (u32, &Instance)| match self.motions.get(&id) {
             Some(maps) => maps.clone(),
-            None if is_moving(instance) => vec![instance.world_from_object; count].into(),
+            None if is_moving(instance) => vec![instance.world_from_object; times].into(),
             None => Box::default(),
         };
-        ((0..).zip(&**self.instances).map(of).collect(), times)
+        let maps: Vec<Box<[Affine]>> = (0..).zip(&**self.instances).map(of).collect();
+        let times = self.triangle_times.unwrap_or_else(|| times_of_boxes(&maps).unwrap_or(times));
+        (maps, Some(times))
     }
+}
+
+/// The number of times at which instances with these maps have boxes: that of the maps if it is the same for all, else the largest
+/// with at most twice as many boxes as there are maps. `None` where nothing moves.
+fn times_of_boxes(maps: &[Box<[Affine]>]) -> Option<usize> {
+    let parts = || maps.iter().filter(|maps| !maps.is_empty()).map(|maps| maps.len() - 1);
+    let (least, most) = (parts().min()?, parts().max()?);
+    let twice_the_mean = 2 * parts().sum::<usize>() / parts().count();
+    Some(1 + if least == most { most } else { most.min(1 << twice_the_mean.ilog2()) })
 }

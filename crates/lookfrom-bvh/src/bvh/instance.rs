@@ -34,7 +34,11 @@ impl Instance {
     }
 
     /// [`Self::ray_in_object`] where the instance is by another map; `None` where that has no usable inverse.
-    pub(crate) fn ray_in_moved<T: Rounded>(map: &Affine, ray: &ExactRay<T>) -> Option<ExactRay<T>> {
+    pub(crate) fn ray_in_moved<T: Rounded>(&self, map: &Affine, ray: &ExactRay<T>) -> Option<ExactRay<T>> {
+        // The inverse of what slides is known.
+        if map.matrix == self.world_from_object.matrix {
+            return Some(in_object(map, &self.object_from_world, ray));
+        }
         Some(in_object(map, &usable_inverse(map)?, ray))
     }
 

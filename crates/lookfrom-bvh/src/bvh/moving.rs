@@ -2,7 +2,8 @@
 //!
 //! The times are equally spaced from 0 to 1, and between two of them every coordinate and every entry of a map is linear.
 //! One topology serves all times; each has boxes and corners of its own, so that boxes are linear in time, too: Grünschloß,
-//! Stich, Nawaz, Keller (2011), "MSBVH: An Efficient Acceleration Data Structure for Ray Traced Motion Blur". What stands
+//! Stich, Nawaz, Keller (2011), "MSBVH: An Efficient Acceleration Data Structure for Ray Traced Motion Blur". An instance may
+//! have maps at more times than there are boxes, which are around its whole way then. What stands
 //! still is in the tree that has this part, and costs what it costs without it.
 
 use std::borrow::Cow;
@@ -13,6 +14,7 @@ use crate::affine::Affine;
 use crate::conservative::TriangleBlock;
 use crate::item::Leaf;
 use crate::node::Node;
+use crate::vector::{round_down, round_up, wide};
 
 /// Times by which boxes are padded beyond those of a standing tree: half of it for the rounding of boxes between two times,
 /// half for that of the corners. Either errs by 3 · 2⁻²⁴ of the largest coordinate; a padding is 2 · 2⁻²⁴ of it.
@@ -23,7 +25,7 @@ const PADDINGS: usize = 4;
 pub(crate) struct Moving {
     times: Vec<AtTime>,
     pub(crate) leaves: Vec<Leaf>,
-    /// By instance id: its map at each time; empty for what stands still.
+    /// By instance id: its map at each of its own times; empty for what stands still.
     maps: Vec<Box<[Affine]>>,
     /// The box around everything at all times.
     pub(crate) bounds: Aabb,
@@ -80,8 +82,8 @@ impl<'t> Part<'t> {
 }
 
 impl Moving {
-    /// The moving part with the topology of a tree over the boxes of all times: `corners` gives a triangle's corners at a
-    /// time, `maps` an instance's by id.
+    /// The moving part with the topology of a tree over the boxes of all times, and boxes at so many `times`: `corners` gives a
+    /// triangle's corners at a time, `maps` an instance's maps by id, at as many times or, if both are 2ᵏ + 1, at others.
     pub(crate) fn new(
         topology: Bvh,
         instances: &[Instance],
@@ -103,7 +105,7 @@ impl Moving {
             };
             tree.triangles = topology.triangles.iter().map(block).collect();
             if !tree.nodes.is_empty() {
-                tree.fit(0, &|id| instances[id].bvh.bounds_under(&maps[id][time]));
+                tree.fit(0, &|id| box_at(&instances[id].bvh, &maps[id], time, times));
             }
             tree.nodes.iter_mut().for_each(|node| (0..PADDINGS).for_each(|_| node.pad()));
             AtTime { nodes: tree.nodes, triangles: tree.triangles }
@@ -156,6 +158,42 @@ impl Moving {
             + size_of_val(&*self.leaves)
             + self.maps.iter().map(|maps| size_of::<Box<[Affine]>>() + size_of_val(&**maps)).sum::<usize>()
     }
+}
+
+/// The box of a tree that moves by `maps`, at one of the `times` of boxes, such that what is mixed from two of them is around the tree
+/// at all times between.
+fn box_at(bvh: &Bvh, maps: &[Affine], time: usize, times: usize) -> Aabb {
+    let (steps, parts) = (times - 1, maps.len() - 1);
+    if parts == steps {
+        return bvh.bounds_under(&maps[time]);
+    }
+    // Both are powers of two: these fractions are exact.
+    let at = |step: usize| bvh.bounds_under(&Affine::at_time(maps, step as f32 / steps as f32));
+    let mut bounds = at(time);
+    if parts < steps || bounds.is_empty() {
+        return bounds;
+    }
+    // By how much the tree is outside of the mixed boxes where it bends: either end of the step becomes larger by that.
+    let each = parts / steps;
+    let (mut below, mut above) = ([0.0_f64; 3], [0.0_f64; 3]);
+    for step in time.saturating_sub(1)..steps.min(time + 1) {
+        let ends = [at(step), at(step + 1)];
+        for part in 1..each {
+            let bend = bvh.bounds_under(&maps[step * each + part]);
+            let fraction = part as f64 / each as f64;
+            let outside = |[from, to]: [f32; 2], bend: f32| {
+                f64::from(from) * (1.0 - fraction) + f64::from(to) * fraction - f64::from(bend)
+            };
+            for axis in 0..3 {
+                below[axis] = below[axis].max(outside(ends.map(|end| end.min[axis]), bend.min[axis]));
+                above[axis] = above[axis].max(-outside(ends.map(|end| end.max[axis]), bend.max[axis]));
+            }
+        }
+    }
+    let (min, max) = (wide(bounds.min), wide(bounds.max));
+    bounds.min = [0, 1, 2].map(|axis| round_down(min[axis] - below[axis]));
+    bounds.max = [0, 1, 2].map(|axis| round_up(max[axis] + above[axis]));
+    bounds
 }
 
 impl Moment {

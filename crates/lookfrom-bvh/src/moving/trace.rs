@@ -1,6 +1,6 @@
 //! Single rays through the moving part of a tree.
 
-use crate::bvh::{Bvh, Instance, Moment, Moving};
+use crate::bvh::{Bvh, Moment, Moving};
 use crate::collector::Collector;
 use crate::conservative::RayLanes;
 use crate::exact::ExactRay;
@@ -118,15 +118,16 @@ impl Parts<'_> {
     ) -> bool {
         let Leaf::Instances { first, count } = *leaf else { return false };
         (first..first + count).any(|id| {
+            let instance = &self.bvh.instances[id as usize];
             let map = self.moving.map(id, self.time);
-            let Some(inside) = map.and_then(|map| Instance::ray_in_moved(&map, ray)) else { return false };
+            let Some(inside) = map.and_then(|map| instance.ray_in_moved(&map, ray)) else { return false };
             if V::SELECTS && !state.visibility.enter_instance(id as usize) {
                 return false;
             }
             state.instance = id;
             let mut above =
                 TraversalStack { bottom: stack.height, height: stack.height, entries: stack.entries };
-            let object = &*self.bvh.instances[id as usize].bvh;
+            let object = &*instance.bvh;
             let stop = !object.nodes.is_empty() && trace_any(simd, object, &inside, state, &mut above)
                 || trace_moving(simd, object, &inside, self.time, state, &mut above);
             state.instance = NONE;

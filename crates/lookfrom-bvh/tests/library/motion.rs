@@ -35,6 +35,7 @@ fn map(random: &mut Random, shift: [f32; 3]) -> Affine {
 }
 
 impl Scene {
+    /// Of triangles at so many times, and instances with maps at others, if all are 2ᵏ + 1.
     fn new(random: &mut Random, times: usize) -> Self {
         const VERTICES: u32 = 120;
         let (center, size) = (random.point_with_exponents(-3, 3), random.size(-2, 3));
@@ -47,12 +48,17 @@ impl Scene {
         let ball = Sphere { center: [0.1 * size; 3], radius: 0.4 * size };
         let indices = (0..90).map(|_| [0; 3].map(|_| random.below(VERTICES))).collect();
         let mut maps = || -> Vec<Affine> {
-            (0..times)
-                .map(|_| {
-                    let shift = random.near(center, size);
-                    map(random, shift)
-                })
-                .collect()
+            let has_halves = (times - 1).is_power_of_two();
+            let times = if has_halves { [2, 3, 5, 33][random.below(4) as usize] } else { times };
+            let slides = random.unit() < 0.3;
+            let mut maps: Vec<Affine> = Vec::new();
+            for _ in 0..times {
+                let shift = random.near(center, size);
+                let place = map(random, shift);
+                let matrix = maps.first().filter(|_| slides).map_or(place.matrix, |first| first.matrix);
+                maps.push(Affine { matrix, ..place });
+            }
+            maps
         };
         let (ball_maps, object_maps) = (maps(), maps());
         let still_map = map(random, center);
@@ -95,7 +101,7 @@ impl Scene {
                 .map(|(a, b)| [0, 1, 2].map(|axis| a[axis] * (1.0 - fraction) + b[axis] * fraction))
                 .collect()
         };
-        let map = |maps: &[Affine]| maps[earlier].between(&maps[earlier + 1], f64::from(fraction));
+        let map = |maps: &[Affine]| Affine::at_time(maps, time);
         let mut object = Builder::new();
         object.triangles(Triangles { positions: &positions(&self.in_object), indices: &self.indices });
         let object = Arc::new(object.build().unwrap());
@@ -252,9 +258,64 @@ fn motions_that_do_not_fit_together_are_errors() {
     let mut builder = Builder::new();
     builder.moving_instance(Arc::default(), &[Affine::IDENTITY; 2]);
     builder.moving_instance(Arc::default(), &[Affine::IDENTITY; 3]);
+    assert!(builder.build().is_ok());
+    builder.moving_instance(Arc::default(), &[Affine::IDENTITY; 4]);
+    assert_eq!(builder.build().unwrap_err(), BuildError::TimeCount { times: 4, expected: 2 });
+    let mut builder = Builder::new();
+    builder.moving_triangles(&[&positions, &positions], &[]);
+    builder.moving_instance(Arc::default(), &[Affine::IDENTITY; 5]);
+    assert!(builder.build().is_ok());
+    builder.moving_triangles(&[&positions, &positions, &positions], &[]);
     assert_eq!(builder.build().unwrap_err(), BuildError::TimeCount { times: 3, expected: 2 });
     let flat = Affine { matrix: [[0.0; 3]; 3], translation: [0.0; 3] };
     let mut builder = Builder::new();
     builder.moving_instance(Arc::default(), &[Affine::IDENTITY, flat]);
     assert_eq!(builder.build().unwrap_err(), BuildError::SingularMatrix { instance: 0 });
+}
+
+#[test]
+fn what_turns_costs_nothing_where_others_slide() {
+    let mut random = Random::new(24);
+    let scene = Scene::new(&mut random, 2);
+    let mut motions: Vec<Vec<Affine>> = Vec::new();
+    for _ in 0..400 {
+        let place = map(&mut random, [0.0; 3]);
+        let mut end = || random.near([0.0; 3], 40.0).map(f64::from);
+        motions.push([end(), end()].map(|translation| Affine { translation, ..place }).into());
+    }
+    let built = |motions: &[Vec<Affine>]| {
+        let mut builder = Builder::new();
+        motions.iter().for_each(|maps| _ = builder.moving_instance(scene.ball(), maps));
+        builder.build().unwrap()
+    };
+    let without = built(&motions).memory();
+    // Around a circle, once while the shutter is open.
+    let on_circle = |step: u32| {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(step) / 256.0).sin_cos();
+        Affine {
+            matrix: [[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]],
+            translation: [20.0 * cos, 20.0 * sin, 0.0],
+        }
+    };
+    motions.push((0..=256).map(on_circle).collect());
+    let whole = built(&motions);
+    assert!(whole.memory() < without + without / 4 + 257 * size_of::<Affine>());
+    let mut hits = 0;
+    for _ in 0..40 {
+        let time = random.unit();
+        let mut at = Builder::new();
+        motions.iter().for_each(|maps| _ = at.instance(scene.ball(), Affine::at_time(maps, time)));
+        let at = at.build().unwrap();
+        // Toward the one that turns, whose box is the one that bends.
+        let target = Affine::at_time(&motions[400], time).translation.map(|x| x as f32);
+        for _ in 0..50 {
+            let origin = random.near([0.0; 3], 60.0);
+            let near = random.near(target, 2.0 * scene.ball.radius);
+            let ray = Ray::new(origin, [0, 1, 2].map(|axis| near[axis] - origin[axis]));
+            let hit = whole.query().time(time).closest_hit(&ray);
+            assert_eq!(hit, at.closest_hit(&ray), "at {time}");
+            hits += usize::from(hit.instance == 400);
+        }
+    }
+    assert!(hits > 150, "{hits}");
 }

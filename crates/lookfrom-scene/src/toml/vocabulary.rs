@@ -21,9 +21,9 @@ pub(super) const TOP: &[&str] = &[
     "light",
 ];
 
-/// The tables that occur at most once, and their keys.
+/// The tables that occur at most once, and their keys. A key of several is meant to be in the first: `height` is seldom that of a camera.
 pub(super) const SETTINGS: Kinds =
-    &[("[camera]", camera::KEYS), ("[image]", settings::IMAGE), ("[render]", settings::RENDER)];
+    &[("[image]", settings::IMAGE), ("[camera]", camera::KEYS), ("[render]", settings::RENDER)];
 
 /// Every table of the format, with the keys that it may have: for documentation, editors and tests.
 pub fn vocabulary() -> Vec<(String, Vec<&'static str>)> {

@@ -76,8 +76,6 @@ impl<'a> Instancing<'a> {
         // There may be millions of instances: until the tree is built, only the kernel has their maps.
         let mut builder = Builder::new();
         let mut moving_lights = Vec::new();
-        let motions = self.scene.instances.iter().filter_map(|instance| instance.motion.as_deref());
-        let parts = motions.map(Motion::parts).max().unwrap_or(1);
         for written in &self.scene.instances {
             let matrix = *render_from_world * written.world_from_object;
             place::inverse(&written.at, &matrix)?;
@@ -89,7 +87,7 @@ impl<'a> Instancing<'a> {
             if let Some((trees, _)) = trees {
                 let tree = trees[written.object.index()].clone();
                 let (motion, place) = (written.motion.as_deref(), math::affine(&matrix));
-                add(&mut builder, tree, place, motion, parts, |map| *render_from_world * map);
+                add(&mut builder, tree, place, motion, |map| *render_from_world * map);
             }
             self.placed.push((written.object.0, written.material.map(|id| id.0)));
         }
@@ -99,9 +97,7 @@ impl<'a> Instancing<'a> {
             if let Some((_, quality)) = trees {
                 let tree = Arc::new(tree(&primitives, Builder::new(), quality)?);
                 let (motion, back) = (written.motion.as_deref(), at_opening.inverse());
-                add(&mut builder, tree, Affine::IDENTITY, motion, parts, |map| {
-                    *render_from_world * map * back
-                });
+                add(&mut builder, tree, Affine::IDENTITY, motion, |map| *render_from_world * map * back);
             }
             self.placed.push((self.objects.len() as u32, None));
             self.objects.push(primitives);
@@ -133,19 +129,18 @@ impl<'a> Instancing<'a> {
     }
 }
 
-/// Adds an instance in its place, or with its motion in so many parts, to whose maps `to_render` is applied.
+/// Adds an instance in its place, or with its motion, to whose maps `to_render` is applied.
 fn add(
     builder: &mut Builder,
     tree: Arc<Bvh>,
     place: Affine,
     motion: Option<&Motion>,
-    parts: usize,
     to_render: impl Fn(DMat4) -> DMat4,
 ) {
     match motion {
         None => builder.instance(tree, place),
         Some(motion) => {
-            let maps = motion.in_parts(parts).into_iter().map(|map| math::affine(&to_render(map)));
+            let maps = motion.maps().iter().map(|map| math::affine(&to_render(*map)));
             builder.moving_instance(tree, &maps.collect::<Vec<_>>())
         }
     };
