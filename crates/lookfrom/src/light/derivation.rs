@@ -78,7 +78,7 @@ impl Light {
                     Derivation::new(formula, numbers)
                 })
             }
-            Self::Area(light) => light.of_density(from, sample),
+            Self::Area(light) => light.of_density(at, sample),
             Self::Projection(light) => return light.derivations(textures, from, mode),
             Self::Goniometric(light) => return light.derivations(textures, from, mode),
             Self::Environment(light) => return light.derivations(textures, at, sample, mode, incomplete_pdf),

@@ -245,6 +245,9 @@ fn check(derivations: &[Derivation], sample: &Sample<'_>, told: &mut BTreeSet<St
             }
             let expected = one(of, "P") * one(of, "d").powi(2) / (one(of, "A") * one(of, "cos at the light"));
             near(pdf, expected, 2e-5, of);
+        } else if formula.starts_with("pdf = 1 / (2π (1 − cos θ))") {
+            let sin = one(of, "R") / one(of, "D");
+            near(pdf, (1.0 + (1.0 - sin * sin).sqrt()) / (2.0 * PI * sin * sin), 2e-5, of);
         } else if formula.starts_with("L = s C") {
             emission(of, arrives);
         } else {
@@ -466,6 +469,31 @@ fn portals() {
         tells("a.toml", &own("integrator = \"path\"", &light), &told);
         tells("a.toml", &own("integrator = \"whitted\"", &light), &told[..2]);
     }
+}
+
+#[test]
+fn lights_that_move_are_where_they_are_at_the_time() {
+    let lights = "[[sphere]]\ncenter = [\"= 2 - 96 * t\", 3, 0]\nradius = 0.4\nemission = 9\n\
+        [[quad]]\ncorner = [-2, \"= 2.2 + 48 * t\", -1]\nedge_u = [1, 0, 0]\nedge_v = [0, 0.3, 1]\nemission = 9\n";
+    let text = own("integrator = \"path\"", lights).replace("fov = 50", "fov = 50\nshutter = 1");
+    tells("a.toml", &text, &["pdf = 1 / (2π (1 − cos θ))", "pdf = P / Ω", "found"]);
+    // The distance of the centre is that at the time of the sample.
+    let mut distances = 0;
+    for inspection in inspections("a.toml", &text) {
+        let time = f64::from(inspection.time.expect("a time"));
+        let center = DVec3::new(2.0 - 96.0 / 24.0 * time, 3.0, 0.0);
+        let found =
+            inspection.rays.iter().filter_map(|ray| Some((ray.met.as_ref()?, ray.light_sample.as_ref()?)));
+        for (met, light) in found {
+            for of in light.sample.iter().flat_map(|sample| &sample.derivations) {
+                if of.formula.starts_with("pdf = 1 / (2π (1 − cos θ))") {
+                    near(one(of, "D"), center.distance(met.point.into()), 1e-4, of);
+                    distances += 1;
+                }
+            }
+        }
+    }
+    assert!(distances > 50, "{distances}");
 }
 
 #[test]

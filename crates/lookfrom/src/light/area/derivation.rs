@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{AreaDensity, AreaLight};
 use crate::core::spectrum::Spectrum;
 use crate::light::derivation::{Derivation, lanes};
-use crate::light::{EmissionSpectrum, LightSample, Target, Total};
+use crate::light::{EmissionSpectrum, LightSample, LightSampleContext, Target, Total};
 use crate::shading::texture::{SpectralMode, TexturePoint, Textures};
 
 impl AreaLight {
@@ -59,13 +59,18 @@ impl AreaLight {
         }
     }
 
-    /// The formula of a sampled point's density, as seen from `from`, with operands.
-    pub(in crate::light) fn of_density(&self, from: DVec3, sample: &LightSample) -> Option<Derivation> {
+    /// The formula of a sampled point's density, with operands; `at` is the point that is lit.
+    pub(in crate::light) fn of_density(
+        &self,
+        at: &LightSampleContext,
+        sample: &LightSample,
+    ) -> Option<Derivation> {
+        let from = at.point;
         let Target::Surface(point, normal) = sample.target else { return None };
-        let to = DVec3::from_array(point.position) - from;
+        let distance = DVec3::from_array(point.position).distance(from);
         let cos = normal.dot(sample.wi.as_dvec3()).abs();
         let of_place = [
-            ("d", vec![to.length()]),
+            ("d", vec![distance]),
             ("n at the light", normal.to_array().to_vec()),
             ("cos at the light", vec![cos]),
         ];
@@ -74,7 +79,12 @@ impl AreaLight {
         let seen = |corners: [DVec3; 3]| {
             CORNERS.into_iter().zip(corners.map(|corner| (corner - from).to_array().to_vec()))
         };
-        Some(match self.density(from, point.position.into()) {
+        let to = point.position.into();
+        let density = match self.place_at(at.time) {
+            None => self.density(from, to),
+            Some(place) => place.density(from, to, |from, to| self.density(from, to)),
+        };
+        Some(match density {
             AreaDensity::Area { area, probability, corners } => Derivation::new(
                 match corners {
                     Some(_) => {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Affine, Point};
 
-use super::{AreaLight, LightSample, Target};
+use super::{AreaDensity, AreaLight, LightSample, Target};
 use crate::shading::interaction::SurfaceInteraction;
 
 /// The motion of a light: maps of render space at equally spaced times from the opening to the closing of the shutter, linear in
@@ -107,6 +107,26 @@ impl LightPlace {
             ..*surface
         };
         pdf(point(&self.back, from), &there, direction(&self.back, wi.as_dvec3()).as_vec3())
+    }
+
+    /// The operands of the density of a point of the light as seen from another, by `density` where the light was; they are told
+    /// where it is now.
+    pub(super) fn density(
+        &self,
+        from: DVec3,
+        at: DVec3,
+        density: impl FnOnce(DVec3, DVec3) -> AreaDensity,
+    ) -> AreaDensity {
+        let now = |corners: [DVec3; 3]| corners.map(|corner| point(&self.now, corner));
+        match density(point(&self.back, from), point(&self.back, at)) {
+            AreaDensity::Area { area, probability, corners } => {
+                AreaDensity::Area { area, probability, corners: corners.map(now) }
+            }
+            AreaDensity::SolidAngle { solid_angle, probability, corners } => {
+                AreaDensity::SolidAngle { solid_angle, probability, corners: now(corners) }
+            }
+            unmoved @ (AreaDensity::Cone { .. } | AreaDensity::Patch { .. }) => unmoved,
+        }
     }
 }
 
