@@ -91,11 +91,14 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         Samples::Range(range) => range.clone(),
         Samples::Worst | Samples::All => 0..samples,
     };
-    if chosen.end > samples {
+    let of_pixel = session.samples_of_pixel();
+    let (fewest, most) = (*of_pixel.start(), *of_pixel.end());
+    if chosen.end > most {
         let last = chosen.end - 1;
+        let at_most = if fewest < most { "at most " } else { "" };
         return Err(Failure::Usage(format!(
-            "there is no sample {last}: the picture has {} per pixel, counted from 0",
-            counted(samples, "sample")
+            "there is no sample {last}: the picture has {at_most}{} per pixel, counted from 0",
+            counted(most, "sample")
         )));
     }
     let renderer = session.renderer();
@@ -105,7 +108,13 @@ fn follow(arguments: &InspectArguments, typed: &[String]) -> Result<(), Failure>
         Samples::Worst => pixel()?.all[0].sample,
         Samples::All | Samples::Range(_) => {
             let report = pixel()?;
-            return answer.print(&report, || format!("{report}\n--sample N shows each step of one"));
+            let allocated = match fewest < most {
+                true => format!(
+                    "\nBy the noise around it, the picture takes {fewest} to {most} samples of a pixel\n"
+                ),
+                false => "\n".to_owned(),
+            };
+            return answer.print(&report, || format!("{report}{allocated}--sample N shows each step of one"));
         }
     };
     let inspection = inspect::inspect(renderer, SampleId { pixel: [x, y], sample });

@@ -34,6 +34,7 @@ mod shown;
 mod source;
 mod spectral;
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -46,14 +47,14 @@ use lookfrom_scene::count::Counts;
 use lookfrom_scene::digest::Digested;
 use lookfrom_scene::files::SharedFiles;
 use lookfrom_scene::scene::Bounds;
-use lookfrom_scene::settings::{Allocation, ImageSettings, RenderSettings};
+use lookfrom_scene::settings::{ImageSettings, RenderSettings};
 use lookfrom_scene::studio::Turntable;
 use lookfrom_scene::{
     Budget, Disk, Error, Files, Inputs, LoadContext, Location, Memory, Remedy, Result, Scene, Warning, load,
 };
 
 use crate::core::clock::Stopwatch;
-use crate::film::allocation::MOST_TIMES_MEAN;
+use crate::film::allocation;
 use crate::film::{Film, Picture};
 use crate::render::{Progress, Renderer, StopCriteria, Subject};
 use crate::view::View;
@@ -349,6 +350,12 @@ impl Session {
         self.renderer.settings()
     }
 
+    /// The numbers of samples that a pixel of the picture may have: only one, unless they are allocated by noise. A limit of noise
+    /// or time may end a render before.
+    pub fn samples_of_pixel(&self) -> RangeInclusive<u32> {
+        allocation::of_pixel(self.settings())
+    }
+
     /// The compiled world.
     pub fn world(&self) -> &Arc<World> {
         self.renderer.world()
@@ -383,9 +390,7 @@ impl Session {
             let message = "this film has other pixels than the picture, or other sums";
             return Err(Error::invalid(&Location::default(), message).hint(Remedy::SamePicture));
         }
-        let settings = self.settings();
-        let times = if settings.allocation == Allocation::Adaptive { MOST_TIMES_MEAN } else { 1 };
-        let wanted = self.first_sample..settings.samples.saturating_mul(times);
+        let wanted = self.first_sample..*self.samples_of_pixel().end();
         if let Some(range) = film.ledger().range()
             && (range.start < wanted.start || range.end > wanted.end)
         {

@@ -242,9 +242,13 @@ impl Session {
             let message = format!("pixel ({x}, {y}) is outside of the picture of {width} × {height} pixels");
             return Err(PyIndexError::new_err(message));
         }
-        let samples = session.settings().samples;
-        if let Some(sample) = sample.filter(|sample| *sample >= samples) {
-            let message = format!("there is no sample {sample}: a pixel has {samples}, counted from 0");
+        let samples = session.samples_of_pixel();
+        if let Some(sample) = sample.filter(|sample| sample >= samples.end()) {
+            let at_most = if samples.start() < samples.end() { "at most " } else { "" };
+            let message = format!(
+                "there is no sample {sample}: a pixel has {at_most}{}, counted from 0",
+                samples.end()
+            );
             return Err(PyIndexError::new_err(message));
         }
         Ok(session)

@@ -14,7 +14,9 @@
 //! *Without bias*: what a pixel gets depends on its neighbours alone, whose samples are independent of its own. (The
 //! threshold, one number for the whole picture, depends on all.) Powers of two keep the samples well distributed.
 
-use lookfrom_scene::settings::PixelBounds;
+use std::ops::RangeInclusive;
+
+use lookfrom_scene::settings::{Allocation, PixelBounds, RenderSettings};
 
 use super::Film;
 use super::noise::SHARE_OF_MEAN;
@@ -25,7 +27,7 @@ use crate::core::parallel;
 const MOST_DOUBLINGS: u32 = 4;
 
 /// The greatest number of samples of a pixel, in parts of the mean.
-pub const MOST_TIMES_MEAN: u32 = 1 << (MOST_DOUBLINGS - 1);
+const MOST_TIMES_MEAN: u32 = 1 << (MOST_DOUBLINGS - 1);
 
 /// The least mean number of samples that can be allocated: variances of fewer say nothing.
 pub const LEAST_MEAN: u32 = 8;
@@ -36,6 +38,15 @@ const REACH: usize = 2;
 /// The number of samples of the pilot where `mean` are taken in the mean.
 pub(crate) fn pilot(mean: u32) -> u32 {
     mean / 2
+}
+
+/// The numbers of samples that a pixel may have by these settings, without a limit of noise or time.
+pub(crate) fn of_pixel(settings: &RenderSettings) -> RangeInclusive<u32> {
+    let &RenderSettings { allocation, samples, .. } = settings;
+    match allocation == Allocation::Adaptive && samples >= LEAST_MEAN {
+        true => pilot(samples)..=samples.saturating_mul(MOST_TIMES_MEAN),
+        false => samples..=samples,
+    }
 }
 
 impl Film {

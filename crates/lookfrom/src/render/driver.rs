@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use lookfrom_scene::settings::{Allocation, PixelBounds, RenderSettings};
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
 use super::parts::{TilePart, divided, parts, rows, tiles};
@@ -19,7 +19,7 @@ use super::progress::{Progress, Rendered, StopCriteria, StopReason, TileDone};
 use super::{Batch, Rays, Renderer};
 use crate::core::clock::Stopwatch;
 use crate::core::parallel;
-use crate::film::allocation::{self, LEAST_MEAN};
+use crate::film::allocation;
 use crate::film::{Film, FilmTile};
 
 /// Maximum number of samples per pixel between two evaluations of the stop criteria.
@@ -120,8 +120,8 @@ impl Renderer {
 
     /// The number of samples per pixel after which the others are allocated; `None` where all pixels get the same.
     fn pilot(&self) -> Option<u32> {
-        let RenderSettings { allocation, samples, .. } = self.settings;
-        (allocation == Allocation::Adaptive && samples >= LEAST_MEAN).then(|| allocation::pilot(samples))
+        let of_pixel = allocation::of_pixel(&self.settings);
+        (of_pixel.start() < of_pixel.end()).then_some(*of_pixel.start())
     }
 }
 
