@@ -251,6 +251,45 @@ fn what_is_told_of_smoke_adds_up() {
 }
 
 #[test]
+fn russian_roulette_of_shadow_rays_is_told() {
+    let thick = scene_of(
+        8,
+        16,
+        &format!(
+            r#""uniformgrid" {} {BOX} "rgb sigma_a" [ 1 1 1 ] "rgb sigma_s" [ 20 20 20 ]"#,
+            grid("density", value)
+        ),
+        AROUND,
+        r#"LightSource "point" "point3 from" [ 1.5 0.5 2 ] "rgb I" [ 4 4 4 ]"#,
+    );
+    let renderer = Compiled::new(thick).renderer();
+    let mut all = [0; 2];
+    for sample in 0..16 {
+        let inspection = inspect(&renderer, SampleId { pixel: [1, 0], sample });
+        let [mut stronger, mut ended] = [0; 2];
+        for shadow in inspection.rays.iter().filter_map(|ray| ray.light_sample.as_ref()?.shadow.as_ref()) {
+            let (mut before, mut t) = (1.0, 0.0);
+            // Text has the first of them.
+            for collision in shadow.collisions.iter().take(24) {
+                if collision.t < t {
+                    before = 1.0;
+                }
+                let without = before * (collision.majorant - collision.extinction[0]) / collision.majorant;
+                (before, t) = (collision.transmittance[0], collision.t);
+                stronger += usize::from(before > 3.9 * without);
+                ended += usize::from(before == 0.0 && without > 0.0);
+            }
+        }
+        let text = inspection.to_string();
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(text.matches("], four times as much by Russian roulette").count(), stronger, "{text}");
+        assert_eq!(text.matches("], ended by Russian roulette").count(), ended, "{text}");
+        all = [all[0] + stronger, all[1] + ended];
+    }
+    assert!(all.iter().all(|told| *told > 3), "{all:?}");
+}
+
+#[test]
 fn pictures_of_smoke_have_the_same_bits_for_any_number_of_threads() {
     let mut scene = smoke();
     (scene.image.width, scene.image.height, scene.render.samples) = (24, 24, 16);

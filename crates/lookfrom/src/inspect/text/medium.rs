@@ -20,13 +20,25 @@ pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
     if let Some(flight) = &ray.flight {
         write_flight(f, flight)?;
     }
-    ray.tracking.as_ref().map_or(Ok(()), |tracking| write_tracking(f, tracking))
+    let before = ray.absorption.as_ref().map_or(&ray.throughput, |absorption| &absorption.throughput);
+    ray.tracking.as_ref().map_or(Ok(()), |tracking| write_tracking(f, tracking, before))
 }
 
 /// Collisions that are written; the others are in JSON.
 const MOST_COLLISIONS: usize = 24;
 
-fn write_tracking(f: &mut String, tracking: &TrackingReport) -> fmt::Result {
+/// What Russian roulette has made of a null collision's estimate, by what the estimate would be without it.
+fn by_roulette(estimate: &[f32], without: impl Fn(usize) -> f32) -> &'static str {
+    let most = |lanes: &mut dyn Iterator<Item = f32>| lanes.fold(0.0, f32::max);
+    let (found, without) = (most(&mut estimate.iter().copied()), most(&mut (0..estimate.len()).map(without)));
+    match (found > 2.0 * without, found == 0.0 && without > 0.0) {
+        (true, _) => ", four times as much by Russian roulette",
+        (_, true) => ", ended by Russian roulette",
+        _ => "",
+    }
+}
+
+fn write_tracking<'a>(f: &mut String, tracking: &'a TrackingReport, mut before: &'a [f32]) -> fmt::Result {
     let (count, limit) = (tracking.collisions.len(), full(tracking.limit));
     writeln!(
         f,
@@ -35,6 +47,11 @@ fn write_tracking(f: &mut String, tracking: &TrackingReport) -> fmt::Result {
     )?;
     for collision in tracking.collisions.iter().take(MOST_COLLISIONS) {
         let CollisionReport { t, majorant, absorption, scattering, .. } = collision;
+        let kept = 1.0 - collision.probability;
+        let roulette = by_roulette(&collision.throughput, |lane| {
+            before[lane] * (majorant - absorption[lane] - scattering[lane]) / (majorant * kept)
+        });
+        before = &collision.throughput;
         let (t, majorant, probability) = (full(*t), full(*majorant), full(collision.probability));
         writeln!(
             f,
@@ -53,7 +70,7 @@ fn write_tracking(f: &mut String, tracking: &TrackingReport) -> fmt::Result {
             )?,
             false => writeln!(
                 f,
-                "        null, with q = Σ P σ_t / m = {probability}: β (m − σ_t) / (m (1 − q)) = {throughput}"
+                "        null, with q = Σ P σ_t / m = {probability}: β (m − σ_t) / (m (1 − q)) = {throughput}{roulette}"
             )?,
         }
     }
@@ -68,12 +85,17 @@ fn write_tracking(f: &mut String, tracking: &TrackingReport) -> fmt::Result {
 
 /// The null collisions of a shadow ray.
 pub(super) fn write_null_collisions(f: &mut String, collisions: &[NullReport], pad: &str) -> fmt::Result {
-    for collision in collisions.iter().take(MOST_COLLISIONS) {
+    for (index, collision) in collisions.iter().enumerate().take(MOST_COLLISIONS) {
         let NullReport { t, majorant, extinction, transmittance } = collision;
+        // The estimate of each part of the way starts from 1.
+        let before = collisions[..index].last().filter(|before| before.t <= *t);
+        let roulette = by_roulette(transmittance, |lane| {
+            before.map_or(1.0, |before| before.transmittance[lane]) * (majorant - extinction[lane]) / majorant
+        });
         let (t, majorant) = (full(*t), full(*majorant));
         writeln!(
             f,
-            "{pad}    shadow ray: collides at t = {t}: m = {majorant}   σ_t = {}   Π (m − σ_t) / m = {}",
+            "{pad}    shadow ray: collides at t = {t}: m = {majorant}   σ_t = {}   Π (m − σ_t) / m = {}{roulette}",
             lanes(extinction),
             lanes(transmittance)
         )?;
