@@ -104,7 +104,7 @@ export interface Branch {
     weight: Factor;
 }
 
-/** `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns. */
+/** `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. A camera that moves has one more factor, `M`; its position and axes are those when the shutter opened. Matrices are rows of columns. */
 export interface CameraSteps {
     /** `a`: the origin of the ray. */
     a: Vector;
@@ -445,8 +445,8 @@ export interface MatrixStep {
     does: string;
     /** The factor. */
     matrix: Matrix;
-    /** `T1`, `S2`, `R3` or `T4`. */
-    name: "T1" | "S2" | "R3" | "T4";
+    /** `T1`, `S2`, `R3` or `T4`; `M`, the way of a camera that moves since the shutter opened. */
+    name: "T1" | "S2" | "R3" | "T4" | "M";
     /** The point so far. */
     point: Quadruple;
     /** The product of the factors so far. */
@@ -515,7 +515,7 @@ export interface Microfacet {
     half_vector: Vector;
     /** What light between the facets of a conductor adds; null where it is lost or there is none. */
     multiple_scattering: MultipleScattering | null;
-    /** What the facets do with light of this way: F where they reflect it, else 1 − F, tinted by the body. */
+    /** The share of light that the facets send this way: F where they reflect it, else 1 − F; tinted by the layers above and the body, if it passes them. */
     part: Factor;
     /** Whether the facets refract light; otherwise they reflect it (a thin sheet also to its other side). */
     refracts: boolean;
@@ -597,7 +597,7 @@ export interface Pixel {
     dropped: number;
     /** Number of the first of them. */
     first_sample: number;
-    /** The mean of the others, bit for bit the film's: linear Rec. 709. */
+    /** The mean of the others, bit for bit that of a film with these samples: linear Rec. 709. */
     mean: Vector;
     /** Column and row from the top left. */
     pixel: [number, number];

@@ -98,6 +98,35 @@ fn a_whole_pixel_is_that_of_the_picture() {
 }
 
 #[test]
+fn an_inspection_of_an_adaptive_picture() {
+    let stage = Stage::new("inspect-adaptive");
+    let adaptive = "inspect scene.toml 20 14 --samples 8 --allocation adaptive";
+    let text = String::from_utf8(stage.done(&format!("{adaptive} --sample all")).stdout).unwrap();
+    assert!(text.contains("the picture takes 4 to 64 samples of a pixel\n--sample N"), "{text}");
+    assert_eq!(stage.json_document(&format!("{adaptive} --sample 63 --json"))["sample"], 63);
+    let at_most = "there is no sample 64: the picture has at most 64 samples per pixel";
+    stage.run(&format!("{adaptive} --sample 64")).fails(2, &[at_most]);
+    let uniform = String::from_utf8(stage.done("inspect scene.toml 20 14 --sample all").stdout).unwrap();
+    assert!(!uniform.contains("takes"), "{uniform}");
+}
+
+#[test]
+fn an_inspection_of_a_camera_that_moves() {
+    let stage = Stage::new("inspect-moving");
+    stage.write(
+        "moving.toml",
+        "camera = { lookfrom = [\"= t\", 0, 3], lookat = [0, 0, 0], shutter = 0.5 }\nsphere = [{}]",
+    );
+    let text = String::from_utf8(stage.done("inspect moving.toml 5 5 --only camera").stdout).unwrap();
+    for line in [
+        "P_world = M · T4 · R3 · S2 · T1 · P_k",
+        "M_vw = T4 · R3, from view to world, when the shutter opened",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}
+
+#[test]
 fn parts_of_an_inspection() {
     let stage = Stage::new("inspect-parts");
     let said = |options: &str| {

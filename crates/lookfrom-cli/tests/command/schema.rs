@@ -82,7 +82,7 @@ file = "roof.obj"
 "#;
 
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 31] = [
+const INSPECTED: [&str; 32] = [
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",
@@ -113,6 +113,7 @@ const INSPECTED: [&str; 31] = [
     "smooth.toml 5 5",
     "smooth.toml 10 5",
     "around.toml 5 5",
+    "moving.toml 5 5",
     "metal.toml 8 8 --samples 4",
 ];
 
@@ -160,6 +161,10 @@ fn every_report_is_of_the_schema() {
     stage.write(
         "metal.toml",
         "image = { width = 16, height = 16 }\ncamera = { lookfrom = [0, 0, 3], lookat = [0, 0, 0] }\nsphere = [{ material = \"gold\" }]\n[materials.gold]\ntype = \"conductor\"\nmetal = \"gold\"\nroughness = 0.8",
+    );
+    stage.write(
+        "moving.toml",
+        "camera = { lookfrom = [\"= t\", 0, 3], lookat = [0, 0, 0], shutter = 0.5 }\nsphere = [{}]",
     );
     stage.write("smooth.toml", SMOOTH);
     stage.write(

@@ -63,7 +63,7 @@ class Pixel:
     samples: The number of samples.
     first_sample: Number of the first of them.
     dropped: Number of samples that are not finite, which the film leaves out.
-    mean: The mean of the others, bit for bit the film's: linear Rec. 709.
+    mean: The mean of the others, bit for bit that of a film with these samples: linear Rec. 709.
     variance: The unbiased estimate of the variance of one sample, per channel; null for fewer than two.
     standard_error: The standard error of the mean of independent samples (that of stratified ones is less):
         √(variance / samples).
@@ -233,7 +233,8 @@ class Branch:
 
 @dataclass(frozen=True)
 class CameraSteps:
-    """`P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
+    """`P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. A camera that moves has one more
+    factor, `M`; its position and axes are those when the shutter opened. Matrices are rows of columns.
 
     projection: How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or
         `irradiance`.
@@ -650,7 +651,7 @@ class LightSample:
 class MatrixStep:
     """One factor of the camera's product.
 
-    name: `T1`, `S2`, `R3` or `T4`.
+    name: `T1`, `S2`, `R3` or `T4`; `M`, the way of a camera that moves since the shutter opened.
     does: A description.
     matrix: The factor.
     product: The product of the factors so far.
@@ -726,7 +727,8 @@ class Microfacet:
     d: D(ω_m): the density of facets with that normal; null where the boundary is smooth.
     g: G: Smith's masking and shadowing; null where it is smooth.
     fresnel: F: the Fresnel reflectance of the facets.
-    part: What the facets do with light of this way: F where they reflect it, else 1 − F, tinted by the body.
+    part: The share of light that the facets send this way: F where they reflect it, else 1 − F; tinted by the
+        layers above and the body, if it passes them.
     eta: η: the index of refraction on the side of the light over that on the side of the viewer where light
         is refracted; else 1.
     weight: The weight of the boundary, below the layers above it.

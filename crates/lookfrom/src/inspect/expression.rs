@@ -61,7 +61,7 @@ fn contribution(inspection: &Inspection, addition: &Addition) -> Option<Contribu
     if light != "view" {
         links.push(light.clone());
     }
-    let value = addition.value.rgb.map(|c| c * inspection.weight);
+    let value = addition.value.rgb.map(|c| c * inspection.weight * inspection.sensor.scaled_by);
     Some(Contribution {
         sample: inspection.sample,
         value,
@@ -190,8 +190,8 @@ struct NamedFactor {
 }
 
 impl NamedFactor {
-    fn times(name: &'static str, lanes: &[f32]) -> Self {
-        Self { name, value: most(lanes), is_divisor: false }
+    fn times(name: &'static str, value: f32) -> Self {
+        Self { name, value, is_divisor: false }
     }
 
     /// The factor by which it multiplies the light.
@@ -200,37 +200,52 @@ impl NamedFactor {
     }
 }
 
-/// The factors of a contribution (the largest lane of each), and the one that makes it large.
+/// The lanes in which a contribution has light that counts: after dispersion the other wavelengths do not.
+fn lit_lanes(inspection: &Inspection, addition: &Addition) -> impl Fn(usize) -> bool {
+    let counts = |lane: usize| inspection.wavelengths.as_ref().is_none_or(|light| light.pdf[lane] > 0.0);
+    let value = addition.value.lanes.iter().enumerate();
+    let lit: Vec<bool> = value.map(|(lane, value)| *value != 0.0 && counts(lane)).collect();
+    let is_dark = !lit.contains(&true);
+    move |lane| is_dark || lit[lane]
+}
+
+/// The factors of a contribution (the largest of the lanes that have light), and the one that makes it large.
 fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String {
+    let is_lit = lit_lanes(inspection, addition);
+    let most = |lanes: &[f32]| {
+        let lit = lanes.iter().enumerate().filter(|(lane, _)| is_lit(*lane));
+        lit.map(|(_, value)| *value).fold(0.0, f32::max)
+    };
     // A medium shines along the whole way.
     let there = ray.throughput_there.as_ref().filter(|_| addition.term != "medium");
-    let beta = NamedFactor::times("β", there.unwrap_or(&ray.throughput));
-    let mut factors = vec![beta];
+    let beta = most(there.unwrap_or(&ray.throughput));
+    let mut factors = vec![NamedFactor::times("β", beta)];
     let sampled = ray.light_sample.as_ref().filter(|_| addition.term.starts_with("sampled "));
     let found = ray.found.iter().find(|found| addition.term == format!("found {}", found.light));
     let local = ray.lights.iter().find(|light| light.light == addition.term);
     if let Some(LightSampleReport { sample: Some(sample), .. }) = sampled {
         factors.extend([
-            NamedFactor::times("f cos", &sample.f_cos),
-            NamedFactor::times("L", &sample.arrives.lanes),
-            NamedFactor::times("w", &[sample.weight]),
+            NamedFactor::times("f cos", most(&sample.f_cos)),
+            NamedFactor::times("L", most(&sample.arrives.lanes)),
+            NamedFactor::times("w", sample.weight),
             NamedFactor { name: "p", value: sample.pdf, is_divisor: true },
         ]);
     } else if let Some(FoundReport { radiance, weight, .. }) = found {
-        factors.extend([NamedFactor::times("L", &radiance.lanes), NamedFactor::times("w", &[*weight])]);
+        factors.extend([NamedFactor::times("L", most(&radiance.lanes)), NamedFactor::times("w", *weight)]);
     } else if let Some(light) = local {
         let sum: Vec<f32> = light.diffuse.iter().zip(&light.specular).map(|(d, s)| d + s).collect();
         factors.extend([
-            NamedFactor::times("(k_d N·L + k_s (N·H)^n)", &sum),
-            NamedFactor::times("I_j", &light.intensity.lanes),
+            NamedFactor::times("(k_d N·L + k_s (N·H)^n)", most(&sum)),
+            NamedFactor::times("I_j", most(&light.intensity.lanes)),
         ]);
     } else {
-        let beta = factors[0].value;
-        let rest: Vec<f32> = addition.value.lanes.iter().map(|value| value / beta).collect();
-        factors.push(NamedFactor::times("L", &rest));
+        factors.push(NamedFactor::times("L", most(&addition.value.lanes) / beta));
     }
     if inspection.camera.lens_system.is_some() {
-        factors.push(NamedFactor::times("lens", &[inspection.weight]));
+        factors.push(NamedFactor::times("lens", inspection.weight));
+    }
+    if inspection.sensor.scaled_by != 1.0 {
+        factors.push(NamedFactor::times("limit", inspection.sensor.scaled_by));
     }
     let product = factors.iter().enumerate().map(|(index, factor)| match (index, factor.is_divisor) {
         (0, _) => format!("{} {}", factor.name, three(factor.value)),
@@ -239,7 +254,7 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
     });
     let product: String = product.collect();
     let largest = factors.iter().max_by(|a, b| a.multiplier().total_cmp(&b.multiplier()));
-    let largest = largest.filter(|factor| factor.multiplier() > 1.0);
+    let largest = largest.filter(|factor| factor.multiplier() > ONE_AS_SHOWN);
     let reason = match largest {
         Some(factor) => reason(inspection, ray, factor, found),
         None => "no factor is above 1".into(),
@@ -252,6 +267,9 @@ fn why(inspection: &Inspection, ray: &RayReport, addition: &Addition) -> String 
         _ => format!("{product}: {reason}"),
     }
 }
+
+/// Up to here a factor is shown as 1, which it may be but for rounding.
+const ONE_AS_SHOWN: f32 = 1.005;
 
 /// Growth of the throughput at one hit that is told beside the largest factor.
 const MUCH: f32 = 4.0;

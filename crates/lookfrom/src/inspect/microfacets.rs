@@ -34,7 +34,8 @@ pub struct MicrofacetReport {
     pub g: Option<f32>,
     /// F: the Fresnel reflectance of the facets.
     pub fresnel: Factor,
-    /// The share of light that the facets send this way: F where they reflect it, else 1 − F, tinted by the body.
+    /// The share of light that the facets send this way: F where they reflect it, else 1 − F; tinted by the layers above and the body, if
+    /// it passes them.
     pub part: Factor,
     /// η: the index of refraction on the side of the light over that on the side of the viewer where light is
     /// refracted; else 1.

@@ -27,7 +27,7 @@ pub struct PixelInspection {
     pub first_sample: u32,
     /// Number of samples that are not finite, which the film leaves out.
     pub dropped: u32,
-    /// The mean of the others, bit for bit the film's: linear Rec. 709.
+    /// The mean of the others, bit for bit that of a film with these samples: linear Rec. 709.
     pub mean: [f32; 3],
     /// The unbiased estimate of the variance of one sample, per channel; `None` for fewer than two.
     pub variance: Option<[f64; 3]>,

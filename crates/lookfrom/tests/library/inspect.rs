@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::support::{Compiled, scene};
+use glam::DVec3;
 use lookfrom::film::{Film, FilmTile};
 use lookfrom::inspect::{Inspection, RayKind, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
@@ -322,6 +323,111 @@ fn the_numbers_fit_the_formulas_and_everything_is_told() {
         assert!(told.contains(expected), "{expected:?} is not in {told:#?}");
     }
     assert!(!told.iter().any(|told| told.starts_with("random_walk sampled")), "{told:#?}");
+}
+
+#[test]
+fn the_factors_of_a_contribution_are_of_the_light_that_counts() {
+    let compiled = Compiled::new(room(Integrator::Path, ColorMode::Spectral));
+    let renderer = compiled.renderer();
+    let mut dispersed = 0;
+    for pixel in pixels() {
+        let inspection = inspect(&renderer, SampleId { pixel, sample: 1 });
+        let is_dispersed = inspection.wavelengths.as_ref().is_some_and(|light| light.dispersed);
+        for of in &inspection.contributions {
+            assert!(!of.why.contains("β 1 ") || !of.why.contains("large β"), "{}", of.why);
+            let addition = inspection.additions.iter().find(|addition| {
+                addition.address == of.address
+                    && addition.value.rgb.map(|c| c * inspection.weight) == of.value
+            });
+            let Some(addition) = addition.filter(|_| is_dispersed) else { continue };
+            // Of the first wavelength alone: β · L · w, or β · f cos · L · w / p.
+            let (factors, _) = of.why.split_once(": ").expect("factors, and a reason");
+            let number = |words: &str| words.rsplit(' ').next().and_then(|word| word.parse::<f32>().ok());
+            let product =
+                factors.split(" / ").map(|part| part.split(" · ").filter_map(number).product::<f32>());
+            let product = product.reduce(|factors, divisor| factors / divisor).expect("a product");
+            // A shadow ray may lose a part.
+            let lane = addition.value.lanes[0];
+            let is_alike = if factors.contains(" / p ") {
+                product >= 0.97 * lane
+            } else {
+                (product / lane - 1.0).abs() < 0.03
+            };
+            assert!(is_alike, "{lane}, by its factors {product}: {}", of.why);
+            dispersed += usize::from(lane > 0.0);
+        }
+    }
+    assert!(dispersed > 5, "{dispersed}");
+}
+
+#[test]
+fn hair_is_told_with_the_angle_of_its_scales() {
+    let text = "camera = { lookfrom = [0, 0, 5], lookat = [0, 0, 0] }\nimage = { width = 3, height = 3 }\n\
+        render = { integrator = \"path\" }\nlight = [{ type = \"environment\", color = 1 }]\n\
+        [materials.hair]\ntype = \"hair\"\noffset = 3\n\
+        [[curve]]\npoints = [[0, -2, 0], [0, -1, 0], [0, 1, 0], [0, 2, 0]]\nwidth = 3\nmaterial = \"hair\"";
+    let inspection = inspect(&Compiled::new(scene(text)).renderer(), SampleId { pixel: [1, 1], sample: 0 });
+    let scattering = inspection.rays[0].scattering.as_ref().expect("hair");
+    let [sine] = scattering.numbers.iter().find(|(name, _)| *name == "sin α").expect("sin α").1[..] else {
+        panic!("{scattering:?}")
+    };
+    assert!((f64::from(sine) - 3.0_f64.to_radians().sin()).abs() < 1e-6, "{sine}");
+}
+
+#[test]
+fn words_for_panes_and_tints_are_true() {
+    let text = |material: &str| {
+        let text = format!(
+            "camera = {{ lookfrom = [0, 0, 5], lookat = [0, 0, 0] }}\nimage = {{ width = 3, height = 3 }}\n\
+             render = {{ integrator = \"path\", samples = 4 }}\nlight = [{{ type = \"point\", position = [1, 2, 4], intensity = 1 }}]\n\
+             quad = [{{ corner = [-9, -9, 0], edge_u = [18, 0, 0], edge_v = [0, 18, 0], material = \"here\" }}]\n\
+             [materials.here]\n{material}"
+        );
+        let renderer = Compiled::new(scene(&text)).renderer();
+        let words = (0..4).map(|sample| inspect(&renderer, SampleId { pixel: [1, 1], sample }).to_string());
+        words
+            .flat_map(|text| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let pane = text("type = \"thin_dielectric\"");
+    assert!(pane.contains("goes on by specular transmission"), "{pane}");
+    assert!(pane.contains("the thin dielectric is smooth and lets light through: F = "), "{pane}");
+    let varnish = text("type = \"openpbr\"\ncoat_weight = 1\ncoat_color = [1, 0.8, 0.4]");
+    assert!(
+        varnish.contains("each reflects: ") && varnish.contains("part = what goes this way, tinted = ["),
+        "{varnish}"
+    );
+}
+
+#[test]
+fn a_mirrored_camera_says_how_its_axes_follow() {
+    for (x, is_mirrored) in [(1, false), (-1, true)] {
+        let matrix = format!("[{x}, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -5, 0, 0, 0, 1]");
+        let text =
+            format!("camera = {{ matrix = {matrix} }}\nimage = {{ width = 3, height = 3 }}\nsphere = [{{}}]");
+        let inspection =
+            inspect(&Compiled::new(scene(&text)).renderer(), SampleId { pixel: [1, 1], sample: 0 });
+        let [u, v, w] =
+            [inspection.camera.u, inspection.camera.v, inspection.camera.w].map(DVec3::from_array);
+        assert_eq!(if is_mirrored { u.cross(w) } else { w.cross(u) }, v);
+        let words = inspection.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(words.contains("(mirrored: u = w × up, v = u × w)"), is_mirrored, "{words}");
+    }
+}
+
+#[test]
+fn contributions_are_of_what_the_film_received() {
+    let text = "camera = { lookfrom = [0, 0, 5], lookat = [0, 0, 0] }\nimage = { width = 3, height = 3, max_component = 0.2 }\n\
+        render = { integrator = \"path\" }\nsphere = [{ radius = 2, emission = [3, 2, 1] }]";
+    let inspection = inspect(&Compiled::new(scene(text)).renderer(), SampleId { pixel: [1, 1], sample: 0 });
+    let [of] = &inspection.contributions[..] else { panic!("{inspection}") };
+    assert!(inspection.film[0] < 0.3 && of.value[0] > 0.0, "{inspection}");
+    assert_close(&of.value, |channel| inspection.film[channel], "a limited sample");
+    assert!(
+        of.why.contains(" · limit 0.0") && inspection.to_string().contains("100 %   camera"),
+        "{inspection}"
+    );
 }
 
 #[test]

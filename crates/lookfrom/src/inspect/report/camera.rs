@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. Matrices are rows of columns.
+/// `P_world = T4 · R3 · S2 · T1 · P_k`, each factor and each product. A camera that moves has one more factor, `M`; its position and axes
+/// are those when the shutter opened. Matrices are rows of columns.
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraSteps {
     /// How the camera projects: `perspective`, `orthographic`, all around, `lens system`, or `irradiance`.
@@ -99,7 +100,7 @@ pub struct SphereMapping {
 /// One factor of the camera's product.
 #[derive(Clone, Debug, Serialize)]
 pub struct MatrixStep {
-    /// `T1`, `S2`, `R3` or `T4`.
+    /// `T1`, `S2`, `R3` or `T4`; `M`, the way of a camera that moves since the shutter opened.
     pub name: &'static str,
     /// A description.
     pub does: &'static str,

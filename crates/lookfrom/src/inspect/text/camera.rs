@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Write};
 
+use glam::DVec3;
+
 use super::lens_system::write_lens_system;
 use super::{short, vector, vector32};
 use crate::inspect::{Inspection, SphereMapping};
@@ -12,13 +14,15 @@ impl Inspection {
         if let Some(time) = self.time {
             writeln!(f, "At {time} of the time that the shutter is open: what moves is where it is then\n")?;
         }
+        let has_moved = camera.steps.last().is_some_and(|step| step.name == "M");
+        let (motion, then) = if has_moved { ("M · ", ", when the shutter opened") } else { ("", "") };
         match &camera.mapping {
             None if camera.lens_system.is_some() => writeln!(
                 f,
-                "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k, of a pinhole at the middle of the film that sees the plane \
-                 of focus as large"
+                "From the pixel to the world: P_world = {motion}T4 · R3 · S2 · T1 · P_k, of a pinhole at the middle of the film that sees \
+                 the plane of focus as large"
             )?,
-            None => writeln!(f, "From the pixel to the world: P_world = T4 · R3 · S2 · T1 · P_k")?,
+            None => writeln!(f, "From the pixel to the world: P_world = {motion}T4 · R3 · S2 · T1 · P_k")?,
             Some(_) => writeln!(f, "From the pixel to the world: a direction, {}", camera.projection)?,
         }
         writeln!(f, "  P_k      = {}", vector(&camera.p_k))?;
@@ -46,21 +50,23 @@ impl Inspection {
             }
             writeln!(f, "    point  = {}", vector(&step.point))?;
         }
-        writeln!(f, "  M_vw = T4 · R3, from view to world")?;
+        writeln!(f, "  M_vw = T4 · R3, from view to world{then}")?;
         for row in camera.world_from_view {
             writeln!(f, "    [{} ]", row.map(|x| format!("{:>11}", short(x))).join(" "))?;
         }
         writeln!(f, "  lookfrom = {}", vector(&camera.lookfrom))?;
+        let [u, v, w] = [camera.u, camera.v, camera.w].map(DVec3::from_array);
+        let mirrored = if w.cross(u).dot(v) < 0.0 { "   (mirrored: u = w × up, v = u × w)" } else { "" };
         writeln!(
             f,
-            "  u (left) = {}   v (up) = {}   w (forward) = {}",
+            "  u (left) = {}   v (up) = {}   w (forward) = {}{mirrored}",
             vector(&camera.u),
             vector(&camera.v),
             vector(&camera.w)
         )?;
         let moved = if camera.lens { "   (a point of the lens)" } else { "" };
         writeln!(f, "  a        = {}{moved}", vector(&camera.a))?;
-        let on_plane = if camera.lens_system.is_some() {
+        let on_plane = if camera.lens_system.is_some() || camera.mapping.is_some() {
             "at a distance of 1 along the ray"
         } else if camera.lens {
             "where the ray from the lens crosses the image plane"

@@ -12,7 +12,6 @@ pub(super) fn write_microfacets(f: &mut String, microfacets: &[MicrofacetReport]
 
 fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
     let MicrofacetReport { boundary, alpha, cos_o, cos_i, cos_om, cos_im, eta, weight, .. } = report;
-    let does = if report.refracts { "refracts" } else { "reflects" };
     let [cos_o, cos_i, cos_om, cos_im] = [cos_o, cos_i, cos_om, cos_im].map(|cos| full(*cos));
     let fresnel = lanes(&report.fresnel);
     let is_rest = report.part.iter().zip(&report.fresnel).all(|(part, fresnel)| *part == 1.0 - fresnel);
@@ -20,6 +19,11 @@ fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
         (true, _) => "F",
         (_, true) => "(1 − F)",
         _ => "part",
+    };
+    let does = match (report.refracts, *boundary == "thin dielectric" && is_rest) {
+        (true, _) => "refracts",
+        (false, true) => "lets light through",
+        (false, false) => "reflects",
     };
     let weighted = match (*weight == 1.0, &report.multiple_scattering) {
         (_, Some(_)) => "gain · ",
@@ -52,7 +56,7 @@ fn write_boundary(f: &mut String, report: &MicrofacetReport) -> fmt::Result {
     }
     let mut more = Vec::new();
     if part == "part" {
-        more.push(format!("part = what is not reflected, tinted = {}", lanes(&report.part)));
+        more.push(format!("part = what goes this way, tinted = {}", lanes(&report.part)));
     }
     if *eta != 1.0 {
         more.push(format!("η = {}", full(*eta)));

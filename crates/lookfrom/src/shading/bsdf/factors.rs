@@ -37,7 +37,8 @@ pub struct MicrofacetFactors {
     pub g: Option<f32>,
     /// F: the Fresnel reflectance of the facets; where the boundary is a mix, that of its parts by their weights.
     pub fresnel: Spectrum,
-    /// The share of light that the facets send this way: F where they reflect it, else 1 − F, tinted by the body.
+    /// The share of light that the facets send this way: F where they reflect it, else 1 − F; tinted by the layers above and the body, if
+    /// it passes them.
     pub part: Spectrum,
     /// The index of refraction on the side of `wi` over the one on the side of `wo`, where light is refracted; else 1.
     pub eta: f32,

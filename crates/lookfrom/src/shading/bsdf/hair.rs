@@ -371,6 +371,7 @@ impl ScatteringFunction for Hair {
                 ("absorption", self.absorption.into()),
                 ("variance", self.variance.into()),
                 ("scale", self.scale.into()),
+                ("sin α", self.tilts[0][0].into()),
             ],
         }
     }
