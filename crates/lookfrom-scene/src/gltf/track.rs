@@ -90,7 +90,8 @@ impl Track<'_> {
 
     /// The keyframe before a time, the fraction of the way to the next one, and the time between both.
     fn place(&self, time: f64) -> (usize, f64, f64) {
-        let next = self.times.partition_point(|&key| f64::from(key) <= time);
+        // In the precision of the file, so that the frame of a keyframe is not before it by the rounding of the keyframe's time.
+        let next = self.times.partition_point(|&key| key <= time as f32);
         if next == 0 || next == self.times.len() {
             return (next.saturating_sub(1), 0.0, 0.0);
         }
@@ -146,6 +147,21 @@ mod tests {
         assert_eq!(track(&[1.0, 2.0], &[0.0, 4.0], Interpolation::Linear).vector(1.25), [1.0]);
         assert_eq!(track(&[1.0, 2.0], &[0.0, 4.0], Interpolation::Step).vector(1.99), [0.0]);
         assert_eq!(track(&[5.0], &[7.0], Interpolation::Linear).vector(9.0), [7.0]);
+    }
+
+    /// Exporters round frame / fps to single precision, to above it for half of the frames.
+    #[test]
+    fn a_frame_has_the_value_of_its_keyframe() {
+        let frames = 0..240_u16;
+        let times: Vec<f32> = frames.clone().map(|frame| (f64::from(frame) / 24.0) as f32).collect();
+        let values: Vec<f32> = frames.clone().map(f32::from).collect();
+        for interpolation in [Interpolation::Linear, Interpolation::Step] {
+            let track = Track { times: &times, values: &values, width: 1, interpolation };
+            for frame in frames.clone() {
+                let error = track.vector(f64::from(frame) / 24.0)[0] - f64::from(frame);
+                assert!(error.abs() < 1e-4, "{interpolation:?}, frame {frame}: {error}");
+            }
+        }
     }
 
     #[test]

@@ -14,6 +14,9 @@ pub(super) const KEYFRAMES: &str = "keyframes";
 /// The keys of the table.
 pub(super) const KEYS: &[&str] = &[KEYFRAMES, "interpolation", "repeat"];
 
+/// Times of keyframes that repeat are alike if they differ by no more than this fraction of the period.
+const ROUNDING: f64 = 1e-9;
+
 /// The interpolation between two keyframes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Interpolation {
@@ -63,7 +66,10 @@ pub(super) fn at_time(table: &Table<'_>, scope: &Scope<'_>) -> Result<Quantity> 
     let length = last.time - first.time;
     let repeats = repeats && length > 0.0;
     let now = if repeats { first.time + modulo(now - first.time, length) } else { now };
-    let index = frames.partition_point(|frame| frame.time <= now).saturating_sub(1);
+    // The remainder is rounded: 0.7 s of a period of 0.3 s is just before the keyframe at 0.1 s, and has to be at it.
+    let rounding = if repeats { ROUNDING * length } else { 0.0 };
+    let now = if repeats && last.time - now <= rounding { first.time } else { now };
+    let index = frames.partition_point(|frame| frame.time <= now + rounding).saturating_sub(1);
     let Some(next) = frames.get(index + 1) else { return Ok(last.value.clone()) };
     let frame = &frames[index];
     if now <= frame.time || interpolation == Interpolation::Step {

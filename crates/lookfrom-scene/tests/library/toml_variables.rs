@@ -213,6 +213,12 @@ fn keyframes_that_repeat_and_those_of_lists_and_texts() {
         let at = f64::from(eighth) / 8.0;
         assert!((keyframes(turn, at) - 1.0 - 90.0 * at).abs() < 1e-9, "{at}");
     }
+    // Steps of frames, of ten frames per second: frame 7 is just before the second keyframe of its round by rounding alone.
+    let steps = "[[0, 1], [0.1, 2], [0.2, 3], [0.3, 1]], repeat = true, interpolation = \"step\"";
+    for frame in 0..100_u32 {
+        let expected = f64::from(1 + frame % 3);
+        assert_eq!(keyframes(steps, f64::from(frame) / 10.0), expected, "frame {frame}");
+    }
     assert_eq!(keyframes("[[0, 1], [1, 2], [3, 9]], interpolation = \"step\"", 2.9), 2.0);
     assert_eq!(keyframes("[[0, 1], [1, 3]], interpolation = \"smooth\"", 0.5), 2.0);
     assert_eq!(keyframes("[[0, \"= 2 * t\"]]", 4.0), 8.0);
