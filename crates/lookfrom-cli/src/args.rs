@@ -295,6 +295,10 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) html: Option<PathBuf>,
 
+    /// Layer of both pictures (.exr), by its name, in place of the finished picture; nothing is known of its noise
+    #[arg(long, value_name = "NAME")]
+    pub(crate) layer: Option<String>,
+
     /// Samples per pixel of picture and reference [default: as recorded in the files]
     #[arg(long, value_name = "N,M", value_parser = values::sample_counts)]
     pub(crate) samples: Option<[u64; 2]>,

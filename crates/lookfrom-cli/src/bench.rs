@@ -92,7 +92,7 @@ fn measure(path: &Path, arguments: &BenchArguments) -> Result<Measured, Failure>
     let reference = match &arguments.reference {
         Some(file) => {
             let files = inputs.record(&Disk, "the comparison");
-            read(file, None, &mut LoadContext::within(&arguments.common.memory.budget(), &files))?
+            read(file, None, None, &mut LoadContext::within(&arguments.common.memory.budget(), &files))?
         }
         None => {
             let mut other = session.settings().clone();

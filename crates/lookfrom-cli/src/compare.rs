@@ -5,9 +5,9 @@ use std::path::Path;
 use lookfrom::core::color;
 use lookfrom::film::Picture;
 use lookfrom::post::develop::srgb8;
-use lookfrom_scene::image;
 use lookfrom_scene::image::compare::{Comparison, Sampled, channels_of_both, compare};
 use lookfrom_scene::image::flip::{PIXELS_PER_DEGREE, flip};
+use lookfrom_scene::image::{self, Encoding, Reading};
 use lookfrom_scene::settings::Tonemap;
 use lookfrom_scene::spectrum::space::XYZ_FROM_RGB;
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
@@ -119,9 +119,12 @@ fn compare_pair(
 ) -> Result<(Verdict, Pictures), Failure> {
     let files = inputs.record(&Disk, "the comparison");
     let mut context = LoadContext::within(&arguments.memory.budget(), &files);
+    let layer = arguments.layer.as_deref();
     let [of_picture, of_reference] = arguments.samples.map_or([None; 2], |samples| samples.map(Some));
-    let (mut a, mut b) =
-        (read(picture, of_picture, &mut context)?, read(reference, of_reference, &mut context)?);
+    let (mut a, mut b) = (
+        read(picture, layer, of_picture, &mut context)?,
+        read(reference, layer, of_reference, &mut context)?,
+    );
     if let Some(sensor) = &arguments.sensor {
         let said = *color::Sensor::new(sensor).variance_from_rgb();
         for side in [&mut a, &mut b] {
@@ -165,17 +168,23 @@ fn compare_pair(
 /// Bytes of a pixel of [`Sampled`].
 const PIXEL: u64 = 12;
 
-/// Reads a picture of any format; only an EXR can have variances.
+/// Reads a picture of any format, or a layer of it; only the picture of an EXR can have variances.
 pub(crate) fn read(
     path: &Path,
+    layer: Option<&str>,
     samples: Option<u64>,
     context: &mut LoadContext<'_>,
 ) -> Result<Sampled, Failure> {
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let sampled = if is_exr {
-        Sampled::new(&image::read_exr(path, context)?, samples)
+        let mut file = image::read_exr_layer(path, layer, context)?;
+        if layer.is_some() {
+            // The variances are those of the picture.
+            file.channels.retain(|(name, _)| !name.starts_with("Variance."));
+        }
+        Sampled::new(&file, samples)
     } else {
-        let picture = image::read(path, context)?;
+        let picture = image::read_as(path, &Reading { layer, ..Reading::new(Encoding::Srgb) }, context)?;
         context.keep(picture.len() as u64 * PIXEL, "the compared picture", &Location::file(path))?;
         Ok(Sampled::of_colors(picture.width, picture.texels().collect()))
     };

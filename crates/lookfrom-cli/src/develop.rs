@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lookfrom::film::Picture;
 use lookfrom::session::{Developed, Development, FilmFile, FilmParts, Fireflies};
-use lookfrom_scene::image::{self, Channels};
+use lookfrom_scene::image::{self, Channels, Encoding, Reading};
 use lookfrom_scene::settings::{Background, Tonemap};
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
 
@@ -53,9 +53,8 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let mut film = None;
     let developed = if is_exr {
-        let bytes = context.read(path)?;
-        if FilmFile::is_film(&bytes) {
-            drop(bytes);
+        let is_film = FilmFile::is_film(&context.read(path)?);
+        if is_film && arguments.layer.is_none() {
             let mut parts = FilmParts::new(&files, &context.budget);
             parts.add(path, |_| ()).map_err(exit::in_scene(path))?;
             let development = of_film(&parts, path, arguments)?;
@@ -71,10 +70,11 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
                 parts.develop(&development)?
             }
         } else {
-            of_picture(picture_of_exr(image::read_exr(path, &mut context)?, path)?, path, arguments)?
+            of_exr(path, arguments, &mut context)?
         }
     } else {
-        let image = image::read(path, &mut context)?;
+        let reading = Reading { layer: arguments.layer.as_deref(), ..Reading::new(Encoding::Srgb) };
+        let image = image::read_as(path, &reading, &mut context)?;
         context.keep(image.len() as u64 * DEVELOPED, "the developed picture", &Location::file(path))?;
         let alpha =
             if image.has_alpha() { (0..image.len()).map(|k| image.alpha(k)).collect() } else { Vec::new() };
@@ -82,6 +82,7 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
             Picture { width: image.width, height: image.height, pixels: image.texels().collect(), alpha };
         of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
     };
+    exit::say_warnings(&context.warnings);
     target.format().check_background(developed.development.background).map_err(exit::in_scene(path))?;
     target.write_by(&inputs, &|mut out| developed.write(film.as_ref(), target.format(), &mut out))
 }
@@ -153,19 +154,21 @@ fn change(
     Ok(())
 }
 
-/// The picture of an OpenEXR file: R, G and B, or Y; alpha A; and its other channels.
-fn picture_of_exr(exr: Channels, path: &Path) -> Result<Plain, Failure> {
-    let Channels { width, height, mut channels, attributes } = exr;
+/// The picture of an OpenEXR file that is no film, or one of its layers.
+fn of_exr(
+    path: &Path,
+    arguments: &DevelopArguments,
+    context: &mut LoadContext<'_>,
+) -> Result<Developed, Failure> {
+    let exr = image::read_exr_layer(path, arguments.layer.as_deref(), context)?;
+    let Channels { width, height, mut channels, mut attributes } = exr;
+    // A layer of a film is no film: the sums are not read, and the checksum is that of its own file.
+    attributes.retain(|(name, _)| name != "crc32" && name != "film" && !name.starts_with("film."));
     let mut take = |name: &str| {
         let index = channels.iter().position(|(known, _)| known == name)?;
         Some(channels.remove(index).1)
     };
-    let (r, g, b, alpha) = (take("R"), take("G"), take("B"), take("A").unwrap_or_default());
-    let [r, g, b] = match (r, g, b, take("Y")) {
-        (Some(r), Some(g), Some(b), _) => [r, g, b],
-        (_, _, _, Some(y)) => [y.clone(), y.clone(), y],
-        _ => return Err(Failure::Usage(format!("{} has no channels R, G and B, or Y", path.display()))),
-    };
+    let [r, g, b, alpha] = ["R", "G", "B", "A"].map(|name| take(name).unwrap_or_default());
     let pixels = r.into_iter().zip(g).zip(b).map(|((r, g), b)| [r, g, b]).collect();
-    Ok((Picture { width, height, pixels, alpha }, channels, attributes))
+    of_picture((Picture { width, height, pixels, alpha }, channels, attributes), path, arguments)
 }

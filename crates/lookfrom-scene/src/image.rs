@@ -23,7 +23,7 @@ pub use self::encoding::Encoding;
 pub use self::metadata::Metadata;
 pub use self::openexr::{
     Channels, ExrChannel, ExrContents, ExrFill, ExrHeader, ExrRowStream, ExrRows, encode_exr, exr_contents,
-    read_exr, write_exr,
+    read_exr, read_exr_layer, write_exr,
 };
 pub use self::read::{By, Reading, decode, read, read_as, read_data, read_encoded, read_opacity};
 pub use self::srgb::{linear_from_srgb, srgb_from_linear};

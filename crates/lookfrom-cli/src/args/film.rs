@@ -141,6 +141,10 @@ pub(crate) struct DevelopArguments {
     #[command(flatten)]
     pub(crate) encoding: EncodingArguments,
 
+    /// Layer of an .exr, by its name, in place of the finished picture: a light path, an AOV, a part of another program's file
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["denoise", "fireflies"])]
+    pub(crate) layer: Option<String>,
+
     /// Exposure in stops, for pictures that screens show [default: the film's, or 0]
     #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
     pub(crate) exposure: Option<f32>,

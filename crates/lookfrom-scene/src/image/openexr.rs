@@ -22,12 +22,14 @@ use ::exr::meta::attribute::{AttributeValue, ChannelDescription, Chromaticities}
 use ::exr::meta::header::Header;
 use ::exr::prelude::ReadLayers;
 
+use self::colors::Colors;
 use self::values::{ShownValues, is_shown};
 use self::windows::{Window, Windows};
-use super::read::check_size;
+use super::read::{Reading, check_size, recolor};
 use crate::budget::Reservation;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
+use crate::image::Encoding;
 
 pub(super) use colors::decode_rgb;
 pub use rows::{ExrRowStream, ExrRows};
@@ -80,15 +82,33 @@ pub struct ExrContents {
 pub fn read_exr(path: &Path, context: &mut LoadContext<'_>) -> Result<Channels> {
     let bytes = context.read(path)?;
     let at = Location::file(path);
-    let Decoded { parts, size, attributes, mut memory, .. } = decode(&bytes, Windows::Display, &at, context)?;
-    memory.shrink(memory.bytes() / 2);
-    context.kept.push(memory);
-    let several = parts.len() > 1;
-    let channels = parts.into_iter().flat_map(|part| {
-        let prefix = part.name.filter(|_| several);
-        part.channels.into_iter().map(move |(name, values)| (full_name(prefix.as_deref(), &name), values))
-    });
-    Ok(Channels { width: size[0], height: size[1], channels: channels.collect(), attributes })
+    Ok(decode(&bytes, Windows::Display, &at, context)?.into_channels(context))
+}
+
+/// As [`read_exr`], with the colours of a layer as the channels R, G and B in linear Rec. 709, and its alpha as A: of the finished picture,
+/// which [`super::read()`] reads, where `layer` is `None`. The other channels are as they are in the file.
+///
+/// # Errors
+/// As [`super::read_as`].
+pub fn read_exr_layer(path: &Path, layer: Option<&str>, context: &mut LoadContext<'_>) -> Result<Channels> {
+    let bytes = context.read(path)?;
+    let at = Location::file(path);
+    let mut decoded = decode(&bytes, Windows::Display, &at, context)?;
+    let Colors { mut texels, alpha, to_rec709 } =
+        colors::take_colors(&mut decoded, &at, &Reading { layer, ..Reading::new(Encoding::Srgb) }, context)?;
+    if let Some(matrix) = to_rec709 {
+        recolor(&mut texels, &matrix);
+    }
+    let named = ["R", "G", "B"].iter().enumerate();
+    let mut channels: Vec<_> = named
+        .map(|(c, name)| ((*name).to_owned(), texels.iter().map(|texel| texel[c]).collect()))
+        .chain(alpha.map(|alpha| ("A".to_owned(), alpha)))
+        .collect();
+    let mut all = decoded.into_channels(context);
+    all.channels
+        .retain(|(name, values)| !values.is_empty() && !["R", "G", "B", "A"].contains(&name.as_str()));
+    channels.append(&mut all.channels);
+    Ok(Channels { channels, ..all })
 }
 
 /// The contents that [`read_exr`] would read, without the values.
@@ -132,6 +152,21 @@ struct Decoded {
     chromaticities: Option<Chromaticities>,
     /// Memory of twice the values: as the crate returns them, or with the colours of a picture.
     memory: Reservation,
+}
+
+impl Decoded {
+    /// The channels by their names in the file; their memory is the context's.
+    fn into_channels(self, context: &mut LoadContext<'_>) -> Channels {
+        let Self { parts, size: [width, height], attributes, mut memory, .. } = self;
+        memory.shrink(memory.bytes() / 2);
+        context.kept.push(memory);
+        let several = parts.len() > 1;
+        let channels = parts.into_iter().flat_map(|part| {
+            let prefix = part.name.filter(|_| several);
+            part.channels.into_iter().map(move |(name, values)| (full_name(prefix.as_deref(), &name), values))
+        });
+        Channels { width, height, channels: channels.collect(), attributes }
+    }
 }
 
 /// A part of a file: its name, and its channels with a value for each pixel of the picture, row 0 on top.

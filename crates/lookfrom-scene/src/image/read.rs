@@ -168,11 +168,16 @@ fn decode_as(
     let Floats { width, height, mut texels, mut alpha, to_rec709, memory } = floats;
     make_finite(&mut texels, &mut alpha, &at, context);
     if let Some(matrix) = to_rec709 {
-        for texel in &mut texels {
-            *texel = matrix.map(|row| row[0] * texel[0] + row[1] * texel[1] + row[2] * texel[2]);
-        }
+        recolor(&mut texels, &matrix);
     }
     Ok(kept(Image::from_linear_and_alpha(name, width, height, texels, alpha), memory, context))
+}
+
+/// Colours in other primaries, by the matrix to them.
+pub(super) fn recolor(texels: &mut [[f32; 3]], matrix: &[[f32; 3]; 3]) {
+    for texel in texels {
+        *texel = matrix.map(|row| row[0] * texel[0] + row[1] * texel[1] + row[2] * texel[2]);
+    }
 }
 
 /// The largest number of 16 bits: what is brighter overflows to +∞ in most files.

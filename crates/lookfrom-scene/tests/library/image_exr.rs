@@ -203,6 +203,41 @@ fn the_colors_of_other_primaries_become_ours() {
     assert_eq!(read(&bytes, &Reading::new(Curve::Linear)).unwrap().0.texel(0), [0.25, 0.5, 0.75]);
 }
 
+/// What `develop` and `compare` read: the same colours as a texture's, beside all other channels.
+#[test]
+fn a_layer_becomes_the_picture_and_the_other_channels_stay() {
+    let read = |bytes: &[u8], layer: Option<&str>| {
+        let mut files = Memory::default();
+        files.0.insert("a.exr".into(), bytes.to_vec());
+        let found = image::read_exr_layer(Path::new("a.exr"), layer, &mut LoadContext::new(&files));
+        found.map(|all| all.channels).map_err(|error| error.message)
+    };
+    let mut combined = rgb(&["View.Combined.R", "View.Combined.G", "View.Combined.B"], 5.0, 1);
+    combined.push(("View.Combined.A", vec![1.0]));
+    combined.push(("View.Depth.Z", vec![9.0]));
+    let layered = file([1, 1], None, vec![part(None, [0, 0], [1, 1], &combined)]);
+    let channels = [("R", 5.0), ("G", 10.0), ("B", 20.0), ("A", 1.0), ("View.Depth.Z", 9.0)]
+        .map(|(name, value)| (name.to_owned(), vec![value]));
+    assert_eq!(read(&layered, None).unwrap(), channels);
+    let depth = read(&layered, Some("Depth")).unwrap();
+    assert_eq!(depth[..3], ["R", "G", "B"].map(|name| (name.to_owned(), vec![9.0])));
+    assert_eq!(depth.len(), 3 + 4);
+    assert!(read(&layered, Some("Mist")).unwrap_err().contains("there is no layer"));
+
+    let rec2020 = Chromaticities {
+        red: Vec2(0.708, 0.292),
+        green: Vec2(0.17, 0.797),
+        blue: Vec2(0.131, 0.046),
+        white: Vec2(0.3127, 0.329),
+    };
+    let red = [("R", vec![0.6274]), ("G", vec![0.0691]), ("B", vec![0.0164])];
+    let wide = read(&file([1, 1], Some(rec2020), vec![part(None, [0, 0], [1, 1], &red)]), None).unwrap();
+    assert!(
+        wide.iter().zip([1.0, 0.0, 0.0]).all(|((_, found), expected)| (found[0] - expected).abs() < 2e-3),
+        "{wide:?}"
+    );
+}
+
 #[test]
 fn infinite_light_is_very_bright() {
     let values = [1.0, f32::INFINITY, f32::NAN, f32::NEG_INFINITY];

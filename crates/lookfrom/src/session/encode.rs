@@ -340,7 +340,7 @@ fn metadata(header: &[(String, String)], development: &Development) -> Metadata 
     let mut lines: Vec<String> = header
         .iter()
         .filter(|(name, _)| !["software", "exposure", "tonemap", CHANNELS_ATTRIBUTE].contains(&name.as_str()))
-        .filter(|(name, _)| !spectral::is_of_layout(name))
+        .filter(|(name, _)| !spectral::is_of_layout(name) && header::light_path_of(name).is_none())
         .map(|(name, text)| format!("{name}: {text}"))
         .collect();
     lines.push(format!("exposure: {}", development.exposure));

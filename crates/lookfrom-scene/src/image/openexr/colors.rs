@@ -58,12 +58,34 @@ pub(in crate::image) fn decode_rgb(
     context: &mut LoadContext<'_>,
 ) -> Result<Floats> {
     let windows = if reading.by == By::Standard { Windows::Display } else { Windows::Data };
-    let Decoded { mut parts, size: [width, height], chromaticities, memory, .. } =
-        decode(bytes, windows, at, context)?;
-    let layers = layers(&parts);
+    let mut decoded = decode(bytes, windows, at, context)?;
+    let Colors { texels, alpha, to_rec709 } = take_colors(&mut decoded, at, reading, context)?;
+    let is_opaque = alpha.iter().flatten().all(|&alpha| alpha == 1.0);
+    let alpha = alpha.filter(|_| !is_opaque).unwrap_or_default();
+    let Decoded { size: [width, height], memory, .. } = decoded;
+    Ok(Floats { width, height, texels, alpha, to_rec709, memory })
+}
+
+/// The colours of a layer.
+pub(super) struct Colors {
+    pub(super) texels: Vec<[f32; 3]>,
+    pub(super) alpha: Option<Vec<f32>>,
+    /// As that of [`Floats`].
+    pub(super) to_rec709: Option<[[f32; 3]; 3]>,
+}
+
+/// Takes the channels of the layer that `reading` selects, and leaves them without values.
+pub(super) fn take_colors(
+    decoded: &mut Decoded,
+    at: &Location,
+    reading: &Reading<'_>,
+    context: &mut LoadContext<'_>,
+) -> Result<Colors> {
+    let Decoded { parts, chromaticities, .. } = decoded;
+    let layers = layers(parts);
     let (part, kind) = match reading.layer {
         Some(name) => named(&layers, name, at)?,
-        None => first(&layers, &parts, at, context)?,
+        None => first(&layers, parts, at, context)?,
     };
     let chromaticities = chromaticities.map(|found| {
         let pair = |xy: ::exr::math::Vec2<f32>| [f64::from(xy.0), f64::from(xy.1)];
@@ -95,11 +117,11 @@ pub(in crate::image) fn decode_rgb(
             texels
         }
     };
-    Ok(Floats { width, height, texels, alpha, to_rec709, memory })
+    Ok(Colors { texels, alpha, to_rec709 })
 }
 
-/// The opacity of the layer that has colours; none where it is 1 everywhere.
-fn take_alpha(part: &mut Part, colors: ColorChannels) -> Vec<f32> {
+/// The opacity of the layer that has colours.
+fn take_alpha(part: &mut Part, colors: ColorChannels) -> Option<Vec<f32>> {
     let (ColorChannels::Rgb([first, ..])
     | ColorChannels::LuminanceChroma([first, ..])
     | ColorChannels::Xyz([first, ..])
@@ -112,8 +134,7 @@ fn take_alpha(part: &mut Part, colors: ColorChannels) -> Vec<f32> {
     };
     let found =
         part.channels.iter_mut().enumerate().find(|(index, (name, _))| *index != first && is_alpha(name));
-    let alpha = found.map(|(_, (_, values))| std::mem::take(values)).unwrap_or_default();
-    if alpha.iter().all(|&alpha| alpha == 1.0) { Vec::new() } else { alpha }
+    found.map(|(_, (_, values))| std::mem::take(values))
 }
 
 /// Colours of luminance Y and the chroma RY = (R − Y) / Y, BY = (B − Y) / Y.
