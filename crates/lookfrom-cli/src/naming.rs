@@ -343,6 +343,9 @@ mod tests {
         assert_eq!(named("x/f-#####.{name}.png").of_series(&frames, 1).name(), "x/f-00100.a.b.png");
         assert_eq!(named("#.png").of_series(&frames, 0).name(), "099.png");
         assert_eq!(named("#.png").of_series(&Series::One, 0).name(), "#.png");
+        assert_eq!(named("x/f-%04d.exr").of_series(&frames, 0).name(), "x/f-0099.exr");
+        assert_eq!(named("100%-%01d.exr").of_series(&frames, 1).name(), "100%-100.exr");
+        assert_eq!(named("100%dark.%0.png").of_series(&frames, 0).name(), "100%dark.%0-0099.png");
     }
 
     #[test]

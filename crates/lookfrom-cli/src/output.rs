@@ -51,9 +51,9 @@ impl Target {
         let (Self::File(path, format), Some(label)) = (self, series.label(index)) else {
             return self.clone();
         };
-        if let Some((name, marks)) = number_marks(path) {
+        if let Some((name, marks, least)) = number_marks(path) {
             let [number, last] = series.number(index);
-            let digits = marks.len().max(last.to_string().len());
+            let digits = least.max(last.to_string().len());
             let name = format!("{}{number:0digits$}{}", &name[..marks.start], &name[marks.end..]);
             return Self::File(path.with_file_name(name), *format);
         }
@@ -210,12 +210,18 @@ fn unwritten(error: &io::Error) -> Failure {
     Failure::Output(format!("cannot write -: {error}"))
 }
 
-/// The name of a file and where the number of a picture goes in it: the first `#` and those that follow.
-fn number_marks(path: &Path) -> Option<(&str, Range<usize>)> {
+/// The name of a file, where the number of a picture goes in it, and its digits at least: the first `#` and those that follow, or `%04d`, as
+/// video encoders name the same pictures.
+fn number_marks(path: &Path) -> Option<(&str, Range<usize>, usize)> {
     let name = path.file_name()?.to_str()?;
-    let start = name.find('#')?;
-    let end = name[start..].find(|c| c != '#').map_or(name.len(), |length| start + length);
-    Some((name, start..end))
+    if let Some(start) = name.find('#') {
+        let end = name[start..].find(|c| c != '#').map_or(name.len(), |length| start + length);
+        return Some((name, start..end, end - start));
+    }
+    name.match_indices("%0").find_map(|(start, _)| match name.as_bytes()[start + 2..] {
+        [digit @ b'1'..=b'9', b'd', ..] => Some((name, start..start + 4, usize::from(digit - b'0'))),
+        _ => None,
+    })
 }
 
 /// Refuses to overwrite a file that was read. The error names `option` as the way to give another name.

@@ -96,6 +96,19 @@ pub(crate) fn frames(typed: &str) -> Result<Range<u32>, String> {
     }
 }
 
+/// Frames per second: a number, or a fraction, as those of television are.
+pub(crate) fn frame_rate(typed: &str) -> Result<f64, String> {
+    let number = |typed: &str| typed.trim().parse::<f64>().ok();
+    let rate = match typed.split_once('/') {
+        Some((frames, seconds)) => {
+            number(frames).zip(number(seconds)).map(|(frames, seconds)| frames / seconds)
+        }
+        None => number(typed),
+    };
+    rate.filter(|rate| (1e-3..=1e6).contains(rate))
+        .ok_or_else(|| "expected a number from 0.001 to 1000000, or a fraction such as 24000/1001".to_owned())
+}
+
 /// `I/N`: part I of N, from 1.
 pub(crate) fn part(typed: &str) -> Result<[u32; 2], String> {
     let parts = typed.split_once('/').and_then(|(part, parts)| {
@@ -405,6 +418,10 @@ mod tests {
         );
         for wrong in ["", "-1s", "s", "NaN", "inf"] {
             assert!(moment(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!((frame_rate("25"), frame_rate("24000/1001")), (Ok(25.0), Ok(24000.0 / 1001.0)));
+        for wrong in ["", "0", "-24", "24/0", "24/", "inf", "NaN", "1/1/1"] {
+            assert!(frame_rate(wrong).is_err(), "{wrong}");
         }
         for name in ["environment", "transparent", "#ffffff", "#000000", "#2080c0"] {
             assert_eq!(background(name).unwrap().to_string(), name);

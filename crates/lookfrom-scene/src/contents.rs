@@ -21,6 +21,19 @@ pub struct Contents {
     /// The time of the last keyframe of a scene in our own format, in seconds: 0 if only expressions depend on the time;
     /// `None` if nothing does.
     pub duration: Option<f64>,
+    /// The moment that is shown; `None` if nothing depends on it.
+    pub moment: Option<Moment>,
+}
+
+/// A moment of an animation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The time in seconds.
+    pub time: f64,
+    /// Frames per second.
+    pub fps: f64,
+    /// Frames that the shutter is open, from the time on.
+    pub shutter: f64,
 }
 
 /// A camera of a file.

@@ -5,6 +5,7 @@ mod smoke;
 use std::path::Path;
 
 use crate::camera::Camera;
+use crate::contents::Moment;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::{CameraChoice, ImportOptions, LoadContext};
 use crate::format::Format;
@@ -40,8 +41,16 @@ pub const PIPE: &str = "-";
 pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
     let mut scene = whole(path, context)?;
     let frames = context.import.shutter.or(scene.camera.as_ref().map(|camera| camera.shutter));
-    if let Some(frames) = frames.filter(|frames| *frames > 0.0 && is_animated(&scene, context)) {
-        shutter::open(&mut scene, frames, path, context, |context| whole(path, context))?;
+    let shutter = frames.filter(|frames| *frames > 0.0).unwrap_or(0.0);
+    if is_animated(&scene, context) {
+        if shutter > 0.0 {
+            shutter::open(&mut scene, shutter, path, context, |context| whole(path, context))?;
+        }
+        let (time, fps) = (context.import.at.unwrap_or(0.0), context.variables.fps);
+        scene.contents.moment = Some(Moment { time, fps, shutter });
+    } else if shutter > 0.0 && !scene.contents.animations.is_empty() {
+        let message = "not blurred: without a time (`--at 0`) or the name of an animation it is at rest";
+        context.warn(&Location::file(path), message);
     }
     // What a reader only warns of, such as a picture without which it goes on, may have been this.
     if let Some(refusal) = context.budget.take_refusal() {

@@ -10,6 +10,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3};
 use crate::camera::{Camera, Look, View};
 use crate::error::{Location, Result};
 use crate::files::{ImportOptions, LoadContext};
+use crate::light::Light;
 use crate::motion::Motion;
 use crate::scene::{Instance, Object, ObjectId, Scene};
 use crate::shape::{Geometry, MeshPose, Shape};
@@ -33,20 +34,35 @@ pub(crate) fn open(
 ) -> Result<()> {
     let parts = ((frames * PARTS_OF_A_FRAME).ceil() as usize).clamp(2, MOST_PARTS).next_power_of_two();
     let start = context.import.at.unwrap_or(0.0);
-    let first = Pose::of(scene);
-    let mut later = Vec::new();
-    for part in 1..=parts {
-        let at = Some(start + frames / context.variables.fps * part as f64 / parts as f64);
-        let mut context = LoadContext {
+    let read_at = |at: f64| {
+        read(&mut LoadContext {
             files: context.files,
             limits: context.limits,
             budget: context.budget.clone(),
             kept: Vec::new(),
             warnings: Vec::new(),
-            import: ImportOptions { at, ..context.import.clone() },
+            import: ImportOptions { at: Some(at), ..context.import.clone() },
             variables: context.variables.clone(),
-        };
-        later.push(Pose::with_meshes(read(&mut context)?));
+        })
+    };
+    if context.import.at.is_none() {
+        // Without a time the models of a scene are at rest, from which they would jump to their animations.
+        *scene = read_at(start)?;
+    }
+    let first = Pose::of(scene);
+    let mut changing_light = None;
+    let later = (1..=parts).map(|part| {
+        let open = frames / context.variables.fps * part as f64 / parts as f64;
+        let now = read_at(start + open)?;
+        let changed =
+            |(before, now): &(&Light, &Light)| (&before.kind, before.power) != (&now.kind, now.power);
+        let light = scene.lights.iter().zip(&now.lights).find(changed).map(|(light, _)| light.at.clone());
+        changing_light = changing_light.take().or(light);
+        Ok(Pose::with_meshes(now))
+    });
+    let mut later: Vec<Pose> = later.collect::<Result<_>>()?;
+    if let Some(at) = changing_light {
+        context.warn(&at, "not blurred: a light that is no shape stays as it is when the shutter opens");
     }
     if later.iter().any(|pose| !pose.is_of(scene)) {
         let message = "not blurred: while the shutter is open the number of its shapes or vertices changes";

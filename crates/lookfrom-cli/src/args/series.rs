@@ -26,7 +26,7 @@ pub(crate) struct SeriesArguments {
     /// Render these frames of the animations of a scene or model, FROM..BEFORE, at --fps: NAME-0000.png, NAME-0001.png …
     ///
     /// Frame 0 is at the animation's begin, frame F at F / fps seconds. A model without a camera is framed once, for all poses.
-    #[arg(long, value_name = "FROM..BEFORE", value_parser = values::frames, conflicts_with_all = ["turntable", "views", "at", "turn"])]
+    #[arg(long, value_name = "FROM..BEFORE", value_parser = values::frames, allow_hyphen_values = true, conflicts_with_all = ["turntable", "views", "at", "turn"])]
     pub(crate) frames: Option<Range<u32>>,
 
     /// Put all pictures of the call onto one sheet of so many columns and rows; without rows as many as it takes

@@ -17,15 +17,15 @@ pub(crate) struct VariableArguments {
     pub(crate) define: Vec<(String, String)>,
 
     /// Time in animations of scenes and models: 1.5s, 500ms, 1.5
-    #[arg(long, value_name = "TIME", value_parser = values::moment)]
+    #[arg(long, value_name = "TIME", value_parser = values::moment, allow_hyphen_values = true)]
     pub(crate) at: Option<f64>,
 
     /// Frames that the shutter is open, from the time on: what moves is blurred; films have 0.5
-    #[arg(long, value_name = "FRAMES", value_parser = values::between(0.0f64, 1000.0))]
+    #[arg(long, value_name = "FRAMES", value_parser = values::between(0.0f64, 1000.0), allow_hyphen_values = true)]
     pub(crate) shutter: Option<f64>,
 
-    /// Frames per second: of --frames, of animated pictures, and of `frame` in a scene
-    #[arg(long, value_name = "N", default_value_t = FPS, value_parser = values::between(1e-3f64, 1e6))]
+    /// Frames per second, or a fraction such as 24000/1001: of --frames, of animated pictures, and of `frame` in a scene
+    #[arg(long, value_name = "N", default_value_t = FPS, value_parser = values::frame_rate, allow_hyphen_values = true)]
     pub(crate) fps: f64,
 }
 

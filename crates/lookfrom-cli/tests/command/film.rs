@@ -3,6 +3,8 @@
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use lookfrom_scene::{Disk, LoadContext, image};
+
 use super::stage::{SCENE, Stage};
 
 #[test]
@@ -169,6 +171,24 @@ fn films_are_developed_without_rendering() {
     stage.done("render scene.toml -o plain.exr");
     stage.done("develop a.exr -o noisy.exr --denoise off");
     assert!(stage.bytes("noisy.exr") == stage.bytes("plain.exr"));
+    // Layers beside the picture are nothing to a format without layers.
+    let mut command = stage.command("render scene.toml -o paths.exr --film --denoise on --light-path");
+    assert!(command.arg("direct=CD[LB]").output().unwrap().status.success());
+    stage.done("develop paths.exr -o paths.png --exposure 1 --tonemap agx");
+    assert!(stage.bytes("a.png") == stage.bytes("paths.png"));
+    // A layer can be developed for itself, and compared.
+    stage.done("develop paths.exr -o direct.exr --layer direct");
+    let read = |file: &str| image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
+    let (of_film, alone) = (read("paths.exr"), read("direct.exr"));
+    for channel in ["R", "G", "B"] {
+        assert_eq!(of_film.channel(&format!("direct.{channel}")), alone.channel(channel));
+    }
+    let same = &stage.json("compare paths.exr paths.exr --layer direct --json")[0];
+    assert_eq!((&same["rmse"], &same["noise"]), (&0.0.into(), &serde_json::Value::Null));
+    stage
+        .run("develop paths.exr -o x.png --layer indirect")
+        .fails(1, &["no layer \"indirect\"", "\"direct\""]);
+    stage.run("develop a.png -o x.png --layer direct").fails(1, &["only OpenEXR pictures have layers"]);
     // Any EXR can be developed, but not denoised.
     stage.done("develop plain.exr -o plain.png");
     stage.done("render scene.toml -o same.png");
@@ -222,10 +242,26 @@ fn films_that_differ_in_layers_say_so() {
 }
 
 #[test]
+fn films_of_other_moments_say_so() {
+    let stage = Stage::new("film-moments");
+    let text = "[camera]\nlookfrom = [0, 1, 5]\nlookat = [\"= t\", 0, 0]\n[image]\nwidth = 8\nheight = 8\n[[sphere]]\nradius = 1\n";
+    stage.write("moving.toml", text);
+    stage.done("render moving.toml -o a.exr --film --samples 0..1 --at 500ms --shutter 0.25");
+    let header = image::read_exr(&stage.path("a.exr"), &mut LoadContext::new(&Disk)).unwrap().attributes;
+    for (name, text) in [("time", "0.5"), ("fps", "24"), ("shutter", "0.25")] {
+        assert!(header.contains(&(name.to_owned(), text.to_owned())), "{name}: {header:?}");
+    }
+    stage.done("render moving.toml -o b.exr --film --samples 1..2 --at 0.5 --shutter 0.5");
+    stage.run("merge a.exr b.exr -o x.exr").fails(1, &["b.exr", "shutter is 0.5 there, 0.25 here"]);
+    stage.done("render moving.toml -o c.exr --film --samples 1..2 --at 0.5 --shutter 0.25 --fps 24000/1001");
+    stage.run("merge a.exr c.exr -o x.exr").fails(1, &["c.exr", "fps is 23.976", "24 here"]);
+}
+
+#[test]
 fn a_film_is_the_same_in_every_folder_and_finds_its_scene() {
     let stage = Stage::new("film-folders");
     let sky: Vec<[f32; 3]> = vec![[1.0, 0.5, 0.25]; 8];
-    let sky = lookfrom_scene::image::encode_hdr(4, 2, &sky).unwrap();
+    let sky = image::encode_hdr(4, 2, &sky).unwrap();
     std::fs::create_dir_all(stage.path("maps")).unwrap();
     std::fs::write(stage.path("maps/sky.hdr"), sky).unwrap();
     let call = "render scene.toml --film --samples 2 --environment maps/sky.hdr -o";

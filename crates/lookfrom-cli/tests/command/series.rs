@@ -176,6 +176,10 @@ fn frames_of_an_animation_are_framed_as_one() {
     assert!(stage.path("later/00003.png").exists() && stage.path("later/00004.png").exists());
     stage.run("render moving.gltf --frames 0..2 --at 1").fails(2, &["--at"]);
     stage.run("render moving.gltf --frames 2..2").fails(2, &["the one after the last"]);
+    // What begins with a minus sign is a value, too.
+    stage.run("render moving.gltf --frames -2..2").fails(2, &["the one after the last, counted from 0"]);
+    stage.run("render moving.gltf --at -1").fails(2, &["a time of at least 0"]);
+    stage.run("render moving.gltf --at 1 --shutter -0.5").fails(2, &["a number from 0 to 1000"]);
     stage.run("render moving.gltf --frames 0..2 -o - --format pfm").fails(2, &["names of their own"]);
 }
 

@@ -26,8 +26,7 @@ pub(super) fn contents(document: &Document, tree: &Tree, cameras: &Cameras<'_>) 
         cameras: cameras.entries(),
         animations: root.animations.iter().map(entry).collect(),
         variants: variants.iter().map(|variant| variant.name.clone()).collect(),
-        variables: Vec::new(),
-        duration: None,
+        ..Contents::default()
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec3, Vec3, Vec4};
 use lookfrom_scene::files::ImportOptions;
-use lookfrom_scene::{Disk, LoadContext, Memory, Result, Scene, gltf};
+use lookfrom_scene::{Disk, LoadContext, Memory, Result, Scene, gltf, load};
 use serde_json::{Value, json};
 
 /// Accessors of floats, and of bytes for joints.
@@ -138,6 +138,34 @@ fn joints_take_the_mesh_along_and_its_own_node_does_not() {
     sliding["animations"] = json!([root["animations"][1]]);
     near(numbers.places(&sliding, None, None)[1], [2.0, 5.0, 0.0]);
     near(numbers.places(&sliding, None, 0.0)[1], [2.0, 0.0, 0.0]);
+}
+
+/// A scene whose time begins by itself, with a model that would jump from its rest to its animation.
+#[test]
+fn while_the_shutter_is_open_models_of_a_scene_are_animated_from_the_beginning() {
+    let (numbers, mut root) = arm();
+    root["animations"] = json!([root["animations"][1]]);
+    root["asset"] = json!({"version": "2.0"});
+    root["buffers"] = json!([{"uri": "b", "byteLength": numbers.bytes.len()}]);
+    root["bufferViews"] = json!(numbers.views);
+    root["accessors"] = json!(numbers.accessors);
+    let scene = "[camera]\nlookfrom = [\"= t\", 1, 9]\nlookat = [0, 0, 0]\n[[mesh]]\nfile = \"a.gltf\"\n";
+    let files = [("a.gltf", root.to_string().into_bytes()), ("b", numbers.bytes), ("a.toml", scene.into())];
+    let files = Memory(files.map(|(name, bytes)| (PathBuf::from(name), bytes)).into());
+    let read = |name: &str, at: Option<f64>| {
+        let mut context = LoadContext::new(&files);
+        (context.import.shutter, context.import.at) = (Some(1.0), at);
+        let scene = load::scene(Path::new(name), &mut context).expect("a scene");
+        (scene, context.warnings.iter().map(|warning| warning.message.clone()).collect::<Vec<_>>())
+    };
+    let (alone, at_begin) = (read("a.toml", None).0, read("a.toml", Some(0.0)).0);
+    assert!(alone.camera.is_some_and(|camera| camera.motion.is_some()));
+    assert!(alone.meshes[0].later.is_empty(), "before its first keyframe it stands still");
+    assert_eq!(alone.meshes[0].positions, at_begin.meshes[0].positions);
+    // A model alone is at rest without a time, which a shutter that is asked for does not change, but tells.
+    let (model, said) = read("a.gltf", None);
+    assert!(model.meshes[0].later.is_empty());
+    assert!(said.iter().any(|warning| warning.starts_with("not blurred: ")), "{said:?}");
 }
 
 #[test]

@@ -382,6 +382,22 @@ fn thousands_of_errors_are_no_burden() {
     }
 }
 
+#[test]
+fn a_light_that_is_not_blurred_is_told() {
+    let files = files(&[(
+        "a.toml",
+        "[camera]\nlookfrom = [0, 1, 5]\nlookat = [0, 0, 0]\nshutter = 0.5\n\n\
+         [[light]]\ntype = \"point\"\nposition = [\"= t\", 3, 0]\nintensity = 1\n\n\
+         [[light]]\ntype = \"sphere\"\ncenter = [\"= t\", 3, 0]\nradius = 1\nradiance = 1\n",
+    )]);
+    let mut context = LoadContext::new(&files);
+    let scene = load::scene(Path::new("a.toml"), &mut context).expect("a scene");
+    assert_eq!(scene.instances.iter().filter(|instance| instance.motion.is_some()).count(), 1);
+    let said: Vec<String> = context.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].starts_with("a.toml:6:1: not blurred: a light"), "{said:?}");
+}
+
 /// A camera and an instance with motions of their own, beside a sphere that moves by an expression.
 #[test]
 fn what_stands_still_by_expressions_keeps_its_own_motion() {

@@ -23,7 +23,8 @@ use grammar::{Ending, Labels, Symbol, is_transmittance, pattern};
 
 /// Names that channels of other contents have.
 const TAKEN: &[&str] = &[
-    "A", "Albedo", "B", "G", "N", "Ns", "P", "R", "Variance", "Z", "band", "depth", "film", "noisy", "u", "v",
+    "A", "Albedo", "B", "G", "N", "Ns", "P", "R", "Variance", "Z", "band", "depth", "film", "motion",
+    "noisy", "u", "v",
 ];
 
 /// Maximum number of layers.

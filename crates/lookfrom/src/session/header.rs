@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use lookfrom_scene::camera::{Projection, View};
+use lookfrom_scene::contents::Moment;
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Portals, Sensor};
 
@@ -53,6 +54,11 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             ALLOCATION,
             format!("{}, {} samples per pixel in the mean", render.allocation.word(), render.samples),
         ));
+    }
+    if let Some(Moment { time, fps, shutter }) = session.info.contents.moment {
+        texts.push(("time", time.to_string()));
+        texts.push(("fps", fps.to_string()));
+        texts.push(("shutter", shutter.to_string()));
     }
     match camera.view {
         View::Look { lookfrom, lookat, up } => {

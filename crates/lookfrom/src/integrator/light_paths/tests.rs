@@ -196,7 +196,7 @@ fn names_of_layers_are_words_of_their_own() {
         LightPaths::new(&layers, LIGHTS.into_iter()).map(|paths| paths.count())
     };
     assert_eq!(named(&["direct", "in-direct_2"]).unwrap(), 2);
-    for bad in [&["a", "a"][..], &["R"], &["Albedo"], &[""], &["a b"], &["a.b"], &["film"]] {
+    for bad in [&["a", "a"][..], &["R"], &["Albedo"], &[""], &["a b"], &["a.b"], &["film"], &["motion"]] {
         assert!(named(bad).is_err(), "{bad:?}");
     }
 }
