@@ -49,7 +49,7 @@ pub fn scene(path: &Path, context: &mut LoadContext<'_>) -> Result<Scene> {
         let (time, fps) = (context.import.at.unwrap_or(0.0), context.variables.fps);
         scene.contents.moment = Some(Moment { time, fps, shutter });
     } else if shutter > 0.0 && !scene.contents.animations.is_empty() {
-        let message = "not blurred: without a time (`--at 0`) or the name of an animation it is at rest";
+        let message = "not blurred: without a time or the name of an animation it is at rest";
         context.warn(&Location::file(path), message);
     }
     // What a reader only warns of, such as a picture without which it goes on, may have been this.
