@@ -184,7 +184,8 @@ pub(crate) fn read(
         }
         Sampled::new(&file, samples)
     } else {
-        let picture = image::read_as(path, &Reading { layer, ..Reading::new(Encoding::Srgb) }, context)?;
+        let reading = Reading { layer, keeps_not_finite: true, ..Reading::new(Encoding::Srgb) };
+        let picture = image::read_as(path, &reading, context)?;
         context.keep(picture.len() as u64 * PIXEL, "the compared picture", &Location::file(path))?;
         Ok(Sampled::of_colors(picture.width, picture.texels().collect()))
     };

@@ -156,6 +156,11 @@ function theHit(ray) {
             ["n_g", `geometric normal; the ray comes from ${met.front ? "outside" : "inside"}`, point(met.ng)],
             ["n", "shading normal", point(met.n)],
             ["u v", "surface parameters", point(met.uv)],
+            ...(met.footprint ? [
+                /** @type {Row} */ (["∂p/∂x", "from one pixel to the next: textures are averaged over that", point(met.footprint.dpdx)]),
+                /** @type {Row} */ (["∂p/∂y", "", point(met.footprint.dpdy)]),
+                /** @type {Row} */ (["∂uv/∂x", "", point(met.footprint.duv_dx)]), /** @type {Row} */ (["∂uv/∂y", "", point(met.footprint.duv_dy)]),
+            ] : []),
             ...(k ? [
                 /** @type {Row} */ (["k_a", "ambient", lanes(k.ambient)]), /** @type {Row} */ (["k_d", "diffuse", lanes(k.diffuse)]),
                 /** @type {Row} */ (["k_s", `specular, with the exponent n = ${short(k.shininess)}`, lanes(k.specular)]),

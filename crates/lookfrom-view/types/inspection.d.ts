@@ -273,6 +273,18 @@ export interface Flight {
     transmittance: Factor;
 }
 
+/** The part of a surface that the camera's narrowest pixel would see if the camera looked at it, in place of ray differentials: changes from one pixel to the next, which each texture multiplies by a width of its own. A level of a MIP map has texels of twice the largest change of a coordinate in texels, or with elliptical averages of the shorter axis (Pharr, Jakob & Humphreys 2023, §§ 10.1.3, 10.4.3). */
+export interface Footprint {
+    /** ∂p/∂x, in the world. */
+    dpdx: Vector;
+    /** ∂p/∂y, in the world. */
+    dpdy: Vector;
+    /** ∂(u, v)/∂x. */
+    duv_dx: Pair;
+    /** ∂(u, v)/∂y. */
+    duv_dy: Pair;
+}
+
 /** A light that a path hit: `β L w` is added. */
 export interface Found {
     /** The contribution to the sample. */
@@ -463,6 +475,8 @@ export interface Met {
     cos_viewer: number;
     /** Error bound of the point, per component, by which the next ray's origin is moved off the surface. */
     error: Vector;
+    /** What a pixel sees of the surface, where textures of its material are averaged over that. */
+    footprint: Footprint | null;
     /** Whether the outside was hit. */
     front: boolean;
     /** The instance, if it is in one. */

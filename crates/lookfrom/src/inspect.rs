@@ -37,10 +37,10 @@ pub use microfacets::{MicrofacetReport, MultipleScatteringReport};
 pub use pixel::{PixelInspection, SampleSummary, inspect_pixel};
 pub use report::{
     AbsorptionReport, Addition, Amount, Blocker, BranchReport, CameraSteps, CoefficientsReport,
-    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, Inspection,
-    LensSurfaceReport, LensSystemReport, LiftReport, LightReport, MatrixStep, MetReport, NullReport,
-    PhaseLobeReport, PhaseReport, ProbeReport, ProbeSegmentReport, ProfileReport, RayReport, SensorReport,
-    ShadowReport, SphereMapping, TrackingReport, WavelengthsReport,
+    CollisionReport, Departure, DevelopmentReport, ExitReport, Factor, FlightReport, FootprintReport,
+    Inspection, LensSurfaceReport, LensSystemReport, LiftReport, LightReport, MatrixStep, MetReport,
+    NullReport, PhaseLobeReport, PhaseReport, ProbeReport, ProbeSegmentReport, ProfileReport, RayReport,
+    SensorReport, ShadowReport, SphereMapping, TrackingReport, WavelengthsReport,
 };
 pub use scatter::{
     BounceReport, FoundReport, FoundSampling, LightSampleReport, SampledDirectionReport, ScatteringReport,

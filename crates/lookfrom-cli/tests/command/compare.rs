@@ -79,6 +79,20 @@ fn pictures_without_noise() {
 }
 
 #[test]
+fn values_that_are_not_finite() {
+    let stage = Stage::new("compare-not-finite");
+    let pixels = [f32::NAN, 1.0, f32::INFINITY, 0.5, 0.5, 0.5];
+    let bytes = |values: &[f32]| {
+        [b"PF\n2 1\n-1\n".to_vec(), values.iter().flat_map(|x| x.to_le_bytes()).collect()].concat()
+    };
+    std::fs::write(stage.path("a.pfm"), bytes(&pixels)).unwrap();
+    std::fs::write(stage.path("b.pfm"), bytes(&[0.5; 6])).unwrap();
+    let run = stage.run("compare a.pfm b.pfm --json");
+    assert_eq!(run.code, Some(1));
+    assert!(String::from_utf8(run.stdout).unwrap().contains("\"not_finite\":2"));
+}
+
+#[test]
 fn what_cannot_be_compared() {
     let stage = Stage::new("compare-not");
     stage.done("render scene.toml -q -o a.exr");

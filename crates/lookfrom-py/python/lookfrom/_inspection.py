@@ -451,6 +451,25 @@ class Flight:
 
 
 @dataclass(frozen=True)
+class Footprint:
+    """The part of a surface that the camera's narrowest pixel would see if the camera looked at it, in place
+    of ray differentials: changes from one pixel to the next, which each texture multiplies by a width of its
+    own. A level of a MIP map has texels of twice the largest change of a coordinate in texels, or with
+    elliptical averages of the shorter axis (Pharr, Jakob & Humphreys 2023, §§ 10.1.3, 10.4.3).
+
+    dpdx: ∂p/∂x, in the world.
+    dpdy: ∂p/∂y, in the world.
+    duv_dx: ∂(u, v)/∂x.
+    duv_dy: ∂(u, v)/∂y.
+    """
+
+    dpdx: tuple[float, float, float]
+    dpdy: tuple[float, float, float]
+    duv_dx: tuple[float, float]
+    duv_dy: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Found:
     """A light that a path hit: `β L w` is added.
 
@@ -680,6 +699,7 @@ class Met:
     ng: Outward geometric normal.
     n: Shading normal on the side of the viewer.
     uv: Texture coordinates.
+    footprint: What a pixel sees of the surface, where textures of its material are averaged over that.
     wo: Toward the viewer, unit length.
     cos_viewer: The cosine of the angle between the shading normal and the direction to the viewer.
     front: Whether the outside was hit.
@@ -699,6 +719,7 @@ class Met:
     ng: tuple[float, float, float]
     n: tuple[float, float, float]
     uv: tuple[float, float]
+    footprint: Footprint | None
     wo: tuple[float, float, float]
     cos_viewer: float
     front: bool

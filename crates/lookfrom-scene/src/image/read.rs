@@ -78,6 +78,8 @@ pub struct Reading<'a> {
     pub layer: Option<&'a str>,
     /// The program whose rules apply.
     pub by: By,
+    /// Whether values that are not finite stay as they are.
+    pub keeps_not_finite: bool,
 }
 
 /// The program whose rules apply where programs differ.
@@ -96,7 +98,7 @@ pub enum By {
 impl<'a> Reading<'a> {
     /// The usual reading in this encoding.
     pub fn new(encoding: Encoding<'a>) -> Self {
-        Self { encoding, layer: None, by: By::Standard }
+        Self { encoding, layer: None, by: By::Standard, keeps_not_finite: false }
     }
 
     /// Whether the values are no colours.
@@ -166,7 +168,9 @@ fn decode_as(
         }
     };
     let Floats { width, height, mut texels, mut alpha, to_rec709, memory } = floats;
-    make_finite(&mut texels, &mut alpha, &at, context);
+    if !reading.keeps_not_finite {
+        make_finite(&mut texels, &mut alpha, &at, context);
+    }
     if let Some(matrix) = to_rec709 {
         recolor(&mut texels, &matrix);
     }

@@ -17,7 +17,9 @@ pub use medium::{
     CollisionReport, FlightReport, NullReport, PhaseLobeReport, PhaseReport, ProfileReport, TrackingReport,
 };
 pub use probe::{ExitReport, ProbeReport, ProbeSegmentReport};
-pub use ray::{AbsorptionReport, CoefficientsReport, Departure, LiftReport, MetReport, RayReport};
+pub use ray::{
+    AbsorptionReport, CoefficientsReport, Departure, FootprintReport, LiftReport, MetReport, RayReport,
+};
 
 /// A factor of light, per lane: red, green and blue, or one for each of four wavelengths.
 pub type Factor = Vec<f32>;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::support::{Compiled, scene};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lookfrom::film::{Film, FilmTile};
 use lookfrom::inspect::{Inspection, RayKind, RayReport, SvgView, inspect, inspect_pixel, svg};
 use lookfrom::render::SampleId;
@@ -594,4 +594,56 @@ fn parallel_cameras_are_drawn_as_boxes() {
     };
     assert!(spread(edges("fov = 40\n")) > 0.3);
     assert!(spread(edges("projection = \"orthographic\"\nheight = 3\n")) < 0.02);
+}
+
+#[test]
+fn a_texture_that_is_averaged_tells_the_footprint() {
+    // From straight above, 2 units high: a pixel in the middle is 2 · 2 / 64 wide, and uv are an eighth of that.
+    let floor = |footprint: &str| {
+        scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [0, 2, 0]
+            lookat = [0, 0, 0]
+            up = [0, 0, 1]
+            fov = 90
+            [image]
+            width = 64
+            height = 64
+            filter = "box"
+            [textures.tiles]
+            type = "checker"
+            {footprint}
+            [materials.floor]
+            type = "diffuse"
+            reflectance = "tiles"
+            [[quad]]
+            corner = [-4, 0, -4]
+            edge_u = [0, 0, 8]
+            edge_v = [8, 0, 0]
+            material = "floor"
+            [[light]]
+            type = "environment"
+            color = 1
+            "#
+        ))
+    };
+    let met = |footprint| {
+        let compiled = Compiled::new(floor(footprint));
+        let inspection = inspect(&compiled.renderer(), SampleId { pixel: [32, 31], sample: 0 });
+        (inspection.rays[0].met.clone().expect("the floor"), inspection.to_string())
+    };
+    let (met_sharp, text) = met("");
+    assert!(met_sharp.footprint.is_none() && !text.contains("a pixel sees"));
+    let (met, text) = met("footprint = 2");
+    let found = met.footprint.expect("a footprint");
+    let width = 2.0 * 2.0 / 64.0;
+    let is_near = |a: f32, b: f32| (a - b).abs() < 0.01 * width;
+    let [dpdx, dpdy] = [found.dpdx, found.dpdy].map(Vec3::from);
+    assert!(is_near(dpdx.length(), width) && is_near(dpdy.length(), width), "{found:?}");
+    assert!(is_near(dpdx.y, 0.0) && is_near(dpdx.dot(dpdy) / width, 0.0), "{found:?}");
+    for (dp, [du, dv]) in [(dpdx, found.duv_dx), (dpdy, found.duv_dy)] {
+        assert!(is_near(8.0 * du, dp.z) && is_near(8.0 * dv, dp.x), "{found:?}");
+    }
+    assert!(text.contains("a pixel sees ∂p/∂x = "), "{text}");
 }

@@ -161,6 +161,8 @@ pub struct MetReport {
     pub n: [f32; 3],
     /// Texture coordinates.
     pub uv: [f32; 2],
+    /// What a pixel sees of the surface, where textures of its material are averaged over that.
+    pub footprint: Option<FootprintReport>,
     /// Toward the viewer, unit length.
     pub wo: [f32; 3],
     /// The cosine of the angle between the shading normal and the direction to the viewer.
@@ -173,6 +175,21 @@ pub struct MetReport {
     pub material: String,
     /// Its coefficients here, where the integrator evaluates them.
     pub coefficients: Option<CoefficientsReport>,
+}
+
+/// The part of a surface that the camera's narrowest pixel would see if the camera looked at it, in place of ray differentials: changes
+/// from one pixel to the next, which each texture multiplies by a width of its own. A level of a MIP map has texels of twice the
+/// largest change of a coordinate in texels, or with elliptical averages of the shorter axis (Pharr, Jakob & Humphreys 2023, §§ 10.1.3, 10.4.3).
+#[derive(Clone, Debug, Serialize)]
+pub struct FootprintReport {
+    /// ∂p/∂x, in the world.
+    pub dpdx: [f32; 3],
+    /// ∂p/∂y, in the world.
+    pub dpdy: [f32; 3],
+    /// ∂(u, v)/∂x.
+    pub duv_dx: [f32; 2],
+    /// ∂(u, v)/∂y.
+    pub duv_dy: [f32; 2],
 }
 
 /// Whitted's coefficients at a point.

@@ -5,7 +5,9 @@ use std::fmt::{self, Write};
 use super::candidates::work;
 use super::medium::write_null_collisions;
 use super::{exact, full, full64, lanes, vector, vector32};
-use crate::inspect::{AbsorptionReport, Departure, LiftReport, MetReport, RayReport, ShadowReport};
+use crate::inspect::{
+    AbsorptionReport, Departure, FootprintReport, LiftReport, MetReport, RayReport, ShadowReport,
+};
 use crate::light::derivation::Derivation;
 
 pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Result {
@@ -17,6 +19,15 @@ pub(super) fn write_met(f: &mut String, met: &MetReport, pad: &str) -> fmt::Resu
     write_lift(f, met.lift.as_ref(), &format!("{pad}    "))?;
     writeln!(f, "{pad}    ng = {}   n = {}", vector(&met.ng), vector32(&met.n))?;
     writeln!(f, "{pad}    uv = {}   cos θ to the viewer = {}", vector32(&met.uv), full(met.cos_viewer))?;
+    if let Some(FootprintReport { dpdx, dpdy, duv_dx, duv_dy }) = &met.footprint {
+        let [of_p, of_uv] = [[dpdx, dpdy].map(|p| vector32(p)), [duv_dx, duv_dy].map(|uv| vector32(uv))];
+        writeln!(f, "{pad}    a pixel sees ∂p/∂x = {}   ∂p/∂y = {}", of_p[0], of_p[1])?;
+        writeln!(
+            f,
+            "{pad}      ∂(u, v)/∂x = {}   ∂(u, v)/∂y = {}: textures are averaged over that",
+            of_uv[0], of_uv[1]
+        )?;
+    }
     if let Some(alpha) = met.alpha {
         writeln!(f, "{pad}    alpha = {}: the surface is there with this probability", full(alpha))?;
     }

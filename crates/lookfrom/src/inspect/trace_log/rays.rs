@@ -7,7 +7,7 @@ use super::TraceLogBuilder;
 use crate::core::spectrum::Spectrum;
 use crate::inspect::candidate;
 use crate::inspect::report::{
-    Amount, CoefficientsReport, Departure, ExitReport, LiftReport, MetReport, ProbeReport,
+    Amount, CoefficientsReport, Departure, ExitReport, FootprintReport, LiftReport, MetReport, ProbeReport,
     ProbeSegmentReport, RayReport,
 };
 use crate::inspect::scatter::{self, BounceReport};
@@ -15,6 +15,7 @@ use crate::inspect::segments::RayKind;
 use crate::integrator::{Bounce, Path, PreviousVertex, SubsurfaceProbe};
 use crate::primitive::Primitives;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
+use crate::shading::footprint::SurfaceFootprint;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
 use crate::shading::texture::SpectralMode;
@@ -176,6 +177,12 @@ fn met_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteract
         ng: surface.ng.to_array(),
         n: surface.ns_facing().to_array(),
         uv: surface.uv.to_array(),
+        footprint: world.shading_point(surface).footprint.map(|SurfaceFootprint { uv, p }| FootprintReport {
+            dpdx: p[0].to_array(),
+            dpdy: p[1].to_array(),
+            duv_dx: uv[0].to_array(),
+            duv_dy: uv[1].to_array(),
+        }),
         wo: surface.wo.to_array(),
         cos_viewer: surface.ns_facing().dot(surface.wo),
         front: surface.front,
