@@ -2,7 +2,8 @@
 //!
 //! Nearly all files are of type C: vertical angles from straight down, horizontal ones around the upright axis, counter-clockwise
 //! as seen from above. Types B (floodlights) and A (headlights) have their angles around the axis that the lamp shines along; both
-//! hang so that it is straight down (IES LM-75). Only relative intensities are used: luminaires are dimmed and have other lamps.
+//! hang so that it is straight down (IES LM-75). Intensities are relative, since luminaires are dimmed and have other lamps; how bright the
+//! brightest one is, is told besides.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::path::Path;
@@ -17,7 +18,7 @@ use crate::model::text;
 const LONGEST: u64 = 1 << 24;
 const MOST_ANGLES: usize = 1 << 12;
 /// Texels along each side of the picture of a distribution.
-const SIDE: u32 = 256;
+const SIDE: u32 = 512;
 
 /// Intensities of a luminaire by direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub struct Photometry {
     horizontal: Vec<f64>,
     /// By horizontal, then by vertical angle; the greatest is 1.
     intensities: Vec<f64>,
+    /// The greatest intensity in candela, with the factors of the file.
+    candela: f64,
 }
 
 /// The type of a photometry: the meaning of its angles.
@@ -126,9 +129,10 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
         let count = numbers.count("the number of tilt angles")?;
         (0..2 * count).try_for_each(|_| numbers.next("a tilt angle or factor").map(drop))?;
     }
-    for what in ["the number of lamps", "the lumens of a lamp", "the factor of the intensities"] {
+    for what in ["the number of lamps", "the lumens of a lamp"] {
         numbers.next(what)?;
     }
+    let multiplier = numbers.next("the factor of the intensities")?;
     let vertical_count = numbers.count("the number of vertical angles")?;
     let horizontal_count = numbers.count("the number of horizontal angles")?;
     let kind = numbers.next("the type of photometry")?;
@@ -144,16 +148,17 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
     for what in ["the unit of lengths", "the width", "the length", "the height"] {
         numbers.next(what)?;
     }
-    for what in ["the ballast factor", "a number for the future", "the watts"] {
-        numbers.next(what)?;
-    }
+    let ballast = numbers.next("the ballast factor")?;
+    // In old files another factor of the ballast, 1 in others.
+    let with_this_lamp = numbers.next("a number for the future")?;
+    numbers.next("the watts")?;
     let vertical = numbers.angles(vertical_count, "vertical angle")?;
     let mut horizontal = numbers.angles(horizontal_count, "horizontal angle")?;
     let count = vertical_count * horizontal_count;
     let mut intensities = (0..count).map(|_| numbers.next("an intensity")).collect::<Result<Vec<f64>>>()?;
     // Some programs leave out the last plane, which is the first.
     let last = horizontal[horizontal_count - 1];
-    if kind == Kind::C && horizontal[0] == 0.0 && last > 270.0 && last < 360.0 {
+    if kind == Kind::C && horizontal[0] == 0.0 && last > 180.0 && last < 360.0 {
         horizontal.push(360.0);
         intensities.extend_from_within(..vertical_count);
     }
@@ -163,12 +168,18 @@ fn parse(text: &str, file: &Location) -> Result<Photometry> {
     let greatest = intensities.iter().fold(0.0, |most: f64, intensity| most.max(*intensity));
     if greatest > 0.0 {
         intensities.iter_mut().for_each(|intensity| *intensity /= greatest);
-        return Ok(Photometry { kind, vertical, horizontal, intensities });
+        let candela = greatest * multiplier * ballast * with_this_lamp;
+        return Ok(Photometry { kind, vertical, horizontal, intensities, candela });
     }
     Err(Error::invalid(file, "the luminaire emits no light: all intensities are 0"))
 }
 
 impl Photometry {
+    /// The greatest intensity in candela; 0 or less where the file's factors are no real ones.
+    pub fn candela(&self) -> f64 {
+        self.candela
+    }
+
     /// The relative intensity into a direction: degrees from straight down, and around. 0 beyond the file's angles.
     pub fn intensity(&self, vertical: f64, horizontal: f64) -> f64 {
         if self.kind == Kind::C {
@@ -279,6 +290,25 @@ mod tests {
         assert!(
             near(planes.intensity(0.0, 330.0), 0.625) && near(planes.intensity(0.0, 359.999_999_999), 0.5)
         );
+    }
+
+    #[test]
+    fn the_last_plane_may_be_any_beyond_half_a_turn() {
+        for (planes, last) in [("0 90 180 270", 270.0), ("0 120 190 240", 240.0)] {
+            let rows = "4 1 8 1 2 1 6 1";
+            let photometry =
+                of(&format!("TILT=NONE\n1 1 1 2 4 1 1 0 0 0 1 1 40\n0 180\n{planes}\n{rows}\n")).unwrap();
+            assert!(near(photometry.intensity(0.0, last), 0.75));
+            assert!(near(photometry.intensity(0.0, 0.5 * (last + 360.0)), 0.625), "{planes}");
+        }
+    }
+
+    #[test]
+    fn the_candela_have_all_factors() {
+        let candela =
+            |head: &str| of(&format!("TILT=NONE\n{head} 40\n0 90\n0\n200 100\n")).unwrap().candela();
+        assert!(near(candela("1 1000 1 2 1 1 1 0 0 0 1 1"), 200.0));
+        assert!(near(candela("2 -1 1.5 2 1 1 1 0 0 0 0.75 0.5"), 200.0 * 1.5 * 0.75 * 0.5));
     }
 
     #[test]

@@ -113,8 +113,10 @@ pub enum LightKind {
     Goniometric {
         /// `I_j` at a distance of 1 where the image is white.
         intensity: Color,
-        /// Intensity by direction, in the octahedral equal-area map of [`Sky::Octahedral`]; only luminance counts.
+        /// Intensity by direction, in the octahedral equal-area map of [`Sky::Octahedral`]; the mean of the channels counts.
         image: ImageId,
+        /// The interpolation between its texels; without levels of a MIP map.
+        filter: TexelFilter,
         /// The transform from the light's space to the world.
         world_from_light: DMat4,
     },

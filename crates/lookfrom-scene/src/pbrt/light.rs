@@ -85,7 +85,12 @@ impl Reader<'_, '_> {
                 let image = self.light_picture(p, true)?;
                 // The centre of the image is the light's y axis, but the z axis of an octahedral map.
                 let swapped = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
-                let kind = LightKind::Goniometric { intensity, image, world_from_light: matrix * swapped };
+                let kind = LightKind::Goniometric {
+                    intensity,
+                    image,
+                    filter: TexelFilter::Nearest,
+                    world_from_light: matrix * swapped,
+                };
                 (kind, power(p, "power", intensity, PI)?)
             }
             "infinite" => self.infinite(p, matrix)?,

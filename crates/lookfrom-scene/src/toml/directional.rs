@@ -1,15 +1,19 @@
 //! Point lights that depend on direction: spot, projection and goniometric lights.
 
+use std::f64::consts::PI;
+use std::path::Path;
+
 use glam::{DMat4, DVec3};
 
 use super::Reader;
-use super::light::{aim, falloff, position, power, turned};
+use super::light::{aim, amount, falloff, position, power, turned};
 use super::sky::up_from_pole;
 use super::table::Table;
 use super::transform::invertible_rows;
 use super::value::Value;
 use crate::camera::up_across;
 use crate::error::Result;
+use crate::files::LoadContext;
 use crate::ies;
 use crate::light::{Edge, LightKind, Power, Projected};
 use crate::scene::ImageId;
@@ -17,8 +21,8 @@ use crate::texture::TexelFilter;
 
 /// The words for the edges of spot lights.
 pub(super) const EDGES: &[(&str, Edge)] = &[("smooth", Edge::Smooth), ("linear", Edge::Linear)];
-/// The words for the interpolation of projected images.
-pub(super) const PROJECTED_FILTERS: &[(&str, TexelFilter)] =
+/// The words for the interpolation between texels of the pictures of lights.
+pub(super) const PICTURE_FILTERS: &[(&str, TexelFilter)] =
     &[("nearest", TexelFilter::Nearest), ("bilinear", TexelFilter::Bilinear)];
 /// The words for the quantities of projected images.
 pub(super) const QUANTITIES: &[(&str, Projected)] =
@@ -92,7 +96,7 @@ impl Reader<'_, '_> {
     fn projected(&mut self, table: &Table<'_>) -> Result<Picture> {
         let expected = "degrees between 0 and 180, exclusive";
         Ok(Picture {
-            filter: table.or("filter", TexelFilter::Nearest, |value| value.choice(PROJECTED_FILTERS)),
+            filter: table.or("filter", TexelFilter::Nearest, |value| value.choice(PICTURE_FILTERS)),
             quantity: table.or("quantity", Projected::default(), |value| value.choice(QUANTITIES)),
             cone: projected_cone(table)?,
             fov: table.or("fov", 45.0, |value| value.single_where(expected, |fov| fov > 0.0 && fov < 180.0)),
@@ -106,13 +110,25 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The octahedral map of a luminaire's photometric file, or of a picture.
-    fn intensities(&mut self, value: Value<'_>) -> Result<ImageId> {
-        match value.as_text().filter(|name| ies::is_ies(name)) {
-            Some(name) => self
-                .image_by(value, None, true, |path, context| Ok(ies::read(path, context)?.octahedral(name))),
-            None => self.octahedral_image(value),
-        }
+    /// The octahedral map of a luminaire's photometric file, or of a picture, and the interpolation that is right for it.
+    fn intensities(&mut self, value: Value<'_>) -> Result<(ImageId, TexelFilter)> {
+        let Some(name) = value.as_text().filter(|name| ies::is_ies(name)) else {
+            return Ok((self.octahedral_image(value)?, TexelFilter::Nearest));
+        };
+        let octahedral =
+            |path: &Path, context: &mut LoadContext<'_>| Ok(ies::read(path, context)?.octahedral(name));
+        Ok((self.image_by(value, None, true, octahedral)?, TexelFilter::Bilinear))
+    }
+
+    /// All light of a luminaire, in lumens, by its photometric file and the picture made of it.
+    fn lumens(&mut self, table: &Table<'_>, picture: ImageId) -> Option<f32> {
+        let value = table.find("image").filter(|value| value.as_text().is_some_and(ies::is_ies))?;
+        let path = self.resolve(value, "the name of a picture").ok()?;
+        let candela = ies::read(&path, self.context).ok()?.candela();
+        let picture = self.scene.images.get(picture.index())?;
+        let sum: f64 = picture.texels().map(|[intensity, ..]| f64::from(intensity)).sum();
+        let lumens = (candela * 4.0 * PI * sum / picture.len() as f64) as f32;
+        (lumens > 0.0 && lumens.is_finite()).then_some(lumens)
     }
 
     /// A goniometric light.
@@ -125,9 +141,21 @@ impl Reader<'_, '_> {
             }
             false => DMat4::from_translation(position(table)) * turned(table) * up_from_pole(),
         };
-        let image = table.need("image", "\"picture.png\"", ImageId(0), |value| self.intensities(value));
-        let (intensity, power) = self.intensity(table, "power");
-        (LightKind::Goniometric { intensity, image, world_from_light }, power)
+        let nothing = (ImageId(0), TexelFilter::Nearest);
+        let (image, filter) =
+            table.need("image", "\"picture.png\"", nothing, |value| self.intensities(value));
+        let filter = table.or("filter", filter, |value| value.choice(PICTURE_FILTERS));
+        let lumens = self.lumens(table, image);
+        let total = |value: Value<'_>| match (value.as_text(), lumens) {
+            (Some("file"), Some(lumens)) => Ok(lumens),
+            (Some("file"), None) => Err(value
+                .error("`image` tells no power")
+                .hint("name a photometric file (.ies) with factors above 0, or give a number")),
+            (Some(_), _) => Err(value.wrong("a number of at least 0, or \"file\"")),
+            _ => amount(value),
+        };
+        let (intensity, power) = self.intensity_by(table, "power", total);
+        (LightKind::Goniometric { intensity, image, filter, world_from_light }, power)
     }
 }
 

@@ -49,7 +49,7 @@ pub(super) const KEYS: Kinds = &[
             "matrix",
         ],
     ),
-    ("goniometric", &["position", "image", "intensity", "power", "rotate", "matrix"]),
+    ("goniometric", &["position", "image", "filter", "intensity", "power", "rotate", "matrix"]),
     (
         "rectangle",
         &[
@@ -172,11 +172,21 @@ impl Reader<'_, '_> {
 
     /// `intensity` and its power; `total` is the key of the total power.
     pub(super) fn intensity(&mut self, table: &Table<'_>, total: &str) -> (Color, Power) {
+        self.intensity_by(table, total, amount)
+    }
+
+    /// [`Reader::intensity`], with a total that is read by a function.
+    pub(super) fn intensity_by(
+        &mut self,
+        table: &Table<'_>,
+        total: &str,
+        amount: impl Fn(Value<'_>) -> Result<f32>,
+    ) -> (Color, Power) {
         let (color, scale) = match table.find("intensity") {
             None if table.has(total) || table.means(&[total]) => (Color::gray(1.0), 1.0),
             _ => table.need("intensity", "1", (Color::BLACK, 1.0), |value| self.light_color(value, false)),
         };
-        (color, power(table, total, scale))
+        (color, power_by(table, total, scale, amount))
     }
 }
 
@@ -185,27 +195,34 @@ pub(super) const POWER: &[&str] = &["total", "scale", "absolute"];
 
 /// The power: the total in the key `total`, or else that of the colour, times `scale`; or a table of all that there is.
 pub(super) fn power(table: &Table<'_>, total: &str, scale: f32) -> Power {
+    power_by(table, total, scale, amount)
+}
+
+/// [`power`], with a total that is read by a function.
+fn power_by(table: &Table<'_>, total: &str, scale: f32, amount: impl Fn(Value<'_>) -> Result<f32>) -> Power {
     if let Some(value) = table.find(total).filter(|value| value.is_table()) {
-        return value
-            .noting(value.table(format!("`{total}`")).map(|table| written_power(&table)), Power::AS_WRITTEN);
+        let power = value.table(format!("`{total}`")).map(|table| written_power(&table, amount));
+        return value.noting(power, Power::AS_WRITTEN);
     }
-    let total = table.or(total, None, |value| {
-        value.single_where("a number of at least 0", |total| total >= 0.0).map(Some)
-    });
+    let total = table.or(total, None, |value| amount(value).map(Some));
     // The total replaces the brightness of the colour, so `scale` has no effect.
     let scale = if total.is_some() { 1.0 } else { scale };
     Power { scale, total, absolute: false }
 }
 
 /// A total, a factor of it or of the colour, and whether the brightness of a spectrum counts.
-fn written_power(table: &Table<'_>) -> Power {
+fn written_power(table: &Table<'_>, total: impl Fn(Value<'_>) -> Result<f32>) -> Power {
     table.allow(&[POWER]);
-    let number = |value: Value<'_>| value.single_where("a number of at least 0", |number| number >= 0.0);
     Power {
-        scale: table.or("scale", 1.0, number),
-        total: table.maybe("total", number),
+        scale: table.or("scale", 1.0, amount),
+        total: table.maybe("total", total),
         absolute: table.or("absolute", false, Value::boolean),
     }
+}
+
+/// An amount of light, or a factor of it.
+pub(super) fn amount(value: Value<'_>) -> Result<f32> {
+    value.single_where("a number of at least 0", |number| number >= 0.0)
 }
 
 /// `rotate`: degrees about y, or a rotation as of shapes.

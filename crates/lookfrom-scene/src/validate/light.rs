@@ -51,7 +51,7 @@ fn check_kind(part: &Part<'_>, kind: &LightKind) -> Result<()> {
             part.number("fov", f64::from(*fov), "degrees between 0 and 180", *fov > 0.0 && *fov < 180.0)?;
             part.matrix("world_from_light", world_from_light)
         }
-        LightKind::Goniometric { intensity, image, world_from_light } => {
+        LightKind::Goniometric { intensity, image, world_from_light, .. } => {
             part.color("intensity", *intensity)?;
             part.image(*image)?;
             part.matrix("world_from_light", world_from_light)

@@ -1,6 +1,7 @@
 //! Projection and goniometric lights.
 
 use glam::{DVec3, Mat3, Vec3};
+use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Edge, Projected};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
@@ -82,6 +83,8 @@ pub struct Goniometric {
     pub light_from_render: Mat3,
     /// Index of the picture in the world: an octahedral square.
     pub image: usize,
+    /// The interpolation between its texels.
+    pub filter: TexelFilter,
     /// W/sr where the picture is 1.
     pub intensity: EmissionSpectrum,
 }
@@ -96,10 +99,40 @@ impl Goniometric {
         let (wi, distance) = toward(from, self.position)?;
         let w = (self.light_from_render * -wi).normalize_or_zero();
         let st = warp::octahedral_square(w.into());
-        let [r, g, b] =
-            texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], TexelFilter::Nearest);
+        let image = textures.image(self.image);
+        let [r, g, b] = match self.filter {
+            TexelFilter::Nearest => texture::look_up(image, st, [Wrap::Clamp; 2], TexelFilter::Nearest),
+            TexelFilter::Bilinear | TexelFilter::Mip { .. } => between_octahedral_texels(image, st),
+        };
         let brightness = (r + g + b) / 3.0;
         let li: Spectrum = self.intensity.even(textures, mode) * (brightness / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
+}
+
+/// The colour of an octahedral square, bilinearly interpolated between texel centres: at `(s, t)` in [0, 1]².
+fn between_octahedral_texels(image: &Image, st: [f32; 2]) -> [f32; 3] {
+    let size = image.width as i32;
+    let at = st.map(|place| place * size as f32 - 0.5);
+    let [x, y] = at.map(|place| place.floor() as i32);
+    let [fx, fy] = [at[0] - x as f32, at[1] - y as f32];
+    let mut color = [0.0; 3];
+    for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+        let weight = (if dx == 1 { fx } else { 1.0 - fx }) * (if dy == 1 { fy } else { 1.0 - fy });
+        let [column, row] = folded([x + dx, y + dy], size);
+        let texel = image.texel((row * size + column) as usize);
+        color = std::array::from_fn(|c| color[c] + weight * texel[c]);
+    }
+    color
+}
+
+/// The texel of an octahedral square that is at a place up to one texel beyond its edges: each half of an edge is folded onto the other.
+fn folded([mut x, mut y]: [i32; 2], size: i32) -> [i32; 2] {
+    if x < 0 || x >= size {
+        [x, y] = [x.clamp(0, size - 1), size - 1 - y];
+    }
+    if y < 0 || y >= size {
+        [x, y] = [size - 1 - x, y.clamp(0, size - 1)];
+    }
+    [x, y]
 }

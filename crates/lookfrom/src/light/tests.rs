@@ -298,7 +298,18 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
         projection(2, 130.0, Projected::Intensity, None),
         projection(2, 100.0, Projected::Irradiance, None),
         projection(0, 80.0, Projected::Irradiance, Some([35.0, 10.0])),
-        LightKind::Goniometric { intensity, image: ImageId(1), world_from_light },
+        LightKind::Goniometric {
+            intensity,
+            image: ImageId(1),
+            filter: TexelFilter::Nearest,
+            world_from_light,
+        },
+        LightKind::Goniometric {
+            intensity,
+            image: ImageId(1),
+            filter: TexelFilter::Bilinear,
+            world_from_light,
+        },
     ]
     .into_iter()
     .map(|kind| (kind, power))
@@ -424,14 +435,30 @@ fn projections_stand_upright() {
 fn goniometric_lights_are_as_bright_by_direction_as_their_picture() {
     let world_from_light = DMat4::from_translation(EYE + DVec3::new(1.0, 2.0, 3.0)) * turn();
     let image = picture(5, 5, 4);
-    let kind = LightKind::Goniometric { intensity: Color::gray(2.0), image: ImageId(0), world_from_light };
-    let world = world_of(vec![(kind, Power::AS_WRITTEN)], vec![image.clone()], vec![]);
+    let light = |filter| {
+        let intensity = Color::gray(2.0);
+        let kind = LightKind::Goniometric { intensity, image: ImageId(0), filter, world_from_light };
+        (kind, Power::AS_WRITTEN)
+    };
+    let lights = [TexelFilter::Nearest, TexelFilter::Bilinear].map(light);
+    let world = world_of(lights.to_vec(), vec![image.clone()], vec![]);
     for (index, texel) in image.texels().enumerate() {
         let place = [index % 5, index / 5].map(|i| (i as f32 + 0.4) / 5.0);
         let direction = turn().transform_vector3(warp::octahedral_direction(place).as_dvec3());
         let found = intensity(&world, 0, direction.as_vec3()) / (2.0 * PI64);
         let expected = f64::from(texel.iter().sum::<f32>() / 3.0);
         assert!((found - expected).abs() <= 1e-4 * expected, "{index}: {found} is not {expected}");
+    }
+    // Between texels it is smooth: along a great circle through the middle of the map, its edges and the point where its corners meet.
+    let blended = |angle: f32| {
+        let (sin, cos) = libm::sincosf(angle);
+        let direction = turn().transform_vector3(DVec3::new(0.3 * f64::from(sin), sin.into(), cos.into()));
+        intensity(&world, 1, direction.as_vec3()) / (2.0 * PI64)
+    };
+    let steps: Vec<f64> = (0..2000).map(|step| blended(2.0 * PI * step as f32 / 2000.0)).collect();
+    let greatest = steps.iter().copied().fold(0.0, f64::max);
+    for pair in steps.windows(2) {
+        assert!((pair[1] - pair[0]).abs() < 0.02 * greatest, "{pair:?} of {greatest}");
     }
 }
 

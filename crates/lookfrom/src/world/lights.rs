@@ -165,7 +165,7 @@ impl<'a> Lights<'a> {
                 let brightness = scale * mean(self.textures.image(image.index()));
                 ("projection light", Light::Projection(light), brightness)
             }
-            LightKind::Goniometric { intensity, image, world_from_light } => {
+            LightKind::Goniometric { intensity, image, filter, world_from_light } => {
                 let mean = mean(self.textures.image(image.index()));
                 let intensity = whitted(self.emission_spectrum(*intensity, power, 4.0 * PI * mean));
                 let brightness = self.brightness_of(&intensity) * mean;
@@ -173,6 +173,7 @@ impl<'a> Lights<'a> {
                     position: world_from_light.w_axis.truncate() - origin,
                     light_from_render: Mat3::from_mat4(world_from_light.inverse().as_mat4()),
                     image: image.index(),
+                    filter: *filter,
                     intensity,
                 };
                 ("goniometric light", Light::Goniometric(light), brightness)

@@ -11,7 +11,7 @@ use super::text::Fields;
 use crate::error::Result;
 use crate::light::{Edge, Falloff, Light, LightKind, MapRows, Power, Projected, Sky};
 use crate::texture::TexelFilter;
-use crate::toml::directional::{EDGES, PROJECTED_FILTERS, QUANTITIES};
+use crate::toml::directional::{EDGES, PICTURE_FILTERS, QUANTITIES};
 use crate::toml::light::FALLOFFS;
 use crate::toml::sky::{LAYOUTS, up_from_pole};
 use crate::toml::transform::about;
@@ -54,7 +54,7 @@ impl Writer<'_> {
                 fields.put_unless("intensity", *intensity, 1.0);
                 fields.put_unless("fov", *fov, 45.0);
                 if *filter != TexelFilter::Nearest {
-                    fields.put("filter", word_of(PROJECTED_FILTERS, filter));
+                    fields.put("filter", word_of(PICTURE_FILTERS, filter));
                 }
                 if *quantity != Projected::default() {
                     fields.put("quantity", word_of(QUANTITIES, quantity));
@@ -65,7 +65,7 @@ impl Writer<'_> {
                 }
                 put_power(&mut fields, "power", power);
             }
-            LightKind::Goniometric { intensity, image, world_from_light } => {
+            LightKind::Goniometric { intensity, image, filter, world_from_light } => {
                 let position = world_from_light.w_axis.truncate();
                 let placed = DMat4::from_translation(position) * DMat4::IDENTITY * up_from_pole();
                 match same_bits(world_from_light, &placed) {
@@ -74,6 +74,9 @@ impl Writer<'_> {
                 }
                 let picture = self.picture(*image, For::Light)?;
                 fields.put("image", picture.file);
+                if *filter != TexelFilter::Nearest {
+                    fields.put("filter", word_of(PICTURE_FILTERS, filter));
+                }
                 self.put_light(&mut fields, ["intensity", "power"], *intensity, power)?;
             }
             LightKind::Environment { sky, portal, illuminates } => {

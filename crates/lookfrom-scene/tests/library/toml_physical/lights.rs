@@ -4,6 +4,7 @@ use glam::DVec3;
 use lookfrom_scene::light::{LightKind, Sky};
 use lookfrom_scene::material::Color;
 use lookfrom_scene::spectrum::{self, Curve};
+use lookfrom_scene::texture::TexelFilter;
 
 use super::{read, read_files};
 
@@ -115,6 +116,25 @@ fn photometric_files_are_read_once() {
     assert_eq!(intensity, [3.0; 3]);
     // The brightest direction, straight down, is at the corners of the map.
     assert!(scene.images[0].texel(0)[0] > 0.99);
+}
+
+#[test]
+fn photometric_files_tell_their_power() {
+    let lamp = |keys: &str| {
+        let place = "[[light]]\ntype = \"goniometric\"\nimage = \"a.ies\"\nposition = [0, 2, 0]\n";
+        // 300 cd straight down, less in proportion to the angle until 0 at the horizon: by hand 2π (1 − 2/π) 300 lm.
+        let ies = "TILT=NONE\n1 -1 2 2 1 1 2 0 0 0 0.75 1 1\n0 90\n0\n200 0\n";
+        read_files(&[("a.toml", &format!("{place}{keys}\n")), ("a.ies", ies)]).lights.remove(0)
+    };
+    let light = lamp("intensity = { kelvin = 3000 }\npower = \"file\"");
+    let lumens = light.power.total.expect("a power");
+    assert!((lumens / (600.0 * (std::f32::consts::PI - 2.0)) - 1.0).abs() < 1e-3, "{lumens}");
+    let LightKind::Goniometric { intensity: Color::Curve(_), filter: TexelFilter::Bilinear, .. } = light.kind
+    else {
+        panic!("a warm luminaire")
+    };
+    let dimmed = lamp("power = { total = \"file\", scale = 0.5 }").power;
+    assert_eq!((dimmed.total, dimmed.scale), (Some(lumens), 0.5));
 }
 
 #[test]

@@ -21,6 +21,16 @@ fn direction(light_from_render: &Mat3, position: DVec3, from: DVec3) -> Option<(
     Some(((*light_from_render * -wi).normalize_or_zero(), distance))
 }
 
+/// What a filter takes of a picture at the texel (i, j).
+fn of_texel(filter: TexelFilter) -> &'static str {
+    match filter {
+        TexelFilter::Nearest => "texel (i, j) of the picture",
+        TexelFilter::Bilinear | TexelFilter::Mip { .. } => {
+            "the picture, interpolated between the texel (i, j) and its neighbours,"
+        }
+    }
+}
+
 impl Projection {
     /// Formulas of the light that arrives at a point.
     pub(in crate::light) fn derivations(
@@ -62,10 +72,7 @@ impl Projection {
             numbers.push(("axis", vector(self.axis)));
             numbers.push(("cos to the axis", vec![f64::from(cos)]));
         }
-        let texel = match self.filter {
-            TexelFilter::Nearest => "texel (i, j) of the picture",
-            _ => "the picture, interpolated between the texel (i, j) and its neighbours,",
-        };
+        let texel = of_texel(self.filter);
         vec![
             Derivation::new(FROM_LIGHT, in_space(&self.light_from_render, w)),
             Derivation::new(
@@ -104,7 +111,10 @@ impl Goniometric {
         vec![
             Derivation::new(FROM_LIGHT, in_space(&self.light_from_render, w)),
             Derivation::new(
-                format!("L = I / d², I = I₀ · (red + green + blue) / 3 of texel (i, j); {OCTAHEDRAL}"),
+                format!(
+                    "L = I / d², I = I₀ · (red + green + blue) / 3 of {}; {OCTAHEDRAL}",
+                    of_texel(self.filter)
+                ),
                 numbers,
             ),
         ]
