@@ -20,7 +20,7 @@ use crate::parallel;
 use air::Air;
 use scattering::Scattering;
 #[cfg(feature = "mitsuba")]
-pub(crate) use sun::PlaceAndTime;
+pub(crate) use sun::{PlaceAndTime, is_date};
 
 /// Texels along a side of the picture of a sky: the sun covers six of them.
 const SIDE: u32 = 1024;

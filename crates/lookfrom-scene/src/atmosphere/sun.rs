@@ -57,6 +57,15 @@ impl PlaceAndTime {
     }
 }
 
+/// Whether a year, month and day are a date from 1900 to 2100, in which the sun's position is good.
+pub(crate) fn is_date(date @ [year, month, day]: [i32; 3]) -> bool {
+    let next = if month == 12 { [year + 1, 1, 1] } else { [year, month + 1, 1] };
+    (1900..=2100).contains(&year)
+        && (1..=12).contains(&month)
+        && day >= 1
+        && days_since_2000(date) < days_since_2000(next)
+}
+
 /// Days from noon of 1 January 2000 to midnight of a date of the Gregorian calendar (Fliegel & Van Flandern 1968).
 fn days_since_2000([year, month, day]: [i32; 3]) -> f64 {
     let [year, month, day] = [year, month, day].map(i64::from);
@@ -114,6 +123,21 @@ mod tests {
                 assert!((found[k] - expected[k]).abs() < 1e-4, "{place:?}: {found:?} {expected:?}");
             }
         }
+    }
+
+    #[test]
+    fn dates_have_the_days_of_their_months() {
+        assert!([[2024, 2, 29], [2026, 12, 31], [1900, 1, 1]].into_iter().all(is_date));
+        let others = [
+            [2026, 2, 29],
+            [2026, 4, 31],
+            [2026, 13, 1],
+            [2026, 0, 1],
+            [2026, 1, 0],
+            [1899, 1, 1],
+            [2026, 1, i32::MAX],
+        ];
+        assert!(!others.into_iter().any(is_date));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::light::power;
 use super::sky::{portal, up_from_pole};
 use super::table::Table;
 use super::value::Value;
-use crate::atmosphere::ClearSky;
+use crate::atmosphere::{ClearSky, PlaceAndTime, is_date};
 use crate::error::Result;
 use crate::light::{LightKind, Power, Sky};
 use crate::scene::ImageId;
@@ -29,7 +29,8 @@ impl Reader<'_, '_> {
         let portal = table.maybe("portal", portal);
         let illuminates = table.or("illuminates", true, Value::boolean);
         let power = power(table, "illuminance", 1.0);
-        table.sound(&["from", "elevation", "azimuth", "turbidity", "albedo", "scale", "sun"])?;
+        table.sound(&["from", "elevation", "azimuth", "place", "turbidity", "albedo", "scale", "sun"])?;
+        table.sound(&TIME)?;
         let picture = ClearSky { elevation, azimuth, turbidity, albedo, has_sun }.octahedral("sun_and_sky");
         let image = ImageId(self.scene.images.len() as u32);
         self.scene.images.push(picture);
@@ -38,8 +39,21 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Elevation and azimuth of the sun in radians: as angles in degrees, or by the direction from which it shines.
+/// The keys that tell the time at a `place`.
+const TIME: [&str; 3] = ["date", "hour", "timezone"];
+
+/// Elevation and azimuth of the sun in radians: as angles in degrees, by the direction from which it shines, or by place and time.
 fn sun(table: &Table<'_>) -> [f64; 2] {
+    if table.has("place") {
+        for key in ["from", "elevation", "azimuth"] {
+            table.one_of(&["place", key]);
+        }
+        return place_and_time(table).sun();
+    }
+    if let Some(value) = TIME.iter().find_map(|key| table.find(key)) {
+        let message = format!("`{}` has no effect without a `place`", value.key());
+        value.note(value.error(message).hint("add `place = [48.1, 11.6]`, its latitude and longitude"));
+    }
     if table.has("from") {
         table.one_of(&["from", "elevation"]);
         table.one_of(&["from", "azimuth"]);
@@ -53,4 +67,35 @@ fn sun(table: &Table<'_>) -> [f64; 2] {
     });
     let azimuth = table.or("azimuth", 135.0, Value::number);
     [elevation, azimuth].map(f64::to_radians)
+}
+
+/// A `place` and the time there.
+fn place_and_time(table: &Table<'_>) -> PlaceAndTime {
+    let [latitude, longitude] = table.or("place", [0.0; 2], |value| {
+        let expected =
+            "a latitude from -90 to 90 and a longitude from -180 to 180, in degrees north and east";
+        let place @ [latitude, longitude] = value.numbers(expected)?;
+        let is_on_earth = latitude.abs() <= 90.0 && longitude.abs() <= 180.0;
+        if is_on_earth { Ok(place) } else { Err(value.wrong(expected)) }
+    });
+    let date = table.need("date", "[2026, 6, 21]", [2000, 1, 1], |value| {
+        let expected = "a year from 1900 to 2100, a month and a day of it";
+        let numbers: [f64; 3] = value.numbers(expected)?;
+        let date = numbers.map(|number| number as i32);
+        let is_whole = date.map(f64::from) == numbers;
+        if is_whole && is_date(date) { Ok(date) } else { Err(value.wrong(expected)) }
+    });
+    let within = |value: Value<'_>, expected: &str, [least, most]: [f64; 2]| {
+        value.number_where(expected, |number| (least..=most).contains(&number))
+    };
+    PlaceAndTime {
+        latitude,
+        longitude,
+        timezone: table.or("timezone", 0.0, |value| {
+            within(value, "hours ahead of universal time, from -14 to 14", [-14.0, 14.0])
+        }),
+        date,
+        hours: table
+            .need("hour", "12", 12.0, |value| within(value, "an hour of the day, from 0 to 24", [0.0, 24.0])),
+    }
 }

@@ -138,6 +138,29 @@ fn photometric_files_tell_their_power() {
 }
 
 #[test]
+fn the_sun_is_where_it_is_at_a_place_and_time() {
+    // By NOAA's formulas, to the west of the zenith and in the east.
+    let cases = [
+        ("place = [48.137, 11.575]\ndate = [2026, 6, 21]\nhour = 9.5\ntimezone = 2", [39.444, 98.412]),
+        ("place = [-33.87, 151.2]\ndate = [2026, 12, 5]\nhour = 17.25\ntimezone = 11", [30.541, 262.171]),
+    ];
+    let brightest = |keys: &str| {
+        let scene = read(&format!("[[light]]\ntype = \"sun_and_sky\"\n{keys}\n"));
+        let (image, mut found) = (&scene.images[0], (0, 0.0));
+        for (index, texel) in image.texels().enumerate() {
+            found = if texel[1] > found.1 { (index, texel[1]) } else { found };
+        }
+        [found.0 as u32 % image.width, found.0 as u32 / image.width]
+    };
+    for (keys, [elevation, azimuth]) in cases {
+        let (found, expected) =
+            (brightest(keys), brightest(&format!("elevation = {elevation}\nazimuth = {azimuth}")));
+        // A texel is a fifth of a degree; the sun covers six, of which another may be the brightest.
+        assert!((0..2).all(|k| found[k].abs_diff(expected[k]) <= 1), "{keys}: {found:?}, not {expected:?}");
+    }
+}
+
+#[test]
 fn d50_is_the_cies() {
     let xy = |color: &str| {
         let scene =
