@@ -8,7 +8,6 @@
 mod air;
 mod bands;
 mod scattering;
-#[cfg(feature = "mitsuba")]
 mod sun;
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -19,7 +18,6 @@ use crate::image::Image;
 use crate::parallel;
 use air::Air;
 use scattering::Scattering;
-#[cfg(feature = "mitsuba")]
 pub(crate) use sun::{PlaceAndTime, is_date};
 
 /// Texels along a side of the picture of a sky: the sun covers six of them.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Part;
 use crate::error::Result;
 use crate::light::{LightKind, Sky, is_rectangle};
-use crate::scene::Scene;
+use crate::scene::{ImageId, Scene};
 
 pub(super) fn check(scene: &Scene) -> Result<()> {
     for (index, light) in scene.lights.iter().enumerate() {
@@ -53,7 +53,7 @@ fn check_kind(part: &Part<'_>, kind: &LightKind) -> Result<()> {
         }
         LightKind::Goniometric { intensity, image, world_from_light, .. } => {
             part.color("intensity", *intensity)?;
-            part.image(*image)?;
+            check_octahedral(part, *image)?;
             part.matrix("world_from_light", world_from_light)
         }
         LightKind::Environment { sky, portal, .. } => {
@@ -74,6 +74,13 @@ fn check_direction(part: &Part<'_>, direction: DVec3) -> Result<()> {
     part.number("length of direction", direction.length(), "a finite one, more than 0", has_direction)
 }
 
+fn check_octahedral(part: &Part<'_>, image: ImageId) -> Result<()> {
+    part.image(image)?;
+    let picture = &part.scene.images[image.index()];
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    part.as_many("rows of its octahedral map", height, "columns", width)
+}
+
 fn check_sky(part: &Part<'_>, sky: &Sky) -> Result<()> {
     match sky {
         Sky::Constant(color) => part.color("color", *color),
@@ -82,11 +89,9 @@ fn check_sky(part: &Part<'_>, sky: &Sky) -> Result<()> {
         }
         Sky::Image { image, scale, world_from_light, .. }
         | Sky::Octahedral { image, scale, world_from_light } => {
-            part.image(*image)?;
-            if let Sky::Octahedral { .. } = sky {
-                let picture = &part.scene.images[image.index()];
-                let (width, height) = (picture.width as usize, picture.height as usize);
-                part.as_many("rows of its octahedral map", height, "columns", width)?;
+            match sky {
+                Sky::Octahedral { .. } => check_octahedral(part, *image)?,
+                _ => part.image(*image)?,
             }
             part.finite("scale", &scale.map(f64::from))?;
             part.matrix("world_from_light", world_from_light)
