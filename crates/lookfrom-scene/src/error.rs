@@ -41,7 +41,8 @@ impl Location {
 
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name: &str = if self.file.is_empty() { "<scene>" } else { &self.file };
+        // One line, whatever the name.
+        let name = if self.file.is_empty() { "<scene>".into() } else { self.file.replace('\n', "\u{fffd}") };
         match (self.line, self.column) {
             (0, _) if !self.pointer.is_empty() => write!(f, "{name}#{}", self.pointer),
             (0, _) => write!(f, "{name}"),

@@ -90,10 +90,7 @@ fn cut(line: &str, column: usize) -> Excerpt {
     for &character in &characters {
         let text = match character {
             '\t' => TAB.to_owned(),
-            // Bidirectional control characters must not reorder the displayed text (Boucher & Anderson 2021).
-            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}'.to_string(),
-            c if c.is_control() => '\u{fffd}'.to_string(),
-            c => c.to_string(),
+            c => harmless(c).to_string(),
         };
         let width: usize = text.chars().filter_map(UnicodeWidthChar::width).sum();
         starts.push(starts.last().unwrap_or(&0) + width);
@@ -117,6 +114,21 @@ fn cut(line: &str, column: usize) -> Excerpt {
     let shown_end = shown(starts[to]) + right.chars().count();
     let start = shown(mark.start);
     Excerpt { text, mark: start..shown(mark.end).min(shown_end).max(start + 1) }
+}
+
+/// A character as it can be printed. Control characters are commands to a terminal, and bidirectional ones must not reorder
+/// the displayed text (Boucher & Anderson 2021).
+fn harmless(character: char) -> char {
+    match character {
+        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => char::REPLACEMENT_CHARACTER,
+        c if c.is_control() => char::REPLACEMENT_CHARACTER,
+        c => c,
+    }
+}
+
+/// A text as it can be printed: names in it may have any characters. Lines and tabs stay.
+pub fn printable(text: &str) -> String {
+    text.chars().map(|c| if matches!(c, '\n' | '\t') { c } else { harmless(c) }).collect()
 }
 
 /// The end of the token that begins at a character: a word, a string, or brackets with their content.
@@ -204,6 +216,12 @@ mod tests {
             rows("a\u{1b}[31m\u{202e} = x", 9),
             ["a\u{fffd}[31m\u{fffd} = x".to_owned(), " ".repeat(8) + "^"]
         );
+    }
+
+    #[test]
+    fn texts_give_a_terminal_no_commands() {
+        let text = printable("a\u{1b}]0;b\u{7}\u{9b}31m\r\u{202e}\n\té");
+        assert_eq!(text, "a\u{fffd}]0;b\u{fffd}\u{fffd}31m\u{fffd}\u{fffd}\n\té");
     }
 
     #[test]

@@ -88,6 +88,9 @@ pub struct Material {
 }
 
 impl Material {
+    /// An estimate of its bytes: as much again is in what it points at.
+    pub(crate) const BYTES: u64 = 2 * size_of::<Self>() as u64;
+
     /// A material without bump mapping.
     pub fn new(name: impl Into<String>, at: Location, kind: MaterialKind) -> Self {
         Self {

@@ -85,20 +85,70 @@ fn claims_of_scenes_are_refused() {
     refused(within(LITTLE, "a.toml", numbers.as_bytes()), "the parsed scene takes");
     let nodes = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{}{{}}]}}"#, "{},".repeat(1 << 20));
     refused(within(LITTLE, "a.gltf", nodes.as_bytes()), "the file takes");
+    let tables: String = (0..5000).map(|number| format!("[a{number}.{}]\n", ["b"; 20].join("."))).collect();
+    refused(within(LITTLE, "a.toml", tables.as_bytes()), "the parsed scene takes");
+    let materials = format!("WorldBegin {}", "Material \"diffuse\" ".repeat(1 << 18));
+    refused(within(LITTLE, "a.pbrt", materials.as_bytes()), "the material takes");
+    let text = format!("[[text]]\nfont = \"a.ttf\"\ntext = \"{}\"\n", "x".repeat(10_000));
+    refused(within(LITTLE, "a.toml", text.as_bytes()), "the text takes");
 }
 
 /// A PNG that claims a size, with a checksum that is right.
 fn png(width: u32, height: u32) -> Vec<u8> {
-    let mut chunk = b"IHDR".to_vec();
-    chunk.extend([width.to_be_bytes(), height.to_be_bytes()].concat());
-    chunk.extend([8, 6, 0, 0, 0]);
+    let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
+    let header = chunk(b"IHDR", &[&size[..], &[8, 6, 0, 0, 0]].concat());
+    [b"\x89PNG\r\n\x1a\n".to_vec(), header, chunk(b"IDAT", b"")].concat()
+}
+
+/// A chunk of a PNG with its length and checksum.
+fn chunk(name: &[u8], content: &[u8]) -> Vec<u8> {
     let mut crc = u32::MAX;
-    for &byte in &chunk {
+    for &byte in name.iter().chain(content) {
         crc =
             (0..8).fold(crc ^ u32::from(byte), |c, _| if c & 1 == 1 { c >> 1 ^ 0xEDB8_8320 } else { c >> 1 });
     }
-    let end = b"\0\0\0\0IDAT\x35\xaf\x06\x1e".to_vec();
-    [b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec(), chunk, (!crc).to_be_bytes().to_vec(), end].concat()
+    [&(content.len() as u32).to_be_bytes(), name, content, &(!crc).to_be_bytes()].concat()
+}
+
+/// Bytes as a zlib stream of blocks that say "the last byte, 258 times".
+fn much_from_little(bytes: usize) -> Vec<u8> {
+    // One block of fixed codes: a literal 0, then lengths of 258 at the distance 1, and the end. Codes are sent by their
+    // highest bit first, all else by its lowest.
+    let (mut stream, mut filled) = (vec![0x78, 0x9c, 0], 0_u32);
+    let mut push = |code: u32, length: u32| {
+        for place in (0..length).rev() {
+            if filled == 8 {
+                stream.push(0);
+                filled = 0;
+            }
+            *stream.last_mut().expect("a byte") |= ((code >> place & 1) as u8) << filled;
+            filled += 1;
+        }
+    };
+    push(0b1_10, 3);
+    push(0x30, 8);
+    for _ in 0..bytes / 258 {
+        push(0b1100_0101, 8);
+        push(0, 5);
+    }
+    push(0, 7);
+    let (mut a, mut b) = (1_u64, 0_u64);
+    for _ in 0..1 + bytes / 258 * 258 {
+        (a, b) = (a % 65521, (b + a) % 65521);
+    }
+    stream.extend(((b << 16 | a) as u32).to_be_bytes());
+    stream
+}
+
+#[test]
+fn profiles_of_pictures_do_not_unpack_without_end() {
+    let whole = image::encode_png(1, 1, &[7; 3]).expect("a picture");
+    // Behind the header.
+    let (head, rest) = whole.split_at(33);
+    let profile = chunk(b"iCCP", &[b"a\0\0", &*much_from_little(1 << 29)].concat());
+    let read = picture(LITTLE, "a.png", &[head, &profile, rest].concat());
+    assert!(read.is_ok(), "{:?}", read.err());
+    assert!(peak() < 400 << 20, "{} bytes", peak());
 }
 
 #[test]

@@ -36,6 +36,10 @@ fn is_left_out(bytes: &[u8]) -> bool {
 pub(super) const WHOLE: &str =
     "check that the file is whole; opening it in another program and saving it again may repair it";
 
+/// Bytes that the colour profile and the texts of a PNG may take, unpacked: a few thousand bytes of them may stand for
+/// gigabytes. A longer profile is ignored.
+const BESIDE_PIXELS: u64 = 16 << 20;
+
 /// Bytes of a texel for decoding 8 bits per channel, besides the decoder's result.
 const SHALLOW: u64 = 6;
 
@@ -341,9 +345,13 @@ fn decode_common(
     }
     let mut reader = reader.with_guessed_format().map_err(|error| fault(&ImageError::IoError(error)))?;
 
-    // Memory for the pixels, the result of conversion, and the decoders themselves.
+    // Memory for the pixels, the result of conversion, and the decoders themselves. Of a PNG the pixels do not count, but
+    // all that is packed beside them does.
     let mut crate_limits = ::image::Limits::default();
-    crate_limits.max_alloc = Some(limits.texels.saturating_mul(32).saturating_add(64 << 20));
+    crate_limits.max_alloc = Some(match reader.format() {
+        Some(ImageFormat::Png) => BESIDE_PIXELS,
+        _ => limits.texels.saturating_mul(32).saturating_add(64 << 20),
+    });
     reader.limits(crate_limits);
 
     let decoder = reader.into_decoder().map_err(|error| fault(&error))?;

@@ -59,6 +59,8 @@ const OTHERS: &[&str] = &[
 const DEEPEST: u32 = 64;
 /// Maximum number of nodes of all files together.
 const MOST_NODES: u32 = 1 << 22;
+/// Maximum number of attributes of a tag: the parser compares each with all before it.
+const MOST_ATTRIBUTES: usize = 1 << 10;
 /// Maximum number of included files.
 const MOST_FILES: u32 = 1 << 12;
 /// Maximum number of bytes of all files together.
@@ -151,6 +153,10 @@ impl<'c, 'f> Reading<'c, 'f> {
         if self.bytes > MOST_BYTES {
             let message = format!("the files of the scene are longer than {MOST_BYTES} bytes");
             return Err(Error::new(ErrorKind::Limit, &text.whole, message));
+        }
+        if let Some(start) = crowded_tag(&text.text) {
+            let message = format!("a tag with more than {MOST_ATTRIBUTES} attributes");
+            return Err(Error::new(ErrorKind::Limit, &text.at(start), message));
         }
         let options = ParsingOptions { nodes_limit: MOST_NODES - self.nodes, ..ParsingOptions::default() };
         // A node takes about a hundred bytes, and has at least four of the text.
@@ -507,4 +513,35 @@ fn snake_case(name: &str) -> String {
         snake.push(c.to_ascii_lowercase());
     }
     snake
+}
+
+/// The place of the first tag with more than [`MOST_ATTRIBUTES`], by its equals signs outside of quotes.
+fn crowded_tag(text: &str) -> Option<usize> {
+    let mut start = 0;
+    while let Some(found) = text[start..].find('<') {
+        start += found;
+        let rest = &text[start..];
+        let not_tags = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((_, end)) = not_tags.iter().find(|(begin, _)| rest.starts_with(begin)) {
+            start += rest.find(end)?;
+            continue;
+        }
+        let (mut quote, mut attributes, mut length) = (None, 0, 1);
+        for byte in rest[1..].bytes() {
+            length += 1;
+            match (quote, byte) {
+                (Some(open), _) if open == byte => quote = None,
+                (Some(_), _) => {}
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (None, b'=') => attributes += 1,
+                (None, b'>') => break,
+                _ => {}
+            }
+        }
+        if attributes > MOST_ATTRIBUTES {
+            return Some(start);
+        }
+        start += length;
+    }
+    None
 }

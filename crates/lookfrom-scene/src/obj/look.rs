@@ -17,8 +17,8 @@
 //! | `map_Bump`, `norm` | bump or normal map |
 //! | `Ke`, `map_Ke` | emission, from the front side |
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::maps::{Images, Maps};
@@ -39,6 +39,8 @@ use crate::warning::Warning;
 pub(super) struct MaterialLibraries {
     materials: Vec<(MtlMaterial, PathBuf)>,
     by_name: HashMap<Vec<u8>, usize>,
+    /// The libraries that have been read.
+    read: HashSet<PathBuf>,
     images: Images,
     names_libraries: bool,
     /// The library beside the file with the same stem, until it has been looked for.
@@ -65,7 +67,7 @@ pub(super) struct MeshTraits {
 }
 
 /// Limits on the number of libraries and on the length of each, against hostile files.
-const MOST_LIBRARIES: usize = 64;
+pub(super) const MOST_LIBRARIES: usize = 64;
 const LIBRARY_BYTES: u64 = 1 << 26;
 
 const BLACK: [f32; 3] = [0.0; 3];
@@ -81,6 +83,7 @@ impl MaterialLibraries {
         let mut looks = Self {
             materials: Vec::new(),
             by_name: HashMap::new(),
+            read: HashSet::new(),
             images: Images::default(),
             names_libraries: !libraries.is_empty(),
             same_stem: Some(packed::unpacked_name(path).with_extension("mtl")),
@@ -129,6 +132,9 @@ impl MaterialLibraries {
     }
 
     fn read_at(&mut self, library: &Path, context: &mut LoadContext<'_>) -> Result<()> {
+        if self.read.contains(library) {
+            return Ok(());
+        }
         let bytes = context.files.read(library, LIBRARY_BYTES.min(context.limits.file_bytes))?;
         for material in mtl::parse(&bytes, library, context) {
             // The first material with a name counts.
@@ -137,6 +143,7 @@ impl MaterialLibraries {
                 self.materials.push((material, library.to_owned()));
             }
         }
+        self.read.insert(library.to_owned());
         Ok(())
     }
 

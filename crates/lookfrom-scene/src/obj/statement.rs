@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::color::Colors;
+use super::look::MOST_LIBRARIES;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::files::LoadContext;
 use crate::model::number::{parse_f32, parse_f64};
@@ -180,8 +181,10 @@ impl Parser<'_> {
             b"mtllib" => {
                 let name = self.scanner.rest_of_line();
                 let at = self.scanner.at(self.file);
-                if !self.statements.libraries.iter().any(|(_, other)| other == name) {
-                    self.statements.libraries.push((at, name.to_vec()));
+                let libraries = &mut self.statements.libraries;
+                // One more than are read, to tell that there are more.
+                if libraries.len() <= MOST_LIBRARIES && !libraries.iter().any(|(_, other)| other == name) {
+                    libraries.push((at, name.to_vec()));
                 }
             }
             b"l" => self.polyline()?,

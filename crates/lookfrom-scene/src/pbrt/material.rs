@@ -37,6 +37,7 @@ impl Reader<'_, '_> {
     /// An unnamed material.
     pub(super) fn material(&mut self, kind: &str, parameters: &Parameters) -> Result<MaterialId> {
         let material = self.look(kind, kind, parameters)?;
+        self.context.keep(Material::BYTES, "the material", &material.at)?;
         self.scene.materials.push(material);
         Ok(MaterialId(self.scene.materials.len() as u32 - 1))
     }

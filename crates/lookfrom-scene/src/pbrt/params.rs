@@ -5,6 +5,7 @@
 
 use std::borrow::Cow;
 use std::cell::{Cell, RefCell};
+use std::collections::HashSet;
 use std::rc::Rc;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -494,6 +495,7 @@ impl Parameters {
 
     /// Warns of parameters that no directive reads.
     pub(super) fn finish(&self, context: &mut LoadContext<'_>) {
+        let given: HashSet<&str> = self.own.iter().map(|parameter| &*parameter.name).collect();
         for parameter in self.own.iter().filter(|parameter| !parameter.used.get()) {
             let asked = self.asked.borrow();
             let mut names: Vec<&str> = asked.clone();
@@ -503,8 +505,7 @@ impl Parameters {
                 // Another parameter has the same name.
                 "it is overridden by another one".into()
             } else {
-                let given = |name: &&str| self.own.iter().any(|own| own.name == *name);
-                match nearest(&parameter.name, names.into_iter().filter(|name| !given(name))) {
+                match nearest(&parameter.name, names.into_iter().filter(|name| !given.contains(name))) {
                     Some(meant) => format!("did you mean {meant:?}?").into(),
                     None => "it has no effect".into(),
                 }

@@ -1,5 +1,7 @@
 //! Parser for PLY headers: format, elements, properties and textures.
 
+use std::collections::HashSet;
+
 use super::body::COLORS;
 use crate::error::{Error, Location, Result};
 use crate::files::LoadContext;
@@ -120,6 +122,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
     }
     let mut format = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut names = HashSet::new();
     let mut textures = Vec::new();
     let mut own = None;
     let mut strays = Tally::default();
@@ -154,7 +157,7 @@ pub(super) fn parse(bytes: &[u8], file: &Location, context: &mut LoadContext<'_>
                     }
                 });
             }
-            b"element" => elements.push(element(&mut scanner, at, file, &elements)?),
+            b"element" => elements.push(element(&mut scanner, at, file, &mut names)?),
             b"property" => {
                 let property = property(&mut scanner, file)?;
                 let element = elements
@@ -212,9 +215,14 @@ impl Header {
     }
 }
 
-fn element(scanner: &mut Scanner<'_>, at: Location, file: &Location, others: &[Element]) -> Result<Element> {
+fn element(
+    scanner: &mut Scanner<'_>,
+    at: Location,
+    file: &Location,
+    names: &mut HashSet<String>,
+) -> Result<Element> {
     let name = String::from_utf8_lossy(scanner.word()).into_owned();
-    if others.iter().any(|other| other.name == name) {
+    if !names.insert(name.clone()) {
         let message = format!("element `{}` is declared twice", shown(name.as_bytes()));
         return Err(Error::syntax(&scanner.at(file), message));
     }

@@ -12,9 +12,19 @@ const MOST_ERRORS: usize = 1000;
 /// Bytes of a value as the parser returns it, with the tokens from which it is made.
 const VALUE: u64 = 200;
 
-/// An estimate of the memory that parsing takes, from the signs without which there is no value.
+/// Bytes of a table as the parser returns it.
+const TABLE: u64 = 1000;
+
+/// An estimate of the memory that parsing takes, from the signs without which there is no value, and from the points that
+/// are not those of numbers in a list: in keys and headers each may begin a table.
 pub(super) fn memory(text: &[u8]) -> u64 {
-    text.iter().filter(|byte| matches!(byte, b',' | b'=' | b'[' | b'\n')).count() as u64 * VALUE
+    let values = text.iter().filter(|byte| matches!(byte, b',' | b'=' | b'[' | b'\n')).count();
+    let count = |line: &[u8], sign: u8| line.iter().filter(|&&byte| byte == sign).count() as u64;
+    let points = |line: &[u8]| match line.trim_ascii_start().starts_with(b"#") {
+        true => 0,
+        false => count(line, b'.').saturating_sub(count(line, b',') + 1),
+    };
+    values as u64 * VALUE + text.split(|&byte| byte == b'\n').map(points).sum::<u64>() * TABLE
 }
 
 /// A file's text, its line starts, and the errors recorded so far.

@@ -23,6 +23,14 @@ pub(super) struct Allowance {
 }
 
 impl Allowance {
+    /// Fails where all is spent: an expression that copies a large value must not do so before it fails.
+    fn check(&self, at: usize) -> Result<(), Fault> {
+        if self.spent.get() <= MOST {
+            return Ok(());
+        }
+        Err(Fault::new(at, format!("the expressions of this scene have more than {MOST} values")))
+    }
+
     /// Accounts for a value.
     pub(super) fn spend(&self, value: Quantity, at: usize) -> Result<Quantity, Fault> {
         if value.depth() > DEEPEST_LIST {
@@ -32,12 +40,7 @@ impl Allowance {
             ));
         }
         self.spent.set(self.spent.get().saturating_add(value.size()));
-        if self.spent.get() > MOST {
-            return Err(Fault::new(
-                at,
-                format!("the expressions of this scene have more than {MOST} values"),
-            ));
-        }
+        self.check(at)?;
         Ok(value)
     }
 
@@ -65,6 +68,7 @@ pub(super) fn evaluate(
     allowance: &Allowance,
 ) -> Result<Quantity, Fault> {
     let at = expression.at;
+    allowance.check(at)?;
     let of = |part: &Expression| allowance.deeper(at, || evaluate(part, names, allowance));
     let all = |parts: &[Expression]| parts.iter().map(of).collect::<Result<Vec<_>, _>>();
     let value = match &expression.kind {

@@ -6,6 +6,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::shape::Geometry;
+use crate::tessellation::BYTES_OF_TRIANGLE;
 use crate::text::{Align, TextLayout, solid};
 
 /// The depth of a solid in its size.
@@ -35,6 +36,7 @@ impl Reader<'_, '_> {
         if count > most {
             return Err(too_many(table, count, most));
         }
+        let _memory = self.context.budget.reserve(count * BYTES_OF_TRIANGLE, "the text", &value.at())?;
         let bytes = self.context.read(&font)?;
         let Some(solid) = solid(&bytes, text, layout) else {
             let error =

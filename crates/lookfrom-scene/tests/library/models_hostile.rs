@@ -115,6 +115,25 @@ fn check(mesh: &Mesh) {
 }
 
 #[test]
+fn what_is_many_is_read_in_good_time() {
+    let libraries: String = (0..100_000).map(|number| format!("mtllib {number}.mtl\n")).collect();
+    let elements: String = (0..50_000).map(|number| format!("element e{number} 0\n")).collect();
+    let materials: String = (0..10_000).map(|number| format!("newmtl m{number}\n")).collect();
+    let start = std::time::Instant::now();
+    assert_eq!(read("a.obj", (libraries + OBJ).into_bytes()), Ok(()));
+    assert_eq!(
+        read("a.ply", PLY.replace("element extra", &(elements + "element extra")).into_bytes()),
+        Ok(())
+    );
+    // The same library again and again.
+    let again = OBJ.replace("mtllib a.mtl", &format!("mtllib {}", "a.mtl ".repeat(64)));
+    let files =
+        Memory([("a.obj".into(), again.into_bytes()), ("a.mtl".into(), materials.into_bytes())].into());
+    let read = model::read(Path::new("a.obj"), &mut LoadContext::new(&files), &mut Scene::default());
+    assert!(read.is_ok() && start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
+}
+
+#[test]
 fn the_seeds_are_good() {
     for (name, content) in seeds() {
         assert_eq!(read(name, content), Ok(()), "{name}");

@@ -1,9 +1,13 @@
 //! Bytes of any kind given for a scene of pbrt: an error or a scene, never a panic, and in good time.
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use lookfrom_scene::{ErrorKind, LoadContext, Memory, Result, Scene, load};
 use proptest::prelude::*;
+
+/// Far more than what is linear takes here, and far less than what is quadratic does.
+const GOOD_TIME: Duration = Duration::from_secs(5);
 
 fn read(bytes: &[u8]) -> Result<Scene> {
     let files = Memory([(PathBuf::from("a.pbrt"), bytes.to_vec()), ("b.pbrt".into(), bytes.to_vec())].into());
@@ -50,6 +54,14 @@ fn includes_of_includes_do_not_multiply_without_end() {
     files.0.insert("15.pbrt".into(), Vec::new());
     let error = load::scene(Path::new("0.pbrt"), &mut LoadContext::new(&files)).expect_err("too many");
     assert_eq!(error.kind, ErrorKind::Limit);
+}
+
+#[test]
+fn many_unknown_parameters_are_told_in_good_time() {
+    let parameters: String = (0..100_000).map(|number| format!("\"float a{number}\" 1 ")).collect();
+    let start = Instant::now();
+    assert!(read(format!("WorldBegin Shape \"sphere\" {parameters}").as_bytes()).is_ok());
+    assert!(start.elapsed() < GOOD_TIME, "{:?}", start.elapsed());
 }
 
 #[test]

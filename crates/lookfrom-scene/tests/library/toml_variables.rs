@@ -259,6 +259,14 @@ fn a_few_lines_cannot_ask_for_endless_work() {
     assert!(wrong(&format!("[variables]\nv0 = 1\n{doubled}"), &[]).contains("inside each other"));
     let text: String = (1..60).map(|n| format!("v{n} = \"= v{} + v{}\"\n", n - 1, n - 1)).collect();
     assert!(wrong(&format!("[variables]\nv0 = \"ab\"\n{text}"), &[]).contains("more than"));
+    // When all is spent, nothing more is copied.
+    let tree: String = (1..14).map(|n| format!("v{n} = [\"= v{}\", \"= v{}\"]\n", n - 1, n - 1)).collect();
+    let uses = "[[sphere]]\nradius = \"= v13[0]\"\n".repeat(5000);
+    let start = std::time::Instant::now();
+    assert!(
+        wrong(&format!("[variables]\nv0 = \"{}\"\n{tree}{uses}", "x".repeat(100)), &[]).contains("more than")
+    );
+    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
     let chain: String = (1..5000).rev().map(|n| format!("v{n} = \"= v{} + 1\"\n", n - 1)).collect();
     assert!(
         wrong(&format!("[variables]\nv0 = 1\n{chain}[[sphere]]\nradius = \"= v4999\""), &[])

@@ -110,6 +110,11 @@ fn hostile_files_end_in_errors() {
     // Columns of one long line are not counted from its beginning each time.
     let line = format!("{}<shape type=\"x\"/>", "<bsdf type=\"diffuse\"/>".repeat(100_000));
     assert_eq!(error(&line).at.column, 22 * 100_000 + 14);
+    // Each attribute is compared with all before it.
+    let attributes: String = (0..100_000).map(|k| format!(" a{k}=\"1\"")).collect();
+    let crowded =
+        error(&format!("<!-- {} --><![CDATA[\"]]><shape type=\"cube\"{attributes}/>", "=".repeat(2000)));
+    assert_eq!((crowded.kind, &*crowded.message), (ErrorKind::Limit, "a tag with more than 1024 attributes"));
     let circle = "<bsdf type=\"twosided\" id=\"a\"><ref id=\"b\"/></bsdf><bsdf type=\"twosided\" id=\"b\"><ref id=\"a\"/></bsdf>\
                   <shape type=\"cube\"><ref id=\"a\"/></shape>";
     assert!(error(circle).message.ends_with("is a part of itself"));
