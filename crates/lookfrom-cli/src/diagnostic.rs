@@ -9,7 +9,7 @@ use std::path::Path;
 
 use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Style};
-use lookfrom_scene::excerpt::{Excerpt, Excerpts};
+use lookfrom_scene::excerpt::{Excerpt, Excerpts, printable};
 use lookfrom_scene::load::PIPE;
 use lookfrom_scene::{Error, Files, Result, WarningKind};
 
@@ -21,10 +21,17 @@ const TO_HELP: &str = "\n\nFor more information, try '--help'.";
 /// The frame around a line of a file.
 const FRAME: Style = AnsiColor::Blue.on_default().bold();
 
+/// A part of a message as it is printed: names in it may have any characters, and any length.
+fn told(part: &str) -> String {
+    const LONGEST: usize = 1 << 13;
+    let end = part.char_indices().nth(LONGEST).map(|(end, _)| end);
+    printable(&part[..end.unwrap_or(part.len())]) + if end.is_some() { "…" } else { "" }
+}
+
 /// An error without a location.
 pub(crate) fn plain(message: &str) -> String {
     let error = *Styles::styled().get_error();
-    format!("{error}error:{error:#} {message}")
+    format!("{error}error:{error:#} {}", told(message))
 }
 
 /// A warning or note.
@@ -34,7 +41,7 @@ pub(crate) fn of_warning(kind: WarningKind, message: &str) -> String {
         false => ("note", AnsiColor::Green),
     };
     let style = color.on_default().bold();
-    format!("{style}{word}:{style:#} {message}")
+    format!("{style}{word}:{style:#} {}", told(message))
 }
 
 /// An error about the command line that only the scene reveals.
@@ -64,6 +71,7 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
     let styles = Styles::styled();
     let (red, green) = (*styles.get_error(), *styles.get_valid());
     let at = &error.at;
+    let place = told(&at.to_string());
     // An error about a file as a whole has the file's name in its message.
     let mut text = match at.line {
         0 => plain(&format!("{at}: {}", error.message)),
@@ -72,7 +80,7 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
     let gutter = if excerpt.is_some() { at.line.to_string().len() } else { 1 };
     let indent = " ".repeat(gutter);
     if at.line > 0 {
-        let _ = write!(text, "\n{indent}{FRAME}-->{FRAME:#} {at}");
+        let _ = write!(text, "\n{indent}{FRAME}-->{FRAME:#} {place}");
     }
     if let Some(Excerpt { text: line, mark }) = excerpt {
         let bar = format!("{FRAME}|{FRAME:#}");
@@ -82,6 +90,7 @@ fn of_file(error: &Error, excerpt: Option<Excerpt>) -> String {
         let _ = write!(text, "\n{indent} {bar} {space}{red}{carets}{red:#}");
     }
     if let Some(hint) = &error.hint {
+        let hint = told(&hint.to_string());
         let _ = write!(text, "\n{indent} {FRAME}={FRAME:#} {green}help:{green:#} {hint}");
     }
     text
@@ -106,6 +115,25 @@ mod tests {
 
     fn without_color(text: &str) -> String {
         anstream::adapter::strip_str(text).to_string()
+    }
+
+    #[test]
+    fn names_are_no_commands_to_a_terminal() {
+        let evil = "a\u{1b}]0;b\u{7}\u{9b}\r";
+        let at = Location::file(Path::new(evil));
+        let texts = [
+            of_file(&Error::invalid(&at, evil).hint(evil), None),
+            of_file(&Error::invalid(&at.at(1, 1), evil), None),
+            of_warning(WarningKind::Warning, evil),
+            of_usage(evil),
+        ];
+        for text in texts {
+            // What is left of them when the colours are gone.
+            let bare = text.replace("\u{1b}[", "");
+            assert!(!bare.contains(['\u{1b}', '\u{7}', '\u{9b}', '\r']), "{text:?}");
+        }
+        let long = plain(&"é".repeat(1_000_000));
+        assert!(long.ends_with("é…") && long.len() < 20_000);
     }
 
     #[test]

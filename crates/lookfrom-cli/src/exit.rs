@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 use lookfrom::session::OPTIONS;
+use lookfrom_scene::excerpt::printable;
 use lookfrom_scene::{Error, ErrorKind, Location, Warning, WarningGroup, WarningKind};
 
 use crate::{diagnostic, remedy};
@@ -150,9 +151,9 @@ pub(crate) fn say_warnings(warnings: &[Warning]) {
     }
 }
 
-/// Writes a line to stderr. A closed stderr is not an error.
+/// Writes a line to stderr, without what names in it would command a terminal. A closed stderr is not an error.
 pub(crate) fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", printable(line));
 }
 
 /// Writes lines to stderr, in colour where the terminal and the user's settings allow it.
@@ -160,12 +161,16 @@ fn say_in_color(lines: &str) {
     let _ = writeln!(anstream::stderr(), "{lines}");
 }
 
-/// Writes a line to stdout. A closed pipe (`| head`) is not an error.
+/// Writes a line to stdout; to a terminal, without what names in it would command it. A closed pipe (`| head`) is not an
+/// error.
 ///
 /// # Errors
 /// `Output` where it cannot be written for another reason.
 pub(crate) fn answer(line: &str) -> Result<(), Failure> {
-    answer_bytes(format!("{line}\n").as_bytes())
+    match std::io::stdout().is_terminal() {
+        true => answer_bytes(format!("{}\n", printable(line)).as_bytes()),
+        false => answer_bytes(format!("{line}\n").as_bytes()),
+    }
 }
 
 /// As [`answer`], bytes as they are.

@@ -243,7 +243,9 @@ fn stem(scene: &Path) -> &OsStr {
     if scene == Path::new(PIPE) {
         return OsStr::new("stdin");
     }
-    scene.file_stem().unwrap_or(OsStr::new("picture"))
+    // Of `...toml` the stem is `..`, which as a part of a path would be another folder.
+    let is_name = |stem: &&OsStr| !matches!(stem.to_str(), Some("." | ".."));
+    scene.file_stem().filter(is_name).unwrap_or(OsStr::new("picture"))
 }
 
 /// The format of a file by its extension.

@@ -32,7 +32,7 @@ pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
     let template = json!({
         "specificationVersion": "jobtemplate-2023-09",
         "extensions": ["TASK_CHUNKING"],
-        "name": job.name,
+        "name": job_name(&job.name),
         "parameterDefinitions": [
             path("Scene", "FILE", "IN", "The scene"),
             folder("JobFolder", "IN", "The folder of job.sh"),
@@ -70,4 +70,16 @@ pub(super) fn files(job: &Job) -> Vec<(&'static str, String)> {
         ("parameter_values.json", document(&of_bundle)),
         ("asset_references.json", document(&references)),
     ]
+}
+
+/// The name of the job: what the specification allows, and nothing that would be replaced as a reference to a parameter.
+fn job_name(scene: &str) -> String {
+    const LONGEST: usize = 128;
+    let allowed = |c: char| match c {
+        '{' => '(',
+        '}' => ')',
+        c if c.is_control() => ' ',
+        c => c,
+    };
+    scene.chars().map(allowed).take(LONGEST).collect()
 }

@@ -89,10 +89,23 @@ merge() {
     echo "$whole"
 }
 
+usage() {
+    echo "usage: sh job.sh part K, sh job.sh part K-L, sh job.sh merge; K and L are from 1 to @TASKS@" >&2
+    exit 2
+}
+
 case "${1:-}" in
 part)
     first=${2%-*}
     last=${2#*-}
+    for number in "$first" "$last"; do
+        case $number in
+        '' | *[!0-9]*) usage ;;
+        esac
+    done
+    if ! { [ 1 -le "$first" ] && [ "$first" -le "$last" ] && [ "$last" -le @TASKS@ ]; }; then
+        usage
+    fi
     while [ "$first" -le "$last" ]; do
         task "$first"
         first=$((first + 1))
@@ -105,9 +118,6 @@ merge)
         frame_number=$((frame_number + 1))
     done
     ;;
-*)
-    echo "usage: sh job.sh part K, sh job.sh part K-L, sh job.sh merge" >&2
-    exit 2
-    ;;
+*) usage ;;
 esac
 "##;

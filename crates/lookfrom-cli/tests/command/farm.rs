@@ -41,6 +41,31 @@ fn tasks_and_their_merge_are_one_render() {
 
 #[test]
 #[cfg(unix)]
+fn names_of_scenes_are_only_names() {
+    let stage = Stage::new("farm-names");
+    let name = "a'b$(touch x)`touch x`\n\"; touch x; {{Param.Scene}}";
+    stage.write(&format!("{name}.toml"), SCENE);
+    let scene = format!("{name}.toml");
+    for (scheduler, folder) in [("slurm", "job $(touch x)"), ("openjd", "open")] {
+        let farm = ["farm", scheduler, &scene, "--parts", "1", "-o", folder];
+        assert!(stage.command("").args(farm).status().unwrap().success());
+    }
+    job(&stage, "job $(touch x)", &["part", "1"]);
+    assert!(job(&stage, "job $(touch x)", &["merge"]).ends_with(&format!("{name}.exr\n")));
+    assert!(!stage.path("x").exists());
+    let template: serde_json::Value = serde_json::from_slice(&stage.bytes("open/template.json")).unwrap();
+    let called = template["name"].as_str().unwrap();
+    assert!(!called.contains("{{") && !called.contains(char::is_control), "{called:?}");
+    // What is no task is an error, not a task that is done.
+    for wrong in ["0", "2", "1-2", "x", "-1", "1;touch x"] {
+        let mut command = Command::new("sh");
+        command.arg(stage.path("job $(touch x)/job.sh")).args(["part", wrong]);
+        assert_eq!(command.env("LOOKFROM", "false").output().unwrap().status.code(), Some(2), "{wrong}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
 fn frames_are_those_of_a_turntable() {
     let stage = Stage::new("farm-frames");
     let farm = [

@@ -8,6 +8,18 @@ use lookfrom_scene::{Disk, LoadContext, image};
 use super::stage::{SCENE, Stage};
 
 #[test]
+#[cfg(unix)]
+fn line_feeds_in_names_and_values_are_kept() {
+    let stage = Stage::new("film-lines");
+    stage.write("a\nb.toml", &format!("[variables]\nwords = \"\"\n{SCENE}"));
+    let render = ["render", "a\nb.toml", "-o", "a.exr", "--film", "--samples", "2", "-D", "words=\n--seed=7"];
+    assert!(stage.command("").args(render).status().unwrap().success());
+    stage.done("resume a.exr --samples 3");
+    let told = String::from_utf8(stage.done("info a.exr").stdout).unwrap();
+    assert!(told.contains("a\nb.toml"), "{told}");
+}
+
+#[test]
 fn parts_in_any_order_are_the_film_of_one_render() {
     let stage = Stage::new("film-parts");
     stage.done("render scene.toml -o whole.exr --film");

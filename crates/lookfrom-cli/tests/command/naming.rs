@@ -38,6 +38,17 @@ fn scenes_of_one_name_are_told_apart() {
 }
 
 #[test]
+fn a_name_is_no_way_out_of_the_folder() {
+    let stage = Stage::new("naming-points");
+    for name in ["..toml", "...toml"] {
+        stage.write(name, SCENE);
+        stage.done(&format!("render {name} -o out/{{name}}/a.png"));
+        assert!(stage.path("out/picture/a.png").exists() && !stage.path("a.png").exists());
+        std::fs::remove_dir_all(stage.path("out")).unwrap();
+    }
+}
+
+#[test]
 fn unknown_words_name_the_known_ones() {
     let stage = Stage::new("naming-words");
     let known = "{name}, {dir}, {parent}, {n}";

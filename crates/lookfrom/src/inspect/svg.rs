@@ -180,6 +180,16 @@ fn draw_legend(out: &mut String, (width, top): (f64, f64), inspection: &Inspecti
     (lines.len() as f64 / columns).ceil()
 }
 
+/// Text in XML, which has no control characters, not even as references.
 fn escape(text: &str) -> String {
+    let text = text.replace(char::is_control, "\u{fffd}");
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_stay_text_of_xml() {
+        assert_eq!(super::escape("a\u{1b}\u{1}<b>&"), "a\u{fffd}\u{fffd}&lt;b&gt;&amp;");
+    }
 }

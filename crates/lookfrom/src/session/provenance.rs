@@ -77,12 +77,13 @@ impl Provenance {
         let goal = texts.find("film.goal").map(|_| texts.read("film.goal", range)).transpose()?;
         Ok(Self {
             header: header::common(header.collect()),
-            inputs: texts.read("film.inputs", |text| text.lines().map(input).collect())?,
+            inputs: texts
+                .read("film.inputs", |text| unfolded(text).iter().map(|line| input(line)).collect())?,
             options: texts.read("film.options", |text| Some(text.to_owned()))?,
             sampling: texts.read("film.sampling", |text| text.parse().ok())?,
             development: texts.read("film.develop", development_of)?,
             scene: texts.find("film.scene").map(str::to_owned),
-            arguments: texts.find("film.arguments").unwrap_or_default().lines().map(str::to_owned).collect(),
+            arguments: unfolded(texts.find("film.arguments").unwrap_or_default()),
             goal,
         })
     }
@@ -210,7 +211,7 @@ impl Provenance {
             ("film.area", format!("{x0} {y0} {x1} {y1}")),
             ("film.ledger", film.ledger().to_string()),
             ("film.dropped", format!("{} {x} {y} {sample}", film.dropped())),
-            ("film.inputs", inputs.join("\n")),
+            ("film.inputs", folded(&inputs)),
             ("film.options", self.options.clone()),
             ("film.sampling", self.sampling.to_string()),
             ("film.develop", text_of(&self.development)),
@@ -219,7 +220,7 @@ impl Provenance {
             attributes.push(("film.scene", scene.clone()));
         }
         if !self.arguments.is_empty() {
-            attributes.push(("film.arguments", self.arguments.join("\n")));
+            attributes.push(("film.arguments", folded(&self.arguments)));
         }
         if let Some(goal) = &self.goal
             && !self.is_complete(film)
@@ -251,6 +252,27 @@ impl Provenance {
 
 fn is_ours(name: &str) -> bool {
     name == PREFIX || name.strip_prefix(PREFIX).is_some_and(|rest| rest.starts_with('.'))
+}
+
+/// Texts as lines. A line that begins with a tab goes on with the one before: names of files and values of variables may
+/// have line feeds.
+fn folded(texts: &[String]) -> String {
+    texts.iter().map(|text| text.replace('\n', "\n\t")).collect::<Vec<_>>().join("\n")
+}
+
+/// The texts that were [`folded`].
+fn unfolded(lines: &str) -> Vec<String> {
+    let mut texts: Vec<String> = Vec::new();
+    for line in lines.split('\n').filter(|_| !lines.is_empty()) {
+        match (line.strip_prefix('\t'), texts.last_mut()) {
+            (Some(more), Some(text)) => {
+                text.push('\n');
+                text.push_str(more);
+            }
+            _ => texts.push(line.to_owned()),
+        }
+    }
+    texts
 }
 
 /// `START..END`.
@@ -296,4 +318,20 @@ fn development_of(text: &str) -> Option<Development> {
         denoise: denoise == "denoise",
         fireflies,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_with_line_feeds_stay_whole() {
+        let texts = |texts: &[&str]| texts.iter().map(|&text| text.to_owned()).collect::<Vec<_>>();
+        for some in [texts(&[]), texts(&["a"]), texts(&["a\n\n\tb\r", "c d\n", "--define=x=\"\n--seed=1\""])]
+        {
+            assert_eq!(unfolded(&folded(&some)), some);
+        }
+        // Without line feeds they are plain lines.
+        assert_eq!(folded(&texts(&["--size=8", "--seed=1"])), "--size=8\n--seed=1");
+    }
 }
