@@ -156,6 +156,11 @@ pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", printable(line));
 }
 
+/// Writes a drawing to stderr: commands to a terminal.
+pub(crate) fn show(drawing: &str) {
+    let _ = writeln!(std::io::stderr(), "{drawing}");
+}
+
 /// Writes lines to stderr, in colour where the terminal and the user's settings allow it.
 fn say_in_color(lines: &str) {
     let _ = writeln!(anstream::stderr(), "{lines}");

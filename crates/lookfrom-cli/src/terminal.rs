@@ -110,7 +110,7 @@ const CHARACTER: [u32; 2] = [10, 20];
 pub(crate) fn draw(shown: &Shown, way: Way) -> Result<(), Failure> {
     let (rows, columns) = Term::stderr().size();
     let text = drawn(shown, way, Size { columns: columns.into(), rows: rows.into() });
-    exit::say(
+    exit::show(
         text.map_err(|error| Failure::Output(format!("--show: {}", error.message)))?.trim_end_matches('\n'),
     );
     Ok(())

@@ -82,7 +82,8 @@ file = "roof.obj"
 "#;
 
 /// What is inspected: a scene (of the repository where it has a folder), and options.
-const INSPECTED: [&str; 32] = [
+const INSPECTED: [&str; 33] = [
+    "docs/guide/scenes/texture-far-ewa.toml 20 15 --width 40 --samples 1",
     "scenes/hero.toml 20 15 --width 40",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample worst",
     "scenes/hero.toml 22 20 --width 40 --integrator path --samples 8 --sample all",

@@ -598,7 +598,7 @@ fn parallel_cameras_are_drawn_as_boxes() {
 
 #[test]
 fn a_texture_that_is_averaged_tells_the_footprint() {
-    // From straight above, 2 units high: a pixel in the middle is 2 · 2 / 64 wide, and uv are an eighth of that.
+    // From straight above, 2 units high: all pixels are nearly 4 tan 2° / 64 wide, and uv are an eighth of that.
     let floor = |footprint: &str| {
         scene(&format!(
             r#"
@@ -606,7 +606,7 @@ fn a_texture_that_is_averaged_tells_the_footprint() {
             lookfrom = [0, 2, 0]
             lookat = [0, 0, 0]
             up = [0, 0, 1]
-            fov = 90
+            fov = 4
             [image]
             width = 64
             height = 64
@@ -637,7 +637,7 @@ fn a_texture_that_is_averaged_tells_the_footprint() {
     assert!(met_sharp.footprint.is_none() && !text.contains("a pixel sees"));
     let (met, text) = met("footprint = 2");
     let found = met.footprint.expect("a footprint");
-    let width = 2.0 * 2.0 / 64.0;
+    let width = 4.0 * 2_f32.to_radians().tan() / 64.0;
     let is_near = |a: f32, b: f32| (a - b).abs() < 0.01 * width;
     let [dpdx, dpdy] = [found.dpdx, found.dpdy].map(Vec3::from);
     assert!(is_near(dpdx.length(), width) && is_near(dpdy.length(), width), "{found:?}");

@@ -15,7 +15,6 @@ use crate::inspect::segments::RayKind;
 use crate::integrator::{Bounce, Path, PreviousVertex, SubsurfaceProbe};
 use crate::primitive::Primitives;
 use crate::shading::bsdf::whitted::WhittedCoefficients;
-use crate::shading::footprint::SurfaceFootprint;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::Shading;
 use crate::shading::texture::SpectralMode;
@@ -177,11 +176,11 @@ fn met_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteract
         ng: surface.ng.to_array(),
         n: surface.ns_facing().to_array(),
         uv: surface.uv.to_array(),
-        footprint: world.shading_point(surface).footprint.map(|SurfaceFootprint { uv, p }| FootprintReport {
-            dpdx: p[0].to_array(),
-            dpdy: p[1].to_array(),
-            duv_dx: uv[0].to_array(),
-            duv_dy: uv[1].to_array(),
+        footprint: world.shading_point(surface).footprint.map(|seen| FootprintReport {
+            dpdx: seen.p[0].to_array(),
+            dpdy: seen.p[1].to_array(),
+            duv_dx: seen.uv[0].to_array(),
+            duv_dy: seen.uv[1].to_array(),
         }),
         wo: surface.wo.to_array(),
         cos_viewer: surface.ns_facing().dot(surface.wo),
