@@ -14,7 +14,7 @@ const POLL: Duration = Duration::from_millis(300);
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stamps(BTreeMap<PathBuf, Option<Stamp>>);
 
-/// What differs after a change of a file.
+/// The stamp of a file: length, time and identity, of which one is another after a change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Stamp {
     /// The time of the last change.

@@ -475,7 +475,7 @@ export interface Met {
     cos_viewer: number;
     /** Error bound of the point, per component, by which the next ray's origin is moved off the surface. */
     error: Vector;
-    /** What a pixel sees of the surface, where textures of its material are averaged over that. */
+    /** The footprint of a pixel on the surface, where textures of its material are averaged over it. */
     footprint: Footprint | null;
     /** Whether the outside was hit. */
     front: boolean;

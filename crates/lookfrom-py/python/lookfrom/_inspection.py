@@ -699,7 +699,7 @@ class Met:
     ng: Outward geometric normal.
     n: Shading normal on the side of the viewer.
     uv: Texture coordinates.
-    footprint: What a pixel sees of the surface, where textures of its material are averaged over that.
+    footprint: The footprint of a pixel on the surface, where textures of its material are averaged over it.
     wo: Toward the viewer, unit length.
     cos_viewer: The cosine of the angle between the shading normal and the direction to the viewer.
     front: Whether the outside was hit.

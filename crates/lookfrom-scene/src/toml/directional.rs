@@ -145,7 +145,8 @@ impl Reader<'_, '_> {
         let (image, filter) =
             table.need("image", "\"picture.png\"", nothing, |value| self.intensities(value));
         let filter = table.or("filter", filter, |value| value.choice(PICTURE_FILTERS));
-        let lumens = self.lumens(table, image);
+        // The file is read again, and its map summed, only where a power may ask for it.
+        let lumens = table.has("power").then(|| self.lumens(table, image)).flatten();
         let total = |value: Value<'_>| match (value.as_text(), lumens) {
             (Some("file"), Some(lumens)) => Ok(lumens),
             (Some("file"), None) => Err(value

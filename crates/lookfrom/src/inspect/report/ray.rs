@@ -161,7 +161,7 @@ pub struct MetReport {
     pub n: [f32; 3],
     /// Texture coordinates.
     pub uv: [f32; 2],
-    /// What a pixel sees of the surface, where textures of its material are averaged over that.
+    /// The footprint of a pixel on the surface, where textures of its material are averaged over it.
     pub footprint: Option<FootprintReport>,
     /// Toward the viewer, unit length.
     pub wo: [f32; 3],

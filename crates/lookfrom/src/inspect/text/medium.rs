@@ -27,7 +27,7 @@ pub(super) fn write_medium(f: &mut String, ray: &RayReport) -> fmt::Result {
 /// Collisions that are written; the others are in JSON.
 const MOST_COLLISIONS: usize = 24;
 
-/// What Russian roulette has made of a null collision's estimate, by what the estimate would be without it.
+/// The words for the effect of Russian roulette on a null collision's estimate, by the estimate without it.
 fn by_roulette(estimate: &[f32], without: impl Fn(usize) -> f32) -> &'static str {
     let most = |lanes: &mut dyn Iterator<Item = f32>| lanes.fold(0.0, f32::max);
     let (found, without) = (most(&mut estimate.iter().copied()), most(&mut (0..estimate.len()).map(without)));

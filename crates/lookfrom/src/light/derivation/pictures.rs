@@ -21,7 +21,7 @@ fn direction(light_from_render: &Mat3, position: DVec3, from: DVec3) -> Option<(
     Some(((*light_from_render * -wi).normalize_or_zero(), distance))
 }
 
-/// What a filter takes of a picture at the texel (i, j).
+/// The words for the light of a picture at the texel (i, j), by its filter.
 fn of_texel(filter: TexelFilter) -> &'static str {
     match filter {
         TexelFilter::Nearest => "texel (i, j) of the picture",
