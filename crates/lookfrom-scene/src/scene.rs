@@ -222,18 +222,23 @@ impl Scene {
     /// The bounding box of everything that is placed in the world, at all times of the shutter. What is made of meshes,
     /// vertices and objects that are not there, for which [`Scene::validate`] has an error, takes no place.
     pub fn bounds(&self) -> Bounds {
-        let of = |shapes: &[Shape]| {
-            shapes.iter().fold(Bounds::EMPTY, |bounds, shape| bounds.union(shape.bounds(&self.meshes)))
+        self.bounds_of_parts().fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// As [`Scene::bounds`], of each shape that is in no object, and of each instance.
+    pub fn bounds_of_parts(&self) -> impl Iterator<Item = Bounds> {
+        let of_shape = |shape: &Shape| shape.bounds(&self.meshes);
+        let of_object =
+            |object: &Object| object.shapes.iter().map(of_shape).fold(Bounds::EMPTY, Bounds::union);
+        let objects: Vec<Bounds> = self.objects.iter().map(of_object).collect();
+        let of_instance = move |instance: &Instance| {
+            let object = objects.get(instance.object.index()).copied().unwrap_or(Bounds::EMPTY);
+            let maps = match &instance.motion {
+                None => std::slice::from_ref(&instance.world_from_object),
+                Some(motion) => motion.maps(),
+            };
+            maps.iter().map(|map| object.transformed(map)).fold(Bounds::EMPTY, Bounds::union)
         };
-        let objects: Vec<Bounds> = self.objects.iter().map(|object| of(&object.shapes)).collect();
-        self.instances.iter().fold(of(&self.shapes), |bounds, instance| {
-            let of_object = objects.get(instance.object.index()).copied().unwrap_or(Bounds::EMPTY);
-            match &instance.motion {
-                None => bounds.union(of_object.transformed(&instance.world_from_object)),
-                Some(motion) => {
-                    motion.maps().iter().fold(bounds, |bounds, map| bounds.union(of_object.transformed(map)))
-                }
-            }
-        })
+        self.shapes.iter().map(of_shape).chain(self.instances.iter().map(of_instance))
     }
 }

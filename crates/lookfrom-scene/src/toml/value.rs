@@ -126,8 +126,8 @@ impl<'a> Value<'a> {
 
     /// A number that is finite as `f32` and satisfies `ok`.
     pub(super) fn single_where(self, expected: &str, ok: impl Fn(f32) -> bool) -> Result<f32> {
-        self.number_where(expected, |number| (number as f32).is_finite() && ok(number as f32))
-            .map(|number| number as f32)
+        let single = self.number_where(expected, |number| ok(number as f32))? as f32;
+        if single.is_finite() { Ok(single) } else { Err(self.wrong("a number from -3.4e38 to 3.4e38")) }
     }
 
     /// A number that is finite as `f32`.

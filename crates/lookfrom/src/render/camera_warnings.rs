@@ -4,7 +4,7 @@
 //! times and hit its back first, and if its back is nearly all that the picture shows. Rooms do not count: their
 //! surfaces face inward, other objects are in them, or a light inside lights them.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_scene::scene::{Bounds, SourceFormat};
 use lookfrom_scene::{Location, Scene, Warning};
@@ -23,6 +23,8 @@ const COARSE: u32 = 16;
 const FINE: u32 = 129;
 /// The square root of the number of rays in all directions.
 const AROUND: u32 = 8;
+/// Number of parts of the scene at whose middles is looked, if those rays hit nothing: lamps may be smaller than a pixel.
+const MIDDLES: usize = 4096;
 /// The fraction of rays that has to agree.
 const NEARLY_ALL: f64 = 0.9;
 
@@ -31,6 +33,8 @@ const NEARLY_ALL: f64 = 0.9;
 pub(crate) struct Subject {
     /// The bounding box of the scene, in the world.
     bounds: Bounds,
+    /// The middles of the bounding boxes of its parts, in the world: of the first [`MIDDLES`] of them.
+    middles: Vec<DVec3>,
     /// The location of the camera in the scene's file.
     at: Location,
     /// Whether all parts of the scene are one body.
@@ -41,20 +45,22 @@ impl Subject {
     /// The contents of `bounds`, such as a scene without what was added to it.
     pub(crate) fn of_scene(scene: &Scene, bounds: Bounds) -> Self {
         let at = scene.camera.as_ref().map(|camera| camera.at.clone()).unwrap_or_default();
-        Self { bounds, at, is_model: scene.source_format != SourceFormat::Scene }
+        let parts = scene.bounds_of_parts().filter(|part| !part.is_empty());
+        let middles = parts.map(Bounds::center).take(MIDDLES).collect();
+        Self { bounds, middles, at, is_model: scene.source_format != SourceFormat::Scene }
     }
 }
 
 /// Warns where the picture would be the background alone, or the inside of something.
 pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<Warning>) {
-    let &Subject { bounds, ref at, is_model } = subject;
+    let &Subject { bounds, ref middles, ref at, is_model } = subject;
     if bounds.is_empty() || renderer.surface.is_some() {
         return;
     }
     let world = renderer.world();
     let seen = seen(renderer, COARSE);
     let message = if seen.iter().all(Option::is_none) {
-        if self::seen(renderer, FINE).iter().any(Option::is_some) {
+        if self::seen(renderer, FINE).iter().any(Option::is_some) || sees_one_of(renderer, middles) {
             return;
         }
         // It looks at a medium, perhaps one that is not rendered, of which its reader warns.
@@ -62,7 +68,7 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
         if first_hits(renderer, FINE, |_| false).iter().flatten().any(is_interface) {
             return;
         }
-        let Bounds { min, max } = bounds;
+        let [min, max] = [bounds.min.as_vec3(), bounds.max.as_vec3()];
         format!(
             "the camera sees nothing of the scene, which lies between {min} and {max}: the picture shows only the background; \
              change the camera's position (lookfrom) or direction (lookat)"
@@ -99,10 +105,25 @@ pub(super) fn sees_only_backs(renderer: &Renderer) -> bool {
 
 /// First hits of rays through a grid over the picture, behind surfaces that camera rays pass.
 fn seen(renderer: &Renderer, side: u32) -> Vec<Option<SurfaceInteraction>> {
-    let world = renderer.world();
-    first_hits(renderer, side, |surface| {
-        surface.single_sided && !surface.front || world.is_interface(surface)
+    first_hits(renderer, side, |surface| is_passed_by_camera_rays(renderer.world(), surface))
+}
+
+/// Whether a ray through one of the places, which are in the world, hits something that camera rays do not pass.
+fn sees_one_of(renderer: &Renderer, places: &[DVec3]) -> bool {
+    let camera = renderer.view().camera();
+    let view_from_world = camera.world_from_view().inverse();
+    let is_in_picture =
+        |image: &[f64; 2]| (0..2).all(|axis| (0.0..f64::from(camera.size[axis])).contains(&image[axis]));
+    let mut hits = Vec::new();
+    let images = places.iter().filter_map(|place| camera.image_of(view_from_world.transform_point3(*place)));
+    images.filter(is_in_picture).any(|image| {
+        first_hit(renderer, image, &mut hits, |surface| is_passed_by_camera_rays(renderer.world(), surface))
+            .is_some()
     })
+}
+
+fn is_passed_by_camera_rays(world: &World, surface: &SurfaceInteraction) -> bool {
+    surface.single_sided && !surface.front || world.is_interface(surface)
 }
 
 /// First hits of rays through a grid over the picture, behind surfaces that they pass.
@@ -111,17 +132,24 @@ fn first_hits(
     side: u32,
     is_passed: impl Fn(&SurfaceInteraction) -> bool,
 ) -> Vec<Option<SurfaceInteraction>> {
-    let (world, camera) = (renderer.world(), renderer.view().camera());
-    let [width, height] = camera.size.map(f64::from);
+    let [width, height] = renderer.view().camera().size.map(f64::from);
     let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(side);
     let mut hits = Vec::new();
-    let mut first = |cell: u32| {
-        let place = [width * middle(cell % side), height * middle(cell / side)];
-        let ray = renderer.kernel_ray(&camera.ray(place, [0.5; 2]));
-        world.bvh.query().all_hits(&ray, &mut hits);
-        hits.iter().map(|hit| world.surface(&ray, hit)).find(|surface| !is_passed(surface))
-    };
-    (0..side * side).map(&mut first).collect()
+    let place = |cell: u32| [width * middle(cell % side), height * middle(cell / side)];
+    (0..side * side).map(|cell| first_hit(renderer, place(cell), &mut hits, &is_passed)).collect()
+}
+
+/// The first hit of the ray through a place of the image, in pixels, `y` up, behind surfaces that it passes.
+fn first_hit(
+    renderer: &Renderer,
+    place: [f64; 2],
+    hits: &mut Vec<Hit>,
+    is_passed: impl Fn(&SurfaceInteraction) -> bool,
+) -> Option<SurfaceInteraction> {
+    let world = renderer.world();
+    let ray = renderer.kernel_ray(&renderer.view().camera().ray(place, [0.5; 2]));
+    world.bvh.query().all_hits(&ray, hits);
+    hits.iter().map(|hit| world.surface(&ray, hit)).find(|surface| !is_passed(surface))
 }
 
 /// The index of a shape that is closed around the camera and fills the picture.

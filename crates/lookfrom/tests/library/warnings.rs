@@ -118,6 +118,12 @@ fn an_eye_that_sees_nothing_is_told_of() {
     // Small or thin things are something, and so is the light around without a thing.
     none(&seen_from([0.0, 0.0, 9.0], "[[sphere]]\ncenter = [0.3, 0.2, 0]\nradius = 0.1"));
     none(&seen_from([0.0; 3], ""));
+    // Far smaller than a pixel, somewhere in the picture; but not beside it.
+    none(&seen_from([0.0, 0.0, 9.0], "[[sphere]]\ncenter = [0.317, 0.211, 0]\nradius = 1e-5"));
+    one(
+        &seen_from([0.0, 0.0, 9.0], "[[sphere]]\ncenter = [31.7, 0.211, 0]\nradius = 1e-5"),
+        &["sees nothing"],
+    );
     // Bounds of a medium are there to be looked at; but not if they are elsewhere.
     let cloud = "[materials.m]\ntype = \"interface\"\n[[sphere]]\nmaterial = \"m\"\ncenter = ";
     none(&seen_from([0.0, 0.0, 9.0], &format!("{cloud}[0, 0, 0]")));
