@@ -77,6 +77,7 @@ impl Counts {
                 Geometry::PartialSphere { .. } => ("partial sphere", 0, 0),
                 Geometry::PartialDisk { .. } => ("partial disk", 0, 0),
                 Geometry::Cylinder { .. } => ("cylinder", 0, 0),
+                Geometry::Torus { .. } => ("torus", 0, 0),
                 Geometry::Bilinear(_) => ("bilinear mesh", 0, 0),
                 Geometry::Curves(_) => ("curves", 0, 0),
                 Geometry::Mesh(id) => ("mesh", scene.meshes[id.index()].triangles.len(), 0),

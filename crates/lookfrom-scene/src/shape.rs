@@ -132,6 +132,14 @@ pub enum Geometry {
         /// Sweep angle from +x toward +y, in degrees, in (0, 360].
         phi_max: f64,
     },
+    /// The tube around a circle in the plane z = 0 with its centre at the origin, where the tube is not inside of itself. u goes around the
+    /// z axis from +x toward +y, v around the tube from the outermost circle toward +z.
+    Torus {
+        /// Of the circle, positive.
+        radius: f64,
+        /// Radius of the tube, positive.
+        tube: f64,
+    },
     /// Bilinear patches.
     Bilinear(Arc<Patches>),
     /// Curves: hair, wires, ribbons.
@@ -348,6 +356,10 @@ impl Geometry {
             Self::Cylinder { radius, z: [low, high], .. } => {
                 let corner = |z: f64, sign: f64| DVec3::new(sign * *radius, sign * *radius, z);
                 Bounds { min: corner(*low, -1.0), max: corner(*high, 1.0) }.transformed(matrix)
+            }
+            Self::Torus { radius, tube } => {
+                let corner = DVec3::new(radius + tube, radius + tube, *tube);
+                Bounds { min: -corner, max: corner }.transformed(matrix)
             }
             Self::Bilinear(patches) => patches
                 .positions

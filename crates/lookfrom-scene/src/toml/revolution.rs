@@ -1,4 +1,4 @@
-//! `[[cone]]`, `[[torus]]` and `[[lathe]]`: a profile that turns around an axis, as a mesh with exact normals.
+//! `[[cone]]`, `[[torus]]` and `[[lathe]]`: a profile that turns around an axis, as a mesh with exact normals; tori by themselves are exact.
 //!
 //! A profile goes from the axis below outward, up and back to the axis: then its surface faces outward.
 
@@ -54,20 +54,19 @@ impl Reader<'_, '_> {
         self.revolved(table, "cone", &edged(&points), along(from, axis / height))
     }
 
-    /// A torus, and the transform from its own space.
+    /// A torus, and the transform from its own space: exact, but a mesh where it is said of how many pieces.
     pub(super) fn torus(&mut self, table: &Table<'_>) -> Result<(Geometry, DMat4)> {
         let center = table.or("center", DVec3::ZERO, Value::vector);
         let axis = table.or("axis", DVec3::Y, Value::direction);
         let radius = table.need("radius", "1", 1.0, Value::positive);
         let tube = table.need("tube", "0.25", 0.25, Value::positive);
-        let at = |index: u64| {
-            let (sin, cos) = libm::sincos(TAU * index as f64 / SEGMENTS as f64);
-            let normal = DVec2::new(cos, sin);
-            Ring { point: DVec2::new(radius, 0.0) + tube * normal, normal }
-        };
-        let pieces: Vec<Piece> = (0..SEGMENTS).map(|index| [at(index), at((index + 1) % SEGMENTS)]).collect();
         table.sound(&["axis", "radius", "tube"])?;
-        self.revolved(table, "torus", &pieces, along(center, axis.normalize()))
+        let is_upright = center == DVec3::ZERO && axis == DVec3::Z;
+        let own = if is_upright { DMat4::IDENTITY } else { along(center, axis.normalize()) };
+        if table.has("segments") {
+            return self.revolved(table, "torus", &tube_around(radius, tube), own);
+        }
+        Ok((Geometry::Torus { radius, tube }, own))
     }
 
     /// A profile around an axis, and the transform from its own space.
@@ -131,6 +130,21 @@ pub(super) fn ball(segments: u32) -> Mesh {
     };
     let pieces: Vec<Piece> = (0..rings).map(|index| [at(index), at(index + 1)]).collect();
     revolve(&pieces, segments)
+}
+
+/// A torus around the z axis.
+pub(super) fn torus(radius: f64, tube: f64, segments: u32) -> Mesh {
+    revolve(&tube_around(radius, tube), segments)
+}
+
+/// The profile of a torus.
+fn tube_around(radius: f64, tube: f64) -> Vec<Piece> {
+    let at = |index: u64| {
+        let (sin, cos) = libm::sincos(TAU * index as f64 / SEGMENTS as f64);
+        let normal = DVec2::new(cos, sin);
+        Ring { point: DVec2::new(radius, 0.0) + tube * normal, normal }
+    };
+    (0..SEGMENTS).map(|index| [at(index), at((index + 1) % SEGMENTS)]).collect()
 }
 
 /// A cylinder around the z axis with both of its ends; v goes from 0 to 1 along each of the three.

@@ -162,6 +162,7 @@ impl Reader<'_, '_> {
         let segments = self.segments;
         let pieces = |part: &Part| match &part.geometry {
             Geometry::Mesh(MeshId(id)) => self.scene.meshes[*id as usize].triangles.len() as u64,
+            Geometry::Torus { .. } => 2 * segments * revolution::SEGMENTS,
             _ => segments * segments.max(4),
         };
         let count = parts.iter().map(pieces).fold(0, u64::saturating_add);
@@ -190,7 +191,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The mesh of a closed quadric, and the transform from its space; none for what is open.
+/// The mesh of a closed quadric or torus, and the transform from its space; none for what is open.
 fn tessellated(geometry: &Geometry, segments: u64) -> Option<(Mesh, DMat4)> {
     match *geometry {
         Geometry::Sphere(Sphere { center, radius }) => {
@@ -201,6 +202,9 @@ fn tessellated(geometry: &Geometry, segments: u64) -> Option<(Mesh, DMat4)> {
         }
         Geometry::Cylinder { radius, z: [low, high], phi_max: 360.0 } => {
             Some((revolution::closed_cylinder(radius, [low, high], segments as u32), DMat4::IDENTITY))
+        }
+        Geometry::Torus { radius, tube } => {
+            Some((revolution::torus(radius, tube, segments as u32), DMat4::IDENTITY))
         }
         _ => None,
     }

@@ -85,6 +85,10 @@ fn check_geometry(part: &Part<'_>, geometry: &Geometry) -> Result<()> {
             part.at_least_zero("inner_radius", *inner_radius)?;
             check_sweep(part, *phi_max)
         }
+        Geometry::Torus { radius, tube } => {
+            part.positive("radius", *radius)?;
+            part.positive("tube", *tube)
+        }
         Geometry::Bilinear(patches) => check_patches(part, patches),
         Geometry::Curves(strands) => check_strands(part, strands),
     }

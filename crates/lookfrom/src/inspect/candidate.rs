@@ -9,6 +9,7 @@ mod disk;
 mod patch;
 mod quadric;
 mod reference;
+mod torus;
 mod traversal;
 
 use glam::{DVec3, Vec3};
@@ -17,7 +18,7 @@ use serde::Serialize;
 
 use traversal::Tested;
 
-use crate::primitive::Primitives;
+use crate::primitive::{Primitives, QuadricKind};
 use crate::world::{PlacedInstance, World};
 
 pub use traversal::TraversalReport;
@@ -44,7 +45,7 @@ pub enum Test {
     Triangle(TestNumbers),
     /// The quadratic equation `A t² + 2 B t + C = 0`.
     Sphere(TestNumbers),
-    /// The same of a sphere or cylinder in its own space, or the plane of a disk there.
+    /// The same of a sphere or cylinder in its own space, the plane of a disk there, or the quartic equation of a torus.
     Quadric(TestNumbers),
     /// The plane of the disk, and the coordinates `x y` in it.
     Disk(TestNumbers),
@@ -221,7 +222,9 @@ fn candidate(
         Primitives::Quadrics(quadrics) => {
             let reason = quadric::test(&quadrics.quadrics[index], &ray, &mut numbers);
             let outcome = procedural(&**quadrics, primitive, &ray, reason.as_deref());
-            ("quadric", quadrics.bindings[index].shape, Test::Quadric(numbers), outcome)
+            let is_torus = matches!(quadrics.quadrics[index].kind, QuadricKind::Torus(_));
+            let kind = if is_torus { "torus" } else { "quadric" };
+            (kind, quadrics.bindings[index].shape, Test::Quadric(numbers), outcome)
         }
         Primitives::Patches(patches) => {
             let reason = patch::test(patches.corners(index), &ray, &mut numbers);

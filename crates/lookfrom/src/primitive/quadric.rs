@@ -1,5 +1,5 @@
-//! Quadrics: ellipsoids, elliptic cylinders and disks, and parts of them. They are spheres, cylinders and disks around
-//! the z axis of their object space, under any affine map.
+//! Quadrics: ellipsoids, elliptic cylinders and disks, and parts of them; and tori, which are of the fourth degree. They are spheres,
+//! cylinders, disks and tori around the z axis of their object space, under any affine map.
 //!
 //! A ray is transformed to object space in f64 and intersected there. The intersection is refined onto the surface and
 //! transformed back, with a bound of all errors on the way: [`Point::transformed`], and for surfaces that curve towards
@@ -9,6 +9,7 @@
 //! after Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection".
 
 mod frame;
+mod torus;
 
 use std::f64::consts::PI;
 
@@ -17,6 +18,7 @@ use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray}
 use lookfrom_simd::Float;
 
 pub(crate) use frame::{QuadricFrames, gather_frames};
+pub use torus::Torus;
 
 use super::{MaterialBinding, SurfacePoint, capsule};
 use crate::core::math;
@@ -60,6 +62,8 @@ pub enum QuadricKind {
         /// In ascending order.
         z: [f64; 2],
     },
+    /// A torus around the z axis.
+    Torus(Torus),
 }
 
 /// A quadric with its transform.
@@ -97,7 +101,7 @@ impl Quadric {
                 QuadricKind::Sphere { radius, z: ascending(z).map(|z| z.max(-radius).min(radius)) }
             }
             QuadricKind::Cylinder { radius, z } => QuadricKind::Cylinder { radius, z: ascending(z) },
-            QuadricKind::Disk { .. } => kind,
+            QuadricKind::Disk { .. } | QuadricKind::Torus(_) => kind,
         };
         let render_from_object = math::affine(matrix);
         let inverse = render_from_object.inverse()?;
@@ -181,6 +185,7 @@ impl Quadric {
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 0.5 * self.phi_max * (radius - inner_radius) * (radius + inner_radius)
             }
+            QuadricKind::Torus(torus) => self.phi_max * torus.area_by_angle(),
         }
     }
 
@@ -217,6 +222,10 @@ impl Quadric {
                 let ring = (inner + u0 * (radius * radius - inner)).sqrt();
                 DVec3::new(ring * cos, ring * sin, height)
             }
+            QuadricKind::Torus(torus) => {
+                let [ring, z] = torus.sample(u0);
+                DVec3::new(ring * cos, ring * sin, z)
+            }
         }
     }
 
@@ -225,6 +234,7 @@ impl Quadric {
         let (radius, [low, high]) = match self.kind {
             QuadricKind::Sphere { radius, z } | QuadricKind::Cylinder { radius, z } => (radius, z),
             QuadricKind::Disk { height, radius, .. } => (radius, [height, height]),
+            QuadricKind::Torus(Torus { radius, .. }) => (radius, [0.0, 0.0]),
         };
         let rows = self.render_from_object.matrix.map(DVec3::from_array);
         let translation = DVec3::from_array(self.render_from_object.translation);
@@ -237,6 +247,11 @@ impl Quadric {
         if matches!(self.kind, QuadricKind::Sphere { .. }) {
             let whole = DVec3::from_array(rows.map(|row| radius * row.length()));
             (min, max) = (min.max(translation - whole), max.min(translation + whole));
+        }
+        if let QuadricKind::Torus(Torus { tube, .. }) = self.kind {
+            // Balls around the points of the circle.
+            let ball = DVec3::from_array(rows.map(|row| tube * row.length()));
+            (min, max) = (min - ball, max + ball);
         }
         let error = 32.0 * UNIT * (min.abs().max(max.abs()) + translation.abs());
         [min - error, max + error]
@@ -267,6 +282,7 @@ impl Quadric {
                 DVec3::new(stretch * p.x, stretch * p.y, p.z)
             }
             QuadricKind::Disk { height, .. } => DVec3::new(p.x, p.y, height),
+            QuadricKind::Torus(torus) => torus.refined(p),
         }
     }
 
@@ -276,6 +292,7 @@ impl Quadric {
             QuadricKind::Sphere { .. } => p.normalize(),
             QuadricKind::Cylinder { .. } => DVec3::new(p.x, p.y, 0.0).normalize(),
             QuadricKind::Disk { .. } => DVec3::Z,
+            QuadricKind::Torus(torus) => torus.outward(p),
         }
     }
 
@@ -291,21 +308,30 @@ impl Quadric {
                 let square = p.truncate().length_squared();
                 square <= radius * radius && square >= inner_radius * inner_radius
             }
+            QuadricKind::Torus(_) => true,
         };
         there && (self.is_whole_turn() || angle(p) <= self.phi_max)
     }
 
-    /// The intersections of a line in object space with the whole surface.
-    fn meetings(&self, origin: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+    /// The first intersection in object space of a ray with its part of the surface.
+    fn first_meeting(&self, ray: &Ray, origin: DVec3, direction: DVec3) -> Option<f32> {
+        let is_in_range = |&t: &f64| {
+            let rounded = t as f32;
+            rounded > ray.t_min && rounded < ray.t_max
+        };
+        let is_part = |t: f64| self.contains(self.refined(origin + t * direction));
         let across = DVec3::new(1.0, 1.0, 0.0);
-        match self.kind {
-            QuadricKind::Sphere { radius, .. } => roots(origin, direction, radius),
-            QuadricKind::Cylinder { radius, .. } => roots(origin * across, direction * across, radius),
-            QuadricKind::Disk { height, .. } => {
-                let t = (height - origin.z) / direction.z;
-                Some([t, f64::NAN])
+        let first =
+            |meetings: Option<[f64; 2]>| meetings?.into_iter().find(|t| is_in_range(t) && is_part(*t));
+        let t = match self.kind {
+            QuadricKind::Sphere { radius, .. } => first(roots(origin, direction, radius)),
+            QuadricKind::Cylinder { radius, .. } => first(roots(origin * across, direction * across, radius)),
+            QuadricKind::Disk { height, .. } => first(Some([(height - origin.z) / direction.z, f64::NAN])),
+            QuadricKind::Torus(torus) => {
+                torus.first_meeting([origin, direction], ray.t_min.into(), is_in_range)
             }
-        }
+        };
+        t.map(|t| t as f32)
     }
 
     /// The point of the surface that is `on_surface` in object space.
@@ -335,6 +361,7 @@ impl Quadric {
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 (radius - p.truncate().length()) / (radius - inner_radius)
             }
+            QuadricKind::Torus(torus) => torus.angle(p) / (2.0 * PI),
         };
         Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE)
     }
@@ -357,6 +384,7 @@ impl Quadric {
                 let dpdv = (inner_radius - radius) * DVec3::new(x, y, 0.0);
                 [turning(turned, self.phi_max), dpdv]
             }
+            QuadricKind::Torus(torus) => [turning(p, self.phi_max), torus.along_tube(p)],
         }
     }
 
@@ -373,6 +401,10 @@ impl Quadric {
             QuadricKind::Disk { height, .. } => {
                 let own = 4.0 * UNIT * height.abs();
                 self.frame.place(p.into(), outward(), error(0.0, 0.0, own), f64::INFINITY)
+            }
+            QuadricKind::Torus(torus) => {
+                let own = 32.0 * UNIT * torus.size();
+                self.frame.place(p.into(), outward(), error(own, own, own), torus.radius_of_curvature(p))
             }
         }
     }
@@ -407,15 +439,7 @@ impl Procedural for Quadrics {
         let quadric = &self.quadrics[primitive as usize];
         let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
         let (origin, direction) = (quadric.point_in_object(origin), quadric.vector_in_object(direction));
-        quadric.meetings(origin, direction)?.into_iter().find_map(|t| {
-            let rounded = t as f32;
-            let in_range = rounded > ray.t_min && rounded < ray.t_max;
-            (in_range && quadric.contains(quadric.refined(origin + t * direction))).then_some(ProceduralHit {
-                t: rounded,
-                u: 0.0,
-                v: 0.0,
-            })
-        })
+        quadric.first_meeting(ray, origin, direction).map(|t| ProceduralHit { t, u: 0.0, v: 0.0 })
     }
 }
 

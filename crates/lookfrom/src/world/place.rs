@@ -20,6 +20,7 @@ use super::lights::Lights;
 use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightMotion, LightShape, QuadricLight};
 use crate::primitive::{
     Disk, Disks, MaterialBinding, Mesh, Primitives, Quadric, QuadricKind, Quadrics, SphereBinding, Spheres,
+    Torus,
 };
 use crate::shading::interior_stack::{InteriorStack, MediumInterface};
 use crate::shading::texture::FloatTexture;
@@ -205,6 +206,9 @@ impl Compiler<'_> {
             }
             &Geometry::Cylinder { radius, z, phi_max } => {
                 self.quadric(placing, QuadricKind::Cylinder { radius, z }, phi_max, group)
+            }
+            &Geometry::Torus { radius, tube } => {
+                self.quadric(placing, QuadricKind::Torus(Torus { radius, tube }), 360.0, group)
             }
             Geometry::Bilinear(patches) => self.patches(placing, patches, group),
             Geometry::Curves(strands) => self.curves(placing, strands, group),

@@ -11,9 +11,9 @@ use lookfrom::inspect::{
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::Integrator;
 
-/// Scenes with triangles, spheres, instances, quadrics, disks, patches, curves, holes, glass that absorbs; each with an
+/// Scenes with triangles, spheres, instances, quadrics, tori, disks, patches, curves, holes, glass that absorbs; each with an
 /// integrator.
-const SCENES: [(&str, Integrator); 9] = [
+const SCENES: [(&str, Integrator); 10] = [
     ("notes-exercise.toml", Integrator::Raycast),
     ("hero.toml", Integrator::Whitted),
     ("hero.toml", Integrator::Path),
@@ -23,6 +23,7 @@ const SCENES: [(&str, Integrator); 9] = [
     ("../docs/guide/scenes/shape-cylinder.toml", Integrator::Whitted),
     ("../docs/guide/scenes/shape-disk.toml", Integrator::Path),
     ("../docs/guide/scenes/shape-patch.toml", Integrator::Path),
+    ("../docs/guide/scenes/shape-torus.toml", Integrator::Whitted),
 ];
 
 /// Every inspection of a grid over a small picture of each scene.
@@ -204,6 +205,25 @@ fn choice(of: &Derivation, probability: f32, what: &str) {
     assert!((f64::from(probability) - expected).abs() <= 1e-4 * expected, "{what}: {probability}: {of:?}");
 }
 
+/// The quartic equation of a torus, by five of its values, and its roots by the distance from the torus.
+fn torus(test: &TestNumbers, [a, d]: [DVec3; 2], [radius, tube]: [f64; 2], what: &str) {
+    let coefficients = ["c₀", "c₁", "c₂", "c₃", "c₄ = (d·d)²"].map(|name| number(test, name).expect("shown"));
+    let unit = radius / d.length();
+    for t in [-2.0, -0.5, 0.0, 1.0, 3.0].map(|step| step * unit) {
+        let p = a + t * d;
+        let sum = p.length_squared() + radius * radius - tube * tube;
+        let expected = sum * sum - 4.0 * radius * radius * p.truncate().length_squared();
+        let terms: Vec<f64> = coefficients.iter().zip(0..).map(|(c, power)| c * t.powi(power)).collect();
+        let scale = (a.length() + (t * d).length() + radius + tube).powi(4);
+        near(terms.iter().sum(), expected, scale, what);
+    }
+    for t in ["t₁", "t₂", "t₃", "t₄"].iter().filter_map(|name| number(test, name)) {
+        let p = a + t * d;
+        let off = (p.truncate().length() - radius).hypot(p.z) - tube;
+        assert!(off.abs() <= 1e-9 * (radius + tube), "{what}: t = {t} is off by {off}");
+    }
+}
+
 /// The numbers of a candidate, from its inputs. Returns t where there is one hit with the plane.
 fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
     let what = &format!("{what}: {}", candidate.name);
@@ -226,6 +246,10 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
     match &candidate.test {
         Test::Triangle(_) => triangle(test, a, d, what),
         Test::Sphere(_) => quadratic(test, a - vector(test, "c"), d, find(test, "R")[0], what),
+        Test::Quadric(_) if has(test, "r of the tube") => {
+            let (a, d) = in_space(test, [a, d], "quadric", what);
+            torus(test, [a, d], [find(test, "R")[0], find(test, "r of the tube")[0]], what);
+        }
         Test::Quadric(_) => {
             let (a, d) = in_space(test, [a, d], "quadric", what);
             let [is_flat, is_round] = [has(test, "R of the hole"), number(test, "z at t₁").is_some()];
@@ -452,6 +476,8 @@ fn every_number_follows_from_what_is_printed() {
             }
             for of_ray in &ray.candidates {
                 candidate(of_ray, ray, &what);
+                let is_torus = of_ray.name.starts_with("torus") && of_ray.is_nearest;
+                told.extend(is_torus.then(|| "Torus met".to_owned()));
                 let kind = format!("{:?}", of_ray.test);
                 let kind = kind.split('(').next().expect("a name");
                 told.insert(format!("{kind}{}", if of_ray.is_nearest { " met" } else { "" }));
@@ -477,6 +503,7 @@ fn every_number_follows_from_what_is_printed() {
         "Triangle met",
         "Sphere met",
         "Quadric met",
+        "Torus met",
         "Disk met",
         "Patch met",
         "Curve met",
@@ -532,6 +559,8 @@ fn so_do_those_of_ribbons_spots_and_solid_angles() {
             let what = format!("at {x} {y}, ray {}", ray.address);
             for of_ray in &ray.candidates {
                 candidate(of_ray, ray, &what);
+                let is_torus = of_ray.name.starts_with("torus") && of_ray.is_nearest;
+                told.extend(is_torus.then(|| "Torus met".to_owned()));
                 let test = of_ray.test.numbers();
                 told.extend(has(test, "N at u = 0").then(|| format!("ribbon {}", of_ray.is_nearest)));
                 let reasons = of_ray.verdict.strip_prefix("rejected: ").into_iter();

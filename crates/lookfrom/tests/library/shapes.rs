@@ -448,6 +448,8 @@ fn poles_have_derivatives_and_nonsense_has_no_surface() {
         Geometry::PartialDisk { height: f64::INFINITY, radius: 1.0, inner_radius: 2.0, phi_max: 360.0 },
         Geometry::Cylinder { radius: 0.0, z: [0.0, 0.0], phi_max: 1e300 },
         Geometry::Cylinder { radius: f64::INFINITY, z: [f64::NEG_INFINITY, f64::NAN], phi_max: 360.0 },
+        Geometry::Torus { radius: 0.0, tube: 1.0 },
+        Geometry::Torus { radius: f64::NAN, tube: f64::INFINITY },
         Geometry::Bilinear(Arc::new(collapsed)),
         Geometry::Bilinear(Arc::new(Patches::default())),
         Geometry::Curves(Arc::new([strand([0.0, 0.0]), strand([f32::NAN, f32::INFINITY])])),

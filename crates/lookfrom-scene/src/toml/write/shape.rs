@@ -141,6 +141,17 @@ impl Writer<'_> {
                 fields.put_unless("phi_max", *phi_max, 360.0);
                 ("cylinder", is_placed)
             }
+            Geometry::Torus { radius, tube } => {
+                let (center, axis) = (matrix.w_axis.truncate(), matrix.z_axis.truncate());
+                let own = along(center, axis.normalize());
+                let is_placed = same_bits(matrix, &(DMat4::IDENTITY * own)) && *matrix != DMat4::IDENTITY;
+                let (center, axis) = if is_placed { (center, axis) } else { (DVec3::ZERO, DVec3::Z) };
+                fields.put_unless("center", center, DVec3::ZERO);
+                fields.put_unless("axis", axis, DVec3::Y);
+                fields.put("radius", *radius);
+                fields.put("tube", *tube);
+                ("torus", is_placed)
+            }
             Geometry::Bilinear(patches) => {
                 self.patches(fields, patches);
                 ("patch", false)

@@ -1,10 +1,10 @@
-//! Quadrics in their own space, where they are spheres, cylinders and disks around the z axis.
+//! Quadrics in their own space, where they are spheres, cylinders, disks and tori around the z axis.
 
 use glam::DVec3;
 use lookfrom_bvh::reference::{Quadratic, sphere as quadratic};
 
 use super::reference::roots;
-use super::{TestNumbers, TestRay};
+use super::{TestNumbers, TestRay, torus};
 use crate::primitive::{Quadric, QuadricKind};
 
 /// Names of a ray in the space of a quadric.
@@ -42,6 +42,7 @@ pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) 
             numbers.input("R of the hole", [inner_radius]);
             flat(&ray, (height, radius, inner_radius, quadric.phi_max), numbers)
         }
+        QuadricKind::Torus(torus) => return Some(torus::test(&torus, &ray, numbers)),
     };
     numbers.input("φ up to", [quadric.phi_max]);
     reason

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use crate::primitive::{Primitives, Quadric, QuadricKind};
+use crate::primitive::{Primitives, Quadric, QuadricKind, Torus};
 use crate::world::World;
 
 /// Maximum number of outlines of all shapes.
@@ -127,6 +127,7 @@ fn quadric(quadric: &Quadric) -> Vec<Vec<DVec3>> {
             return vec![turn(radius, height), turn(inner_radius, height)];
         }
         QuadricKind::Cylinder { radius, z } => (z.to_vec(), Box::new(move |_| radius)),
+        QuadricKind::Torus(torus) => return rings(quadric, torus),
         QuadricKind::Sphere { radius, z: [low, high] } => (
             (0..=8).map(|step| low + (high - low) * f64::from(step) / 8.0).collect(),
             Box::new(move |z| (radius * radius - z * z).max(0.0).sqrt()),
@@ -142,4 +143,21 @@ fn quadric(quadric: &Quadric) -> Vec<Vec<DVec3>> {
         lines.push(heights.iter().map(at).collect());
     }
     lines
+}
+
+/// Circles around the axis of a torus, and around its tube.
+fn rings(quadric: &Quadric, Torus { radius, tube }: Torus) -> Vec<Vec<DVec3>> {
+    let place = |[cos, sin]: [f64; 2], [x, z]: [f64; 2]| {
+        let ring = radius + tube * x;
+        quadric.point_in_render(DVec3::new(ring * cos, ring * sin, tube * z))
+    };
+    let around_axis = circle(TAU)
+        .step_by(CIRCLE / 4)
+        .skip(1)
+        .map(|tube| circle(TAU).map(|axis| place(axis, tube)).collect());
+    let around_tube = circle(TAU)
+        .step_by(CIRCLE / 8)
+        .skip(1)
+        .map(|axis| circle(TAU).map(|tube| place(axis, tube)).collect());
+    around_axis.chain(around_tube).collect()
 }

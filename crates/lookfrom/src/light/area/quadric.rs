@@ -1,4 +1,4 @@
-//! Quadric lights: spheres, cylinders, disks and their parts.
+//! Quadric lights: spheres, cylinders, disks and their parts, and tori.
 //!
 //! A whole sphere is sampled by direction, in a file of its own, a whole disk as any disk. Parts are sampled by area in
 //! object space, which the map to render space changes by a factor that depends on the point.
@@ -61,7 +61,9 @@ impl QuadricLight {
                 let at = self.quadric.point(self.quadric.sample_in_object([0.5; 2]), MaterialBinding::NONE);
                 NormalCone { axis: at.ng, cos: 1.0 }
             }
-            QuadricKind::Sphere { .. } | QuadricKind::Cylinder { .. } => NormalCone::ALL,
+            QuadricKind::Sphere { .. } | QuadricKind::Cylinder { .. } | QuadricKind::Torus(_) => {
+                NormalCone::ALL
+            }
         }
     }
 

@@ -4,16 +4,16 @@ use super::*;
 use crate::core::hash;
 
 /// A number in −1 … 1.
-fn number(seed: u64) -> f64 {
+pub(super) fn number(seed: u64) -> f64 {
     (hash::mix(seed) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-fn vector(seed: u64) -> DVec3 {
+pub(super) fn vector(seed: u64) -> DVec3 {
     [0, 1, 2].map(|k| number(3 * seed + k)).into()
 }
 
 /// 2 to a random power of at most ± `most`.
-fn power(seed: u64, most: f64) -> f64 {
+pub(super) fn power(seed: u64, most: f64) -> f64 {
     libm::exp2(most * number(seed))
 }
 

@@ -81,6 +81,7 @@ fn kind<'a>(scene: &'a Scene, shape: &Shape) -> &'a str {
         Geometry::PartialSphere { .. } => "partial sphere",
         Geometry::PartialDisk { .. } => "partial disk",
         Geometry::Cylinder { .. } => "cylinder",
+        Geometry::Torus { .. } => "torus",
         Geometry::Bilinear(_) => "bilinear patches",
         Geometry::Curves(_) => "curves",
         Geometry::Mesh(id) => match file_stem(&scene.meshes[id.index()].name) {

@@ -116,6 +116,11 @@ pub(crate) fn forms() -> Vec<Form> {
             at: |u, v| around(300f64.to_radians() * u, 0.8, -0.9 + v * 1.6),
         },
         Form {
+            name: "torus",
+            geometry: Geometry::Torus { radius: 0.9, tube: 0.4 },
+            at: |u, v| around(2.0 * PI * u, 0.9 + 0.4 * (2.0 * PI * v).cos(), 0.4 * (2.0 * PI * v).sin()),
+        },
+        Form {
             name: "patch",
             geometry: Geometry::Bilinear(Arc::new(patches)),
             at: |u, v| {

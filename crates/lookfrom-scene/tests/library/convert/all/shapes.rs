@@ -53,6 +53,7 @@ pub(super) fn geometries() -> Vec<(String, Scene)> {
         Geometry::PartialDisk { height: 0.0, radius: 2.0, inner_radius: 0.0, phi_max: 360.0 },
         Geometry::PartialDisk { height: 1.5, radius: 2.0, inner_radius: 0.5, phi_max: 200.0 },
         Geometry::Cylinder { radius: 2.0, z: [-1.0, 1.5], phi_max: 200.0 },
+        Geometry::Torus { radius: 2.0, tube: 1.0 / 3.0 },
         patches(2),
         patches(9),
         strands(|_| Profile::Flat, 3, true),
@@ -71,8 +72,9 @@ pub(super) fn geometries() -> Vec<(String, Scene)> {
         Geometry::Cylinder { .. } => 6,
         Geometry::Bilinear(_) => 7,
         Geometry::Curves(_) => 8,
+        Geometry::Torus { .. } => 9,
         // By `meshes`.
-        Geometry::Mesh(_) => 9,
+        Geometry::Mesh(_) => 10,
     };
     let mut scenes = Vec::new();
     for matrix in [DMat4::IDENTITY, shear(), DMat4::from_translation(DVec3::new(1.0, 2.0, 1.0 / 3.0))] {

@@ -1,0 +1,346 @@
+//! Tori: the tube around a circle in the plane z = 0 of object space.
+//!
+//! A line meets the surface of the fourth degree `(x² + y² + z² + R² − r²)² = 4 R² (x² + y²)` at most four times. From its point
+//! nearest to the centre on, the quartic has no cubic term, and its extremes, roots of a cubic, separate the meetings. Each is found
+//! between two of them by Newton's method, to 10⁻¹¹ of R + r however thin the tube is; where a step would leave the interval, that is
+//! halved.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec2, DVec3};
+
+/// A tube of this part of the size or more is as exactly found by the quartic: that loses as many bits as the tube is thin.
+const THIN: f64 = 1.0 / 16.0;
+/// The most steps to a root: halving an interval of 2 leaves nothing between its ends.
+const MOST_STEPS: u32 = 60;
+/// The length of the last step, in units of the torus's size.
+const FOUND: f64 = 1e-11;
+
+/// The points at a distance of `tube` from the circle of `radius` around the z axis: of a tube that is thicker than the circle, those on
+/// the outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torus {
+    /// Of the circle in the middle of the tube, positive.
+    pub radius: f64,
+    /// Radius of the tube, positive.
+    pub tube: f64,
+}
+
+/// A point in the half plane that it spans with the axis, relative to the middle of the tube.
+struct Section {
+    /// The direction away from the axis.
+    away: DVec2,
+    /// Distance from the axis.
+    ring: f64,
+    /// Along `away`, and along the axis.
+    offset: DVec2,
+}
+
+/// The quartic `s⁴ + 2 p s² + 4 q s + rest`, which is positive outside.
+struct Quartic {
+    p: f64,
+    q: f64,
+    rest: f64,
+}
+
+impl Quartic {
+    /// The value and the derivative.
+    fn at(&self, s: f64) -> (f64, f64) {
+        let Self { p, q, rest } = *self;
+        (((s * s + 2.0 * p) * s + 4.0 * q) * s + rest, 4.0 * ((s * s + p) * s + q))
+    }
+
+    /// Whether it has a minimum and no other extremes.
+    fn has_one_extreme(&self) -> bool {
+        self.discriminant() >= 0.0
+    }
+
+    /// The discriminant of a quarter of the derivative, s³ + p s + q.
+    fn discriminant(&self) -> f64 {
+        0.25 * self.q * self.q + self.p * self.p * self.p / 27.0
+    }
+
+    /// Where it has its extremes, in ascending order, and infinities (Cardano, Viète).
+    fn extremes(&self) -> [f64; 4] {
+        let Self { p, q, .. } = *self;
+        let discriminant = self.discriminant();
+        if discriminant >= 0.0 {
+            // The term without cancellation, and the other by their product.
+            let term = libm::cbrt(-0.5 * q - discriminant.sqrt().copysign(q));
+            let other = if term == 0.0 { 0.0 } else { -p / (3.0 * term) };
+            return [term + other, f64::INFINITY, f64::INFINITY, f64::INFINITY];
+        }
+        let scale = (-p / 3.0).sqrt();
+        let third = libm::acos((-0.5 * q / (scale * scale * scale)).clamp(-1.0, 1.0)) / 3.0;
+        let (sin, cos) = libm::sincos(third);
+        let (sin, cos) = (scale * 3.0_f64.sqrt() * sin, scale * cos);
+        [-cos - sin, -cos + sin, 2.0 * cos, f64::INFINITY]
+    }
+}
+
+/// A root has to be searched for between extremes.
+struct Unclear;
+
+/// A line and a torus, in units of its size, in which nothing overflows.
+struct Crossing {
+    torus: Torus,
+    line: Line,
+    quartic: Quartic,
+    /// The ends of what is near enough to the torus; in ascending order if there is anything.
+    from: f64,
+    to: f64,
+    /// Of the line's parameter: the way to its origin, the unit of s, and the way by t.
+    nearest: f64,
+    size: f64,
+    speed: f64,
+}
+
+impl Crossing {
+    /// The parameter of the line that was given.
+    fn parameter(&self, s: f64) -> f64 {
+        (self.nearest + s * self.size) / self.speed
+    }
+
+    /// A function that is positive outside and negative inside, and its derivative: the quartic, which is soon computed, but the distance
+    /// where that is more exact, or the quartic has roots inside.
+    fn at(&self, s: f64) -> (f64, f64) {
+        if self.torus.is_by_quartic() {
+            return self.quartic.at(s);
+        }
+        let (distance, gradient) = self.torus.distance(self.line.at(s));
+        (distance, gradient.dot(self.line.direction))
+    }
+
+    /// The roots in ascending order, but those far before `first`: between the extremes of the quartic.
+    fn roots(&self, first: f64) -> impl Iterator<Item = f64> {
+        let mut low = (self.from, true);
+        let extremes = self.quartic.extremes().into_iter().take_while(|_| self.from < self.to);
+        extremes.filter_map(move |extreme| {
+            let high = extreme.clamp(self.from, self.to);
+            let is_outside = high == self.to || self.at(high).0 > 0.0;
+            let (start, was_outside) = std::mem::replace(&mut low, (high, is_outside));
+            let interval = if was_outside { [start, high] } else { [high, start] };
+            (high >= first && was_outside != is_outside).then(|| self.root(interval))
+        })
+    }
+
+    /// The root between a parameter where it is outside and one where it is inside.
+    fn root(&self, [mut outside, mut inside]: [f64; 2]) -> f64 {
+        // From the root of the parabola through both ends whose vertex is at the inner one.
+        let [above, below] = [outside, inside].map(|end| self.at(end).0);
+        let mut s = inside + (outside - inside) * (below / (below - above)).sqrt();
+        for _ in 0..MOST_STEPS {
+            let (value, slope) = self.at(s);
+            *(if value > 0.0 { &mut outside } else { &mut inside }) = s;
+            let newton = s - value / slope;
+            let is_between = newton > outside.min(inside) && newton < outside.max(inside);
+            let next = if is_between { newton } else { 0.5 * (outside + inside) };
+            let step = (next - s).abs();
+            s = next;
+            // The next step would be some square of this one.
+            if step <= FOUND {
+                break;
+            }
+        }
+        s
+    }
+
+    /// The first root after `first` of a quartic with one extreme, if there is one, without that extreme. An error where Newton's method
+    /// passes by the minimum, as it may where the quartic is not convex.
+    fn first_root(&self, first: f64) -> Result<Option<f64>, Unclear> {
+        let start = first.max(self.from);
+        let (value, slope) = self.quartic.at(start);
+        let comes_down = value > 0.0 || first <= self.from;
+        if comes_down && slope >= 0.0 {
+            return Ok(None);
+        }
+        // Towards the minimum, from the outside before it or after it.
+        let mut s = if comes_down { start - value / slope } else { self.to };
+        for _ in 0..MOST_STEPS {
+            let (value, slope) = self.quartic.at(s);
+            if (slope < 0.0) != comes_down {
+                // Of a convex function that has roots no step is too long.
+                return if self.quartic.p >= 0.0 && value > 0.0 { Ok(None) } else { Err(Unclear) };
+            }
+            let step = value / slope;
+            s -= step;
+            if step.abs() <= FOUND {
+                return Ok(Some(s));
+            }
+        }
+        Err(Unclear)
+    }
+}
+
+/// A line from its point nearest to the centre on, in units of the torus's size: `origin + s direction`.
+struct Line {
+    origin: DVec3,
+    /// Of unit length.
+    direction: DVec3,
+}
+
+impl Line {
+    fn at(&self, s: f64) -> DVec3 {
+        self.origin + s * self.direction
+    }
+}
+
+impl Torus {
+    /// The radius of the sphere around it.
+    pub(super) fn size(&self) -> f64 {
+        self.radius + self.tube
+    }
+
+    fn section(&self, p: DVec3) -> Section {
+        let ring = p.truncate().length();
+        let away = if ring > 0.0 { p.truncate() / ring } else { DVec2::X };
+        Section { away, ring, offset: DVec2::new(ring - self.radius, p.z) }
+    }
+
+    /// The parameter of the first meeting with a ray from `t_min` on that is in its range.
+    pub(super) fn first_meeting(
+        &self,
+        [origin, direction]: [DVec3; 2],
+        t_min: f64,
+        is_in_range: impl Fn(&f64) -> bool,
+    ) -> Option<f64> {
+        let crossing = self.crossing(origin, direction);
+        let first = (t_min * crossing.speed - crossing.nearest) / crossing.size;
+        if !(crossing.from < crossing.to && first < crossing.to) {
+            return None;
+        }
+        if crossing.torus.is_by_quartic()
+            && crossing.quartic.has_one_extreme()
+            && let Ok(s) = crossing.first_root(first)
+        {
+            return s.map(|s| crossing.parameter(s)).filter(is_in_range);
+        }
+        crossing.roots(first).map(|s| crossing.parameter(s)).find(is_in_range)
+    }
+
+    /// The parameters of all meetings with a line, in ascending order.
+    pub(crate) fn meetings(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
+        let crossing = self.crossing(origin, direction);
+        crossing.roots(f64::NEG_INFINITY).map(|s| crossing.parameter(s)).collect()
+    }
+
+    fn crossing(&self, origin: DVec3, direction: DVec3) -> Crossing {
+        let (size, speed) = (self.size(), direction.length());
+        let direction = direction / speed;
+        let nearest = -origin.dot(direction);
+        let line = Line { origin: (origin + nearest * direction) / size, direction };
+        let torus = Self { radius: self.radius / size, tube: self.tube / size };
+        let [from, to] = torus.ends(&line);
+        let quartic = torus.quartic(&line);
+        Crossing { torus, line, quartic, from, to, nearest, size, speed }
+    }
+
+    /// Whether the quartic is as exact as the distance, and has no roots inside.
+    fn is_by_quartic(&self) -> bool {
+        self.tube >= THIN && self.tube <= self.radius
+    }
+
+    /// Where a line enters the ball around the torus, of size 1, between the planes that it touches, and where it leaves that: in
+    /// ascending order if it does.
+    fn ends(&self, line: &Line) -> [f64; 2] {
+        let Line { origin: o, direction: d } = *line;
+        let half = (1.0 - o.length_squared()).sqrt();
+        let between = if d.z == 0.0 {
+            if o.z.abs() > self.tube { [f64::INFINITY, f64::NEG_INFINITY] } else { [-half, half] }
+        } else {
+            let [a, b] = [-self.tube, self.tube].map(|z| (z - o.z) / d.z);
+            [a.min(b), a.max(b)]
+        };
+        if half > 0.0 { [between[0].max(-half), between[1].min(half)] } else { [0.0; 2] }
+    }
+
+    /// The quartic of a line.
+    fn quartic(&self, line: &Line) -> Quartic {
+        let Line { origin: o, direction: d } = *line;
+        let (o_across, d_across) = (o.truncate(), d.truncate());
+        let square = self.radius * self.radius;
+        let sum = o.length_squared() + square - self.tube * self.tube;
+        Quartic {
+            p: sum - 2.0 * square * d_across.length_squared(),
+            q: -2.0 * square * o_across.dot(d_across),
+            rest: sum * sum - 4.0 * square * o_across.length_squared(),
+        }
+    }
+
+    /// The distance of a point from the surface, negative inside, and its gradient.
+    fn distance(&self, p: DVec3) -> (f64, DVec3) {
+        let Section { away, offset, .. } = self.section(p);
+        let from_middle = offset.length();
+        let gradient = (away * offset.x).extend(offset.y) / from_middle;
+        (from_middle - self.tube, gradient)
+    }
+
+    /// The point of the surface nearest to one that is on it up to errors.
+    pub(super) fn refined(&self, p: DVec3) -> DVec3 {
+        let away = self.section(p).away;
+        (away * self.radius).extend(0.0) + self.tube * self.outward(p)
+    }
+
+    /// The unit normal at a point of the surface.
+    pub(super) fn outward(&self, p: DVec3) -> DVec3 {
+        let Section { away, offset, .. } = self.section(p);
+        (away * offset.x).extend(offset.y).try_normalize().unwrap_or_else(|| away.extend(0.0))
+    }
+
+    /// The angle around the middle of the tube, from the outermost circle up: [0, 2π).
+    pub(super) fn angle(&self, p: DVec3) -> f64 {
+        let Section { offset, .. } = self.section(p);
+        super::angle(offset.extend(0.0))
+    }
+
+    /// The derivative of a point of the surface by the fraction of [`Torus::angle`].
+    pub(super) fn along_tube(&self, p: DVec3) -> DVec3 {
+        let Section { away, offset, .. } = self.section(p);
+        TAU * (away * -offset.y).extend(offset.x)
+    }
+
+    /// The smaller radius of curvature at a point of the surface; where the tube meets itself on the axis, one that is small.
+    pub(super) fn radius_of_curvature(&self, p: DVec3) -> f64 {
+        let Section { ring, offset, .. } = self.section(p);
+        let around_axis = ring * self.tube / offset.x.abs();
+        self.tube.min(around_axis.max(1e-6 * self.tube))
+    }
+
+    /// The half of the angle around the middle of the tube that is on the surface: π, but where the tube meets itself.
+    fn half_angle(&self) -> f64 {
+        if self.tube > self.radius { libm::acos(-self.radius / self.tube) } else { PI }
+    }
+
+    /// The area of a part, for each radian around the axis.
+    pub(super) fn area_by_angle(&self) -> f64 {
+        let half = self.half_angle();
+        2.0 * self.tube * (self.radius * half + self.tube * libm::sin(half))
+    }
+
+    /// The distance from the axis and the height of a point of the surface, uniform over the area for uniform `u` in [0, 1).
+    pub(super) fn sample(&self, u: f64) -> [f64; 2] {
+        let Self { radius, tube } = *self;
+        // The area grows by the angle as radius + tube cos: its integral is radius angle + tube sin.
+        let half = self.half_angle();
+        let wanted = (2.0 * u - 1.0) * (radius * half + tube * libm::sin(half));
+        let (mut low, mut high) = (-half, half);
+        let mut angle = (2.0 * u - 1.0) * half;
+        for _ in 0..MOST_STEPS {
+            let (sin, cos) = libm::sincos(angle);
+            let beyond = radius * angle + tube * sin - wanted;
+            *(if beyond < 0.0 { &mut low } else { &mut high }) = angle;
+            let newton = angle - beyond / (radius + tube * cos);
+            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            let step = (next - angle).abs();
+            angle = next;
+            if step <= FOUND {
+                break;
+            }
+        }
+        let (sin, cos) = libm::sincos(angle);
+        [radius + tube * cos, tube * sin]
+    }
+}
+
+#[cfg(test)]
+mod tests;
