@@ -60,7 +60,7 @@ pub use traced::{Rays, Traced};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 27;
+pub const SAMPLING_VERSION: u32 = 28;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.
@@ -151,7 +151,7 @@ impl Renderer {
             false => world,
         };
         let eye = view.camera.lookfrom() - world.origin();
-        let ray_start = start::ray_start(&world, &view.camera, eye);
+        let ray_start = start::ray_start(&world, &view, eye);
         let surface = match &view.camera.projection {
             Projection::Irradiance { surface } => Some(Arc::new(world.measured_surface(surface, &view.at)?)),
             _ => None,

@@ -63,6 +63,10 @@ pub(super) fn check(renderer: &Renderer, subject: &Subject, warnings: &mut Vec<W
         if self::seen(renderer, FINE).iter().any(Option::is_some) || sees_one_of(renderer, middles) {
             return;
         }
+        // It looks at the medium that it is in.
+        if !world.space_of(renderer.view.medium).is_empty() {
+            return;
+        }
         // It looks at a medium, perhaps one that is not rendered, of which its reader warns.
         let is_interface = |surface: &SurfaceInteraction| world.is_interface(surface);
         if first_hits(renderer, FINE, |_| false).iter().flatten().any(is_interface) {

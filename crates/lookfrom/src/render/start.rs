@@ -14,7 +14,8 @@ use crate::core::sampler::{self, lanes::PixelSamplers};
 use crate::core::times::Times;
 use crate::core::vector::Vector;
 use crate::shading::texture::SpectralMode;
-use crate::view::camera::{Camera, CameraRay, StartingRay};
+use crate::view::View;
+use crate::view::camera::{CameraRay, StartingRay};
 use crate::view::lens_system::Crossing;
 use crate::world::{MeasuredSurface, World};
 
@@ -82,11 +83,13 @@ impl Start {
 const FAR: f64 = 8.0;
 
 /// The point in render space at or around which rays of a camera start. Those of a parallel camera begin with the scene
-/// where it is far away, so that its distance costs no precision.
-pub(super) fn ray_start(world: &World, camera: &Camera, eye: DVec3) -> DVec3 {
+/// where it is far away, so that its distance costs no precision; but not in a medium, through all of which light has to go.
+pub(super) fn ray_start(world: &World, view: &View, eye: DVec3) -> DVec3 {
+    let camera = &view.camera;
     let bounds = world.bvh.bounds();
     let [min, max] = [bounds.min, bounds.max].map(|corner| Vec3::from_array(corner).as_dvec3());
-    if !camera.is_parallel() || !(max - min).is_finite() || min.x > max.x {
+    let is_in_medium = !world.space_of(view.medium).is_empty();
+    if !camera.is_parallel() || is_in_medium || !(max - min).is_finite() || min.x > max.x {
         return eye;
     }
     let w = camera.w().normalize();

@@ -90,7 +90,10 @@ fn unsuitable(scene: &mut Scene, file: &Path, options: &Options) -> Vec<String> 
         ));
         scene.render.allocation = Allocation::Uniform;
     }
-    if scene.bounds().is_empty() {
+    // Fog with lamps in it is something to see.
+    let is_in_medium =
+        scene.render.media && scene.camera.as_ref().is_some_and(|camera| camera.medium.is_some());
+    if scene.bounds().is_empty() && !is_in_medium {
         messages.push("this scene has no geometry: the picture shows only the background".to_owned());
     }
     let mut of_gltf = ImportOptions { instanced_lights: false, subdivision: 0, ..options.import.clone() };

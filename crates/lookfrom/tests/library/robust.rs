@@ -272,6 +272,43 @@ fn a_parallel_camera_may_be_far_away() {
     }
 }
 
+/// The way of light through a medium is as long from a parallel camera as from any other, however far away that is.
+#[test]
+fn a_parallel_camera_far_away_sees_through_all_of_a_medium() {
+    let passed = |distance: f64, absorption: f64, integrator: &str| {
+        let scene = scene(&format!(
+            r#"
+            [camera]
+            lookfrom = [0, 0, {distance}]
+            lookat = [0, 0, 0]
+            projection = "orthographic"
+            height = 0.5
+            medium = "fog"
+            [media.fog]
+            absorption = {absorption}
+            [image]
+            width = 2
+            height = 2
+            [render]
+            integrator = "{integrator}"
+            samples = 1
+            [[quad]]
+            corner = [-0.5, -0.5, 0]
+            edge_u = [1, 0, 0]
+            edge_v = [0, 1, 0]
+            emission = 1
+            "#
+        ));
+        Compiled::new(scene).film().picture().pixels[0][1]
+    };
+    for distance in [1.0, 50.0, 1e4] {
+        for integrator in ["path", "whitted"] {
+            let found = passed(distance, 1.0 / distance, integrator);
+            assert!((found - (-1.0_f32).exp()).abs() < 1e-5, "{integrator} from {distance}: {found}");
+        }
+    }
+}
+
 /// The ground below an eye is where it is on a sphere of any size.
 #[test]
 fn the_ground_of_planets_is_where_it_is() {

@@ -406,3 +406,17 @@ fn an_integrator_of_ones_own() {
     session.set_settings(session.settings().clone()).expect("the same settings");
     assert_eq!(session.renderer().integrator(), "path");
 }
+
+#[test]
+fn only_a_scene_without_shapes_and_fog_shows_nothing_but_its_background() {
+    let told = |fog: &str| {
+        let lamp = "[[light]]\ntype = \"point\"\nposition = [1, 0, -3]\nintensity = 1";
+        let camera = "[camera]\nlookfrom = [0, 0, 0]\nlookat = [0, 0, -1]";
+        let scene = format!("{camera}\n{fog}\n{lamp}");
+        let session = Session::from_bytes("a.toml", scene.into_bytes(), &small()).expect("a scene");
+        session.warnings().iter().any(|warning| warning.message.contains("no geometry"))
+    };
+    assert!(told(""));
+    assert!(!told("medium = \"fog\"\n[media.fog]\nscattering = 0.1"));
+    assert!(told("medium = \"fog\"\n[media.fog]\nscattering = 0.1\n[render]\nmedia = false"));
+}

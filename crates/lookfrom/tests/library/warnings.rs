@@ -128,6 +128,9 @@ fn an_eye_that_sees_nothing_is_told_of() {
     let cloud = "[materials.m]\ntype = \"interface\"\n[[sphere]]\nmaterial = \"m\"\ncenter = ";
     none(&seen_from([0.0, 0.0, 9.0], &format!("{cloud}[0, 0, 0]")));
     one(&seen_from([0.0; 3], &format!("{cloud}[0, 0, 5]")), &["sees nothing"]);
+    // In fog there is always something before the eye.
+    let fog = "medium = \"fog\"\n[media.fog]\nabsorption = 0.1\nscattering = 0.1";
+    none(&seen_from([0.0; 3], &format!("{fog}\n{ball}")));
     // What is behind is seen by an eye that sees all around.
     let around = "projection = \"equirectangular\"\n[image]\nwidth = 64\nheight = 32";
     none(&seen_from([0.0; 3], &format!("{around}\n{ball}")));
