@@ -182,8 +182,11 @@ pub(crate) fn cubic_b_spline([a, b, c, d]: [Vec3; 4]) -> [Vec3; 4] {
 pub enum Profile {
     /// A flat band that always faces the ray.
     Flat,
-    /// A flat band that always faces the ray, shaded as a cylinder.
+    /// A flat band that always faces the ray, shaded as the outside of a cylinder.
     Cylinder,
+    /// The same as pbrt-v4 shades it: with the normals of the far half of the cylinder, whose inside is what the ray sees. Hair does not
+    /// show the difference.
+    PbrtCylinder,
     /// A flat band perpendicular to these two unit normals, at its beginning and at its end.
     Ribbon([Vec3; 2]),
 }

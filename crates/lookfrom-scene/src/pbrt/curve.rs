@@ -71,7 +71,7 @@ impl Reader<'_, '_> {
             };
             let profile = match form {
                 CurveShape::Flat => Profile::Flat,
-                CurveShape::Cylinder => Profile::Cylinder,
+                CurveShape::Cylinder => Profile::PbrtCylinder,
                 CurveShape::Ribbon => Profile::Ribbon(
                     [segment, segment + 1].map(|end| normals[end].try_normalize().unwrap_or(Vec3::Z)),
                 ),

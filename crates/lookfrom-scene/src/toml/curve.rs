@@ -12,8 +12,12 @@ use crate::error::Result;
 use crate::shape::{Geometry, Patches, Profile, Strand};
 
 /// The words for profiles; normals of ribbons are given besides.
-pub(super) const PROFILES: &[(&str, Profile)] =
-    &[("flat", Profile::Flat), ("cylinder", Profile::Cylinder), ("ribbon", Profile::Ribbon([Vec3::Z; 2]))];
+pub(super) const PROFILES: &[(&str, Profile)] = &[
+    ("flat", Profile::Flat),
+    ("cylinder", Profile::Cylinder),
+    ("cylinder_pbrt", Profile::PbrtCylinder),
+    ("ribbon", Profile::Ribbon([Vec3::Z; 2])),
+];
 
 /// A bilinear patch with four corners.
 pub(super) fn patch(table: &Table<'_>) -> Result<Geometry> {
@@ -48,9 +52,7 @@ fn four<T>(value: Value<'_>, expected: &str, decode: impl Fn(Value<'_>) -> Resul
 
 /// Cubic Bézier curves, each of which begins where the previous one ends.
 pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
-    let is_round = table.or("profile", false, |value| {
-        value.choice(&[("flat", false), ("cylinder", true), ("ribbon", false)])
-    });
+    let profile = table.or("profile", Profile::Flat, |value| value.choice(PROFILES));
     let example = "[[0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 2, 0]]";
     let points = table.need("points", example, Vec::new(), |value| {
         let expected = "4, 7, 10, … points: each curve has two between its ends";
@@ -75,8 +77,7 @@ pub(super) fn curve(table: &Table<'_>, limit: u64) -> Result<Geometry> {
         width: [widths[i], widths[i + 1]],
         profile: match &normals {
             Some(normals) => Profile::Ribbon([normals[i], normals[i + 1]]),
-            None if is_round => Profile::Cylinder,
-            None => Profile::Flat,
+            None => profile,
         },
     });
     Ok(Geometry::Curves(strands.collect()))

@@ -110,7 +110,7 @@ fn check_strands(part: &Part<'_>, strands: &[Strand]) -> Result<()> {
             && strand.width.iter().all(|width| *width > 0.0 && width.is_finite())
             && match strand.profile {
                 Profile::Ribbon(normals) => normals.iter().all(|normal| normal.is_finite()),
-                Profile::Flat | Profile::Cylinder => true,
+                Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => true,
             }
     };
     part.all("curves", strands, "a curve of finite points with positive widths", is_valid)

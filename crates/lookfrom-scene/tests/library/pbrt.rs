@@ -391,7 +391,7 @@ fn curves_taper_over_their_segments() {
         strands[0].points[0].abs_diff_eq(Vec3::X, 1e-6)
             && strands[1].points[3].abs_diff_eq(3.0 * Vec3::X, 1e-6)
     );
-    assert_eq!(strands[0].profile, Profile::Cylinder);
+    assert_eq!(strands[0].profile, Profile::PbrtCylinder);
 }
 
 #[test]

@@ -91,7 +91,7 @@ impl Curves {
     pub(crate) fn ribbon(&self, primitive: u32, u: f64) -> Option<([DVec3; 2], DVec3)> {
         match self.segment(primitive).0.profile {
             Profile::Ribbon(normals) => Some((normals.map(Vec3::as_dvec3), ribbon_normal(normals, u))),
-            Profile::Flat | Profile::Cylinder => None,
+            Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => None,
         }
     }
 
@@ -123,19 +123,27 @@ impl Curves {
         let dpdu = if dpdu == DVec3::ZERO { direction.any_orthonormal_vector() } else { dpdu };
         let width = visible_width(strand, along, direction);
 
-        // Across: in the ribbon's plane, or perpendicular to the ray; that of a cylinder turns with v.
+        // Across: in the ribbon's plane, or perpendicular to the ray.
         let across = match strand.profile {
             Profile::Ribbon(normals) => ribbon_normal(normals, along).cross(dpdu),
-            Profile::Flat | Profile::Cylinder => direction.cross(dpdu),
+            Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => direction.cross(dpdu),
         };
         let mut dpdv = across.normalize_or(dpdu.any_orthonormal_vector()) * width;
-        if strand.profile == Profile::Cylinder {
-            let turn = -(f64::from(v) - 0.5) * std::f64::consts::PI;
-            let (sin, cos) = libm::sincos(turn);
+        // That of a cylinder turns around it: along the half that the ray sees, or, in pbrt, along the far one, in proportion to v.
+        let turned = match strand.profile {
+            Profile::Cylinder => {
+                let sin = 2.0 * f64::from(v) - 1.0;
+                Some((sin, (1.0 - sin * sin).max(0.0).sqrt()))
+            }
+            Profile::PbrtCylinder => Some(libm::sincos((0.5 - f64::from(v)) * std::f64::consts::PI)),
+            Profile::Flat | Profile::Ribbon(_) => None,
+        };
+        if let Some((sin, cos)) = turned {
             dpdv = cos * dpdv + sin * dpdu.normalize().cross(dpdv);
         }
         let normal = self.object_from_render.normal_back(dpdu.cross(dpdv).to_array());
-        let ng = DVec3::from_array(normal).normalize_or(DVec3::Z) * if self.reverse { -1.0 } else { 1.0 };
+        let is_turned = self.reverse != (strand.profile == Profile::Cylinder);
+        let ng = DVec3::from_array(normal).normalize_or(DVec3::Z) * if is_turned { -1.0 } else { 1.0 };
 
         // The error bound is a whole width, scaled to render space.
         let rows = self.render_from_object.matrix.map(|row| DVec3::from_array(row).length());
@@ -286,7 +294,7 @@ fn visible_width(strand: &Strand, u: f64, direction: DVec3) -> f64 {
     let width = width_at(strand, u);
     match strand.profile {
         Profile::Ribbon(normals) => width * ribbon_normal(normals, u).dot(direction).abs(),
-        Profile::Flat | Profile::Cylinder => width,
+        Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => width,
     }
 }
 

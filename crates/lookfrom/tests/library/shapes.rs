@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::support::forms::{Random, forms, place, ray, scene_of, shape, shining, twin, world};
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat3, DMat4, DVec3, Vec3};
 use lookfrom::shading::interaction::SurfaceInteraction;
 use lookfrom::world::World;
 use lookfrom_bvh::Ray;
@@ -309,7 +309,7 @@ const STRAND: [[f32; 3]; 4] = [[-1.0, -0.5, 0.0], [-0.2, 0.9, 0.4], [0.3, -0.9, 
 fn curves_are_met_where_a_search_along_them_says() {
     let mut random = Random(5);
     let ribbon = Profile::Ribbon([Vec3::Z, Vec3::new(0.0, 0.6, 0.8)]);
-    for profile in [Profile::Flat, Profile::Cylinder, ribbon] {
+    for profile in [Profile::Flat, Profile::Cylinder, Profile::PbrtCylinder, ribbon] {
         let strand = Strand { points: STRAND.map(Vec3::from_array), width: [0.2, 0.08], profile };
         let points = STRAND.map(|p| Vec3::from_array(p).as_dvec3());
         let at = |u: f64| {
@@ -373,11 +373,16 @@ fn curves_are_met_where_a_search_along_them_says() {
                 let length = back.transform_vector3((to - from).as_dvec3()).length();
                 let away = (f64::from(hit.t) * length - depth).abs();
                 assert!(away < 1e-6, "{profile:?}: the depth is {away} off");
-                // Seen from behind its normal, as in pbrt; a round one turns it by up to a right angle.
+                // Seen from behind its normal, as in pbrt; a round one turns it by up to a right angle, and is seen from before it
+                // elsewhere: off the middle it points away from that. The map keeps no right angles.
                 let facing = surface.ng.dot(surface.wo.as_dvec3());
+                let across = back.transform_point3(DVec3::from_array(surface.point.position)) - at(u);
+                let outward = DMat3::from_mat4(map).transpose() * surface.ng;
+                let sideways = across.reject_from_normalized(direction).dot(outward);
                 match profile {
                     Profile::Flat => assert!(facing < 0.0),
-                    Profile::Cylinder => assert!(facing < 0.05),
+                    Profile::Cylinder => assert!(facing > -0.05 && (sideways > 0.0 || off < 0.3)),
+                    Profile::PbrtCylinder => assert!(facing < 0.05),
                     Profile::Ribbon(_) => {}
                 }
                 let tangent = (at(u + 1e-5) - at(u - 1e-5)) / 2e-5;
@@ -386,6 +391,30 @@ fn curves_are_met_where_a_search_along_them_says() {
             }
         }
         assert!(hits > 300 && sure > 500, "{profile:?}: {hits} hits, {sure} sure");
+    }
+}
+
+/// A band that is shaded as a cylinder has the normals of the half of it that the ray sees, and pbrt's those of the far half, seen from
+/// inside.
+#[test]
+fn round_curves_have_the_normals_of_cylinders() {
+    let points = [-1.5, -0.5, 0.5, 1.5].map(|y| Vec3::new(0.0, y, 0.0));
+    let normal = |profile, x: f32| {
+        let strand = Strand { points, width: [0.5; 2], profile };
+        let world = world(shape(Geometry::Curves(Arc::new([strand])), DMat4::IDENTITY), vec![]);
+        let ray = Ray::new([x, 0.1, 3.0], [0.0, 0.0, -1.0]);
+        world.surface(&ray, &world.bvh().closest_hit(&ray)).ng
+    };
+    for x in [-0.24_f32, -0.1, 0.0, 0.05, 0.2] {
+        let sin = f64::from(x) / 0.25;
+        let round = DVec3::new(sin, 0.0, (1.0 - sin * sin).sqrt());
+        let found = normal(Profile::Cylinder, x);
+        assert!(found.distance(round) < 1e-5, "{x}: {found}, expected {round}");
+        // Turned in proportion to the place across.
+        let (sin, cos) = (0.5 * std::f64::consts::PI * sin).sin_cos();
+        let hollow = DVec3::new(sin, 0.0, -cos);
+        let found = normal(Profile::PbrtCylinder, x);
+        assert!(found.distance(hollow) < 1e-5, "{x}: {found}, expected {hollow}");
     }
 }
 

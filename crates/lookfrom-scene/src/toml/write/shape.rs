@@ -227,7 +227,7 @@ impl Writer<'_> {
     fn curves(&mut self, fields: &mut Fields, strands: &[Strand]) -> Result<()> {
         let profile = strands.first().map_or(Profile::Flat, |strand| strand.profile);
         let word = |profile: &Profile| match profile {
-            Profile::Flat | Profile::Cylinder => word_of(PROFILES, profile),
+            Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => word_of(PROFILES, profile),
             Profile::Ribbon(_) => "ribbon",
         };
         if strands.iter().any(|strand| word(&strand.profile) != word(&profile)) {
@@ -237,7 +237,7 @@ impl Writer<'_> {
             .iter()
             .filter_map(|strand| match strand.profile {
                 Profile::Ribbon(normals) => Some(normals),
-                Profile::Flat | Profile::Cylinder => None,
+                Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => None,
             })
             .collect();
         let is_chain = strands.windows(2).all(|pair| {

@@ -23,7 +23,7 @@ impl CurveLight {
             let around = match strand.profile {
                 Profile::Ribbon(_) => 1.0,
                 // A half of a cylinder's surface.
-                Profile::Flat | Profile::Cylinder => 0.5 * std::f64::consts::PI,
+                Profile::Flat | Profile::Cylinder | Profile::PbrtCylinder => 0.5 * std::f64::consts::PI,
             };
             let [start, end] = curves.ends(primitive);
             area += around * width * start.distance(end);

@@ -58,6 +58,7 @@ pub(super) fn geometries() -> Vec<(String, Scene)> {
         patches(9),
         strands(|_| Profile::Flat, 3, true),
         strands(|_| Profile::Cylinder, 30, false),
+        strands(|_| Profile::PbrtCylinder, 3, true),
         strands(ribbon, 2, true),
         strands(ribbon, 40, true),
         strands(ribbon, 3, false),
