@@ -46,6 +46,10 @@ impl<'a> VdbFile<'a> {
     /// # Errors
     /// As [`read`].
     pub fn new(bytes: &'a [u8], at: &'a Location) -> Result<Self> {
+        if !is_vdb(bytes) {
+            let error = Error::syntax(at, "the file is of neither NanoVDB nor OpenVDB");
+            return Err(error.hint("files of volumes end in .nvdb or .vdb"));
+        }
         let format = match bytes.starts_with(openvdb::MAGIC) {
             true => VdbFormat::Open(OpenVdb::new(bytes, at)?),
             false => VdbFormat::Nano(NanoVdb::new(bytes, at)?),
@@ -89,11 +93,14 @@ impl<'a> VdbFile<'a> {
     pub fn without(&self, name: &str) -> Error {
         let names = self.names();
         let found: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
-        let found = if found.is_empty() { "no grids".to_owned() } else { found.join(", ") };
+        let (found, advice) = match &*found {
+            [] => ("no grids".to_owned(), "write the file again, with its grids"),
+            found => (found.join(", "), "name one of these grids"),
+        };
         let error = Error::invalid(self.at, format!("no grid is called {name:?}; found {found}"));
         match suggest::nearest(name, names) {
             Some(near) => error.hint(format!("did you mean {near:?}?")),
-            None => error.hint("name one of these grids"),
+            None => error.hint(advice),
         }
     }
 }

@@ -17,6 +17,8 @@ const RAW: &[u8] = b"NanoVDB1";
 const SEGMENT: u64 = 16;
 /// Bytes of what a segment tells of a grid, before its name.
 const METADATA: u64 = 176;
+/// Bytes of the length that stands before what is packed.
+const PACKED: u64 = 8;
 /// Offset of the class in it (`FileMetaData::gridClass`).
 const CLASS: u64 = 36;
 
@@ -52,7 +54,11 @@ pub(super) fn entries(bytes: Bytes<'_>) -> Result<Vec<Entry<'_>>> {
             grids.push((String::from_utf8_lossy(name).into_owned(), bytes.u32(at + CLASS)?, size, stored));
             at += METADATA + length;
         }
-        for (name, class, size, length) in grids {
+        for (name, class, size, mut length) in grids {
+            if matches!(codec, 1 | 2) {
+                // Warp's writer does not count the eight bytes before what is packed.
+                length = length.max(bytes.u64(at)?.saturating_add(PACKED));
+            }
             let stored = bytes.part(at, length, &format!("the grid {name:?}"))?;
             entries.push(Entry { name, class, codec, size, stored });
             at += length;
@@ -97,7 +103,7 @@ impl<'a> Entry<'a> {
         let (mut room, mut at) = (&mut *unpacked, 0);
         // One stream of zlib, or chunks of Blosc of a gibibyte each.
         while !room.is_empty() {
-            let packed = self.stored.part(at + 8, self.stored.u64(at)?, "the packed grid")?;
+            let packed = self.stored.part(at + PACKED, self.stored.u64(at)?, "the packed grid")?;
             let size = if self.codec == 1 { self.size } else { blosc::length(packed)? };
             let (into, rest) = room.split_at_mut_checked(size as usize).ok_or_else(|| {
                 let message = format!("the grid {:?} has more than {} bytes", self.name, self.size);
@@ -105,7 +111,7 @@ impl<'a> Entry<'a> {
             })?;
             unpack(packed, into)?;
             room = rest;
-            at += 8 + packed.length();
+            at += PACKED + packed.length();
         }
         Ok(Reserved::new(unpacked.into(), memory))
     }

@@ -59,6 +59,19 @@ fn values_are_those_of_leaves_and_tiles() {
     }
 }
 
+/// Warp's writer counts what is packed without the length that stands before it.
+#[test]
+fn packed_grids_are_as_long_as_they_say_themselves() {
+    let mut bytes = file(1, &[Sketch::new("other"), sketch()]);
+    let expected = read(bytes.clone(), "density").expect("good");
+    for at in [24, 24 + 176 + "other\0".len()] {
+        let length: [u8; 8] = std::array::from_fn(|place| bytes[at + place]);
+        bytes[at..at + 8].copy_from_slice(&(u64::from_le_bytes(length) - 8).to_le_bytes());
+    }
+    let volume = read(bytes, "density").expect("good");
+    assert_eq!(volume.grid.stored(), expected.grid.stored());
+}
+
 #[test]
 fn backgrounds_and_tiles_of_roots_fill_the_bounds() {
     let mut sketch = Sketch { background: 0.75, bounds: [[-4, 0, 0], [9, 3, 3]], ..Sketch::new("density") };
@@ -157,7 +170,9 @@ fn what_is_not_read_is_told() {
     other[14] = 3;
     let codec = "the grid \"density\" is compressed by the unknown codec 3, expected ZIP, BLOSC or none";
     assert_eq!(of(other), (unsupported, codec.into()));
-    assert_eq!(of(Vec::new()).0, ErrorKind::Syntax);
+    for other in [Vec::new(), b"ply\nformat ascii 1.0\n".to_vec()] {
+        assert_eq!(of(other), (ErrorKind::Syntax, "the file is of neither NanoVDB nor OpenVDB".into()));
+    }
 }
 
 #[test]

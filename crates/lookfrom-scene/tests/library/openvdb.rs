@@ -218,6 +218,7 @@ fn grids_are_found_by_their_names() {
         (error.kind, &*error.message),
         (ErrorKind::Invalid, "no grid is called \"density\"; found no grids")
     );
+    assert_eq!(error.hint.expect("advice").to_string(), "write the file again, with its grids");
 }
 
 /// A file alone is a scene: its densities as smoke, alike in every unit of length and of density, behind a box that is not seen.
