@@ -7,6 +7,7 @@ use super::value::Value;
 use super::volume::{CLOUD, COLORS, Hot, Volume, cloud};
 use super::{Reader, transform};
 use crate::error::Result;
+use crate::grid::Placed;
 use crate::material::{Color, Material, MaterialKind, Scalar};
 use crate::medium::presets::Preset;
 use crate::medium::{DROPLETS, Density, DraineLobe, Extinction, Medium, Variation};
@@ -100,13 +101,10 @@ impl Reader<'_, '_> {
         if let Some(Number::Even(density)) = density {
             medium.scale *= density;
         }
-        let emission_density =
-            table.maybe("emission_density", |value| self.volume(value)).map(|volume| volume.placed);
-        medium.variation =
-            varying(table, density, temperature, emission_density.is_some()).map(|variation| {
-                let bounds = table.or("bounds", variation.bounds, box_or_none);
-                Variation { emission_scale: emission_density, bounds, ..variation }
-            });
+        let emission_density = table.maybe("emission_density", |value| self.volume(value));
+        medium.variation = varying(table, density, temperature, emission_density).map(|variation| {
+            Variation { bounds: table.or("bounds", variation.bounds, box_or_none), ..variation }
+        });
         medium
     }
 
@@ -216,55 +214,59 @@ fn box_or_none(value: Value<'_>) -> Result<Option<[Vec3; 2]>> {
     if low.cmple(high).all() { Ok(Some([low, high])) } else { Err(value.wrong(expected)) }
 }
 
-/// The variation of a medium in space, if it has any.
+/// The variation of a medium in space, if it has any. It is told in the space of the densities or, where they have none of their own, of
+/// the temperatures, or of what multiplies the emission.
 fn varying(
     table: &Table<'_>,
     density: Option<Number>,
     temperature: Option<Hot>,
-    emits_by_place: bool,
+    emission: Option<Volume>,
 ) -> Option<Variation> {
-    let density = match density {
-        Some(Number::Volume(volume)) => return Some(variation(table, volume, temperature)),
-        Some(Number::Varying(density)) => Some(density),
-        Some(Number::Even(_)) | None => None,
+    let (density, grid) = match density {
+        Some(Number::Volume(volume)) => (None, Some(volume)),
+        Some(Number::Varying(density)) => (Some(density), None),
+        Some(Number::Even(_)) | None => (None, None),
     };
-    if density.is_none() && temperature.is_none() && !emits_by_place {
+    let volumes = [
+        ("density", grid.as_ref()),
+        ("temperature", temperature.as_ref().map(|hot| &hot.volume)),
+        ("emission_density", emission.as_ref()),
+    ];
+    let first = volumes.into_iter().find_map(|(key, volume)| Some((key, volume?.world_from_medium)));
+    if first.is_none() && density.is_none() {
         return None;
     }
-    let own = temperature.as_ref().map_or(DMat4::IDENTITY, |hot| hot.volume.world_from_medium);
+    let space = first.unwrap_or(("density", DMat4::IDENTITY));
+    let temperature = temperature.and_then(|mut hot| {
+        hot.volume = placed_in(space, "temperature", hot.volume, table)?;
+        Some(hot)
+    });
+    let emission = emission.and_then(|volume| placed_in(space, "emission_density", volume, table));
+    let bounds = [grid.as_ref(), temperature.as_ref().map(|hot| &hot.volume)];
+    let around = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
     Some(Variation {
-        world_from_medium: transform::after(table, &transform::world_from_object(table), &own),
-        bounds: temperature.as_ref().map(|hot| hot.volume.bounds),
-        density: density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
-        emission_scale: None,
+        world_from_medium: transform::after(table, &transform::world_from_object(table), &space.1),
+        bounds: bounds.into_iter().flatten().map(|volume| volume.bounds).reduce(around),
+        density: match grid {
+            Some(volume) => Density::Grid(volume.placed),
+            None => density.unwrap_or(Density::Texture { of: Scalar::Value(1.0), most: 1.0 }),
+        },
+        emission_scale: emission.map(|volume| volume.placed),
         temperature: temperature.map(Hot::temperature),
     })
 }
 
-/// Densities of a grid, and temperatures of another.
-fn variation(table: &Table<'_>, density: Volume, temperature: Option<Hot>) -> Variation {
-    let mut bounds = density.bounds;
-    let temperature = temperature.and_then(|mut hot| {
-        let of = &mut hot.volume;
-        let place = placement(&density.world_from_medium, &of.world_from_medium, of.bounds);
-        if place.is_none() {
-            table.note(table.error_at("temperature", "its axes are not those of `density`"));
-        }
-        let place = place?;
-        let [low, high] = of.bounds.map(&place);
-        bounds = [bounds[0].min(low), bounds[1].max(high)];
-        of.placed.bounds = of.placed.bounds.map(&place);
-        Some(hot.temperature())
-    });
-    Variation {
-        world_from_medium: transform::after(
-            table,
-            &transform::world_from_object(table),
-            &density.world_from_medium,
-        ),
-        bounds: Some(bounds),
-        density: Density::Grid(density.placed),
-        emission_scale: None,
-        temperature,
-    }
+/// A volume, the value of a key, in the space of that of another key.
+fn placed_in(
+    (name, space): (&str, DMat4),
+    key: &'static str,
+    volume: Volume,
+    table: &Table<'_>,
+) -> Option<Volume> {
+    let Some(place) = placement(&space, &volume.world_from_medium, volume.bounds) else {
+        table.note(table.error_at(key, format!("its axes are not those of `{name}`")));
+        return None;
+    };
+    let placed = Placed { bounds: volume.placed.bounds.map(&place), ..volume.placed };
+    Some(Volume { placed, bounds: volume.bounds.map(&place), world_from_medium: space })
 }

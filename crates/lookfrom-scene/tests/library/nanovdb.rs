@@ -311,3 +311,41 @@ fn media_of_our_own_format_are_read() {
     let [a, b] = [ours.temperature, theirs.temperature].map(|of| of.expect("temperatures").grid);
     assert_eq!((a.bounds, a.grid.stored()), (b.bounds, b.grid.stored()));
 }
+
+/// What multiplies the emission is where its own file, or formula, places it, whatever the cells of the densities are.
+#[test]
+fn densities_of_emission_have_a_place_of_their_own() {
+    let mut smoke = sketch();
+    (0..3).for_each(|axis| smoke.rows[axis][axis] = 0.25);
+    let mut flames = Sketch { translation: [1.0, 2.0, 3.0], ..Sketch::new("flames") };
+    flames.leaves.insert([0; 3], numbers(|_| 1.0));
+    let mut turned = Sketch { rows: [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], ..flames.clone() };
+    turned.name = "turned";
+    let bytes = file(0, &[smoke, flames, turned]);
+    let of = |density: &str, emission: &str| {
+        let text = format!(
+            "[media.fire]\nabsorption = 1\nemission = 1\nscale = 2\n{density}\nemission_density = {emission}\n[[sphere]]\nmedium = \"fire\""
+        );
+        let files = [("a.toml", text.into_bytes()), ("a.nvdb", bytes.clone())];
+        let files = Memory(files.map(|(name, bytes)| (PathBuf::from(name), bytes)).into());
+        load::scene(Path::new("a.toml"), &mut LoadContext::new(&files))
+    };
+    let grid = "density = { file = \"a.nvdb\" }";
+    let formula = "density = { formula = \"1\", min = [-9, -9, -9], max = [9, 9, 9] }";
+    for density in [grid, formula, ""] {
+        for (emission, expected) in [
+            ("{ file = \"a.nvdb\", grid = \"flames\" }", [[1.0, 3.0, 5.0], [17.0, 19.0, 21.0]]),
+            ("{ formula = \"1\", min = [0, 0, 0], max = [1, 2, 3] }", [[0.0; 3], [2.0, 4.0, 6.0]]),
+        ] {
+            let scene = of(density, emission).unwrap_or_else(|error| panic!("{error}"));
+            let varying = scene.media[0].variation.as_ref().expect("it varies");
+            let bounds = varying.emission_scale.as_ref().expect("a grid").bounds;
+            let corners = bounds.map(|corner| varying.world_from_medium.transform_point3(corner.as_dvec3()));
+            let expected = expected.map(DVec3::from_array);
+            let away = corners[0].distance(expected[0]).max(corners[1].distance(expected[1]));
+            assert!(away < 1e-5, "{density} {emission}: {corners:?}");
+        }
+    }
+    let error = of(grid, "{ file = \"a.nvdb\", grid = \"turned\" }").expect_err("turned");
+    assert_eq!((error.at.line, &*error.message), (6, "its axes are not those of `density`"));
+}
