@@ -125,6 +125,10 @@ fn compare_pair(
         read(picture, layer, of_picture, &mut context)?,
         read(reference, layer, of_reference, &mut context)?,
     );
+    if b.not_finite > 0 {
+        let values = are(b.not_finite as u64, "value");
+        say(&format!("warning: {}: {values} not finite, and count as 0", reference.display()));
+    }
     if let Some(sensor) = &arguments.sensor {
         let said = *color::Sensor::new(sensor).variance_from_rgb();
         for side in [&mut a, &mut b] {

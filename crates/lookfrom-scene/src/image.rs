@@ -12,6 +12,7 @@ mod metadata;
 mod openexr;
 mod radiance;
 mod read;
+mod rgbe;
 mod srgb;
 mod texels;
 #[cfg(feature = "images")]

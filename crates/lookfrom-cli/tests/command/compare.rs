@@ -90,6 +90,11 @@ fn values_that_are_not_finite() {
     let run = stage.run("compare a.pfm b.pfm --json");
     assert_eq!(run.code, Some(1));
     assert!(String::from_utf8(run.stdout).unwrap().contains("\"not_finite\":2"));
+    assert!(!run.stderr.contains("not finite"), "{}", run.stderr);
+    // Those of a reference are no fault of the picture.
+    let run = stage.run("compare b.pfm a.pfm");
+    assert_eq!(run.code, Some(0));
+    assert!(run.stderr.contains("a.pfm: 2 values are not finite"), "{}", run.stderr);
 }
 
 #[test]

@@ -9,6 +9,7 @@ use ::image::codecs::webp::WebPEncoder;
 use ::image::{ExtendedColorType, ImageEncoder, ImageResult, Rgb};
 
 use super::metadata::Metadata;
+use super::rgbe;
 use crate::error::{Error, ErrorKind, Location, Result};
 
 /// Colours in sRGB, row 0 on top; alpha is straight (not premultiplied).
@@ -191,14 +192,15 @@ pub fn encode_ppm(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a Radiance HDR image of linear colours, row 0 on top: three 8-bit mantissas with a shared exponent.
+/// The bytes of a Radiance HDR image of linear colours, row 0 on top: three 8-bit mantissas with a shared exponent, the nearest to each
+/// colour. A negative value, and what is no number, is 0; what is brighter than the format can say, also +∞, is the brightest that it can.
 ///
 /// # Errors
 /// `Invalid` if `texels` are not `width * height` colours.
 pub fn encode_hdr(width: u32, height: u32, texels: &[[f32; 3]]) -> Result<Vec<u8>> {
     check(width, height, texels.len())?;
     let mut bytes = Vec::new();
-    let pixels: Vec<Rgb<f32>> = texels.iter().map(|&texel| Rgb(texel)).collect();
+    let pixels: Vec<Rgb<f32>> = texels.iter().map(|&texel| Rgb(rgbe::nearest(texel))).collect();
     HdrEncoder::new(&mut bytes).encode(&pixels, width as usize, height as usize).map_err(|error| {
         Error::new(ErrorKind::Io, &Location::default(), format!("cannot encode: {error}"))
     })?;

@@ -155,12 +155,42 @@ fn light_is_kept_as_it_is() {
     turned.reverse();
     assert_eq!(image::encode_exr(40, 33, &turned, &notes).expect("EXR"), exr);
 
-    // Shared exponents keep 8 bits of the largest primary.
+    // Shared exponents keep 8 bits of the largest primary, rounded: on average nothing is lost.
     let hdr = image::encode_hdr(40, 33, &texels).expect("HDR");
     let (read, _) = read_as("a.hdr", &hdr, None).expect("HDR");
+    let mut excess = 0.0;
     for (a, b) in texels_of(&read).iter().zip(&texels) {
         let largest = b.iter().fold(0.0_f32, |most, &value| most.max(value));
-        assert!((0..3).all(|c| (a[c] - b[c]).abs() <= largest / 100.0), "{a:?} {b:?}");
+        assert!((0..3).all(|c| (a[c] - b[c]).abs() <= largest / 255.0), "{a:?} {b:?}");
+        excess += (0..3).map(|c| (a[c] - b[c]) / largest.max(f32::MIN_POSITIVE)).sum::<f32>();
+    }
+    assert!(excess.abs() / (3.0 * texels.len() as f32) < 2e-4, "{excess}");
+}
+
+/// What a Radiance picture cannot hold is as near as it can be: it neither wraps to another exponent nor becomes black.
+#[test]
+fn the_ends_of_shared_exponents() {
+    let brightest = 255.0 * 2.0_f32.powi(119);
+    let kept = |values: [f32; 3]| {
+        let hdr = image::encode_hdr(1, 1, &[values]).expect("HDR");
+        texels_of(&read_as("a.hdr", &hdr, None).expect("HDR").0)[0]
+    };
+    for (values, expected) in [
+        ([f32::INFINITY, 0.0, 1.0], [brightest, 0.0, 0.0]),
+        ([f32::MAX, f32::MAX, -1.0], [brightest, brightest, 0.0]),
+        ([1.8e38, 0.0, 0.0], [brightest, 0.0, 0.0]),
+        ([f32::NAN, -f32::INFINITY, 0.5], [0.0, 0.0, 0.5]),
+        ([1e-40, 0.0, 0.0], [0.0; 3]),
+        ([f32::from_bits(1), 0.0, 0.0], [0.0; 3]),
+        // Half-way to the next mantissa, and to the next exponent.
+        ([1.0, 0.5 / 128.0, 0.49 / 128.0], [1.0, 1.0 / 128.0, 0.0]),
+        ([255.6 / 128.0, 1.0, 0.0], [2.0, 1.0, 0.0]),
+    ] {
+        assert_eq!(kept(values), expected, "{values:?}");
+    }
+    for exponent in -127..=126 {
+        let value = 2.0_f32.powi(exponent);
+        assert_eq!(kept([value, 0.0, value]), [value, 0.0, value], "2^{exponent}");
     }
 }
 
