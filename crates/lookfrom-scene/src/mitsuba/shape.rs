@@ -12,7 +12,7 @@ use super::serialized;
 use super::xml::blame;
 use super::{Attribute, Slots};
 use crate::error::{Error, ErrorKind, Location, Result};
-use crate::material::{BumpMapping, Color, Scalar};
+use crate::material::{BumpMapping, Color, MaterialKind, Scalar};
 use crate::model;
 use crate::scene::{Instance, MeshId, Object, ObjectId, Scene};
 use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
@@ -122,9 +122,14 @@ impl Reader<'_, '_> {
         }
         let attributes = self.attributes(textured)?;
         let geometries = self.geometries(plugin, attributes)?;
-        let is_made_of_faces = match &*plugin.kind {
-            "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),
-            _ => false,
+        let is_curve = matches!(&*plugin.kind, "bsplinecurve" | "linearcurve");
+        let is_turned = match &*plugin.kind {
+            // Mitsuba has normals of faces, and those made of them, by the order of corners in the world.
+            "obj" | "ply" | "sdfgrid" | "serialized" => {
+                !self.has_own_normals(&geometries) && to_world.determinant() < 0.0
+            }
+            // Curves have normals away from who looks, as pbrt's; Mitsuba's are tubes that are seen from outside.
+            _ => is_curve,
         };
         self.use_disk(plugin.kind == "disk");
         let emission = match plugin.part("emitter", &self.ids)? {
@@ -143,13 +148,16 @@ impl Reader<'_, '_> {
                 "the grain and normal maps of disks lie along the angle, in Mitsuba along the radius";
             self.warn_once(&plugin.at, message);
         }
+        if !is_curve && self.is_hair(surface) {
+            let message = "hair on what is no curve lies along u, and v is the place across it; in Mitsuba its normal tells that place";
+            self.warn_once(&plugin.at, message);
+        }
         let shape = |(geometry, own): (Geometry, DMat4)| Shape {
             name: plugin.id.clone(),
             emission,
             alpha: surface.alpha,
             sides,
-            // Mitsuba has normals of faces, and those made of them, by the order of corners in the world.
-            reverse_orientation: flip != (is_made_of_faces && to_world.determinant() < 0.0),
+            reverse_orientation: flip != is_turned,
             world_from_object: to_world * own,
             ..Shape::new(plugin.at.clone(), geometry, surface.material)
         };
@@ -182,6 +190,11 @@ impl Reader<'_, '_> {
     fn has_grain(&self, surface: Surface) -> bool {
         let material = &self.scene.materials[surface.material.index()];
         material.has_grain() && !matches!(material.bump_mapping, BumpMapping::Bump(_))
+    }
+
+    /// Whether a surface is that of fibres.
+    fn is_hair(&self, surface: Surface) -> bool {
+        matches!(self.scene.materials[surface.material.index()].kind, MaterialKind::Hair(_))
     }
 
     /// Geometries with their transforms to the space of the shape.

@@ -252,6 +252,8 @@ fn curves_are_strands_of_bezier() {
         panic!("no hair")
     };
     assert_eq!((hair.beta_m, hair.alpha), (Scalar::Value(0.3), Scalar::Value(2.0)));
+    // Their normals are away from who looks here, as in pbrt, and opaque surfaces are black from behind.
+    assert!(linear.shapes[0].reverse_orientation);
     // A straight spline of equal steps goes from the second to the third point.
     let spline = of("bsplinecurve", "0 0 0 1\n1 0 0 1\n2 0 0 1\n3 0 0 1").expect("curves");
     let [first, .., last] = strands(&spline)[0].points;
@@ -260,4 +262,10 @@ fn curves_are_strands_of_bezier() {
     assert_eq!((short.kind, short.at.line), (ErrorKind::Invalid, 3));
     assert_eq!(of("linearcurve", "1 2 3\n").expect_err("no radius").kind, ErrorKind::Invalid);
     assert_eq!(of("linearcurve", "\n\n").expect_err("nothing").kind, ErrorKind::Invalid);
+}
+
+#[test]
+fn hair_on_what_is_no_curve_is_told_of() {
+    let (_, warnings) = told("<shape type=\"cylinder\"><bsdf type=\"hair\"/></shape>");
+    assert!(warnings.len() == 1 && warnings[0].contains("hair on what is no curve"), "{warnings:?}");
 }

@@ -92,6 +92,13 @@ impl<R: Real> Inside<R> {
 }
 
 impl<R: Real> ThinFilm<R> {
+    /// How far the film is there, 0 … 1: one of zero thickness is none, whatever Schlick's approximation makes of its boundaries.
+    #[inline(always)]
+    pub(super) fn presence(&self) -> R {
+        let t = Float::clamp(self.thickness / 0.03, 0.0, 1.0);
+        t * t * (t.like(3.0) - t * 2.0)
+    }
+
     /// The reflectance at a cosine, for a surface that has the reflectance `f0` at normal incidence
     /// without the film; always within 0 … 1. Not inlined, since it is needed in many places.
     #[inline(never)]
@@ -100,9 +107,8 @@ impl<R: Real> ThinFilm<R> {
             #[inline(always)]
             || {
                 let (zero, one) = (cos.like(0.0), cos.like(1.0));
-                // A film of zero thickness vanishes: its index goes to that of air.
-                let t = Float::clamp(self.thickness / 0.03, 0.0, 1.0);
-                let eta = (self.eta - 1.0) * t * t * (cos.like(3.0) - t * 2.0) + 1.0;
+                // On the way to zero thickness its index goes to that of air.
+                let eta = (self.eta - 1.0) * self.presence() + 1.0;
                 let sin2 = Float::max(one - cos * cos, zero) / (eta * eta);
                 let is_total = !sin2.lt(one);
                 if is_total.all() {

@@ -65,6 +65,7 @@ impl<R: Real, M: Model<R>> Surface<R, M> {
         let black = Spectrum::splat(zero);
         let alpha = albedo::even_alpha(roughness);
         let body = one - look.metallic;
+        let iridescence = look.iridescence * look.film.presence();
         let mut surface = Self {
             model: look.model,
             base: look.base_color,
@@ -80,7 +81,7 @@ impl<R: Real, M: Model<R>> Surface<R, M> {
             alpha,
             eta: look.eta,
             is_solid: look.is_solid,
-            film: look.iridescence.gt(zero).any().then_some((look.iridescence, look.film)),
+            film: iridescence.gt(zero).any().then_some((iridescence, look.film)),
             mean: albedo::reflector_mean(roughness, alpha),
             filmed: black,
             mean_left: black,

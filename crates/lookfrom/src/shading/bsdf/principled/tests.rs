@@ -404,6 +404,26 @@ fn a_film_is_airys_sum_and_the_eye_sees_its_integral() {
     }
 }
 
+/// Schlick's curve at its boundaries, of one index on both sides, is no reason for another picture.
+#[test]
+fn a_film_of_zero_thickness_is_none() {
+    let film = ThinFilm { eta: 1.8, thickness: 0.0, wavelengths: None };
+    for body in [
+        Principled { metallic: 1.0, base_color: grey(0.5), ..Principled::default() },
+        Principled { roughness: rough(0.3), ..Principled::default() },
+        Principled { transmission: 1.0, roughness: rough(0.3), is_solid: true, ..Principled::default() },
+    ] {
+        let plain = of(body);
+        let filmed = of(Principled { iridescence: 1.0, film, ..body });
+        let (wo, wi) = (direction(70.0, 10.0), direction(60.0, 200.0));
+        assert_eq!(filmed.f(wo, wi), plain.f(wo, wi));
+        let thin = ThinFilm { thickness: 100.0, ..film };
+        let changed = of(Principled { iridescence: 1.0, film: thin, ..body });
+        assert_eq!(changed.f(wo, wi) == plain.f(wo, wi), body.roughness == rough(0.0));
+        assert_eq!(albedo(&filmed, wo, 0), albedo(&plain, wo, 0));
+    }
+}
+
 #[test]
 fn invalid_parameters_do_no_harm() {
     assert!(size_of::<Principled>() <= 208, "{}", size_of::<Principled>());
