@@ -193,6 +193,9 @@ impl Reader<'_, '_> {
                 let is_share = |roughness: f32| (0.0..=1.0).contains(&roughness);
                 return value.single_where(expected, is_share).map(|roughness| roughness * roughness);
             }
+            if value.table("a roughness")?.has("type") {
+                return Err(value.wrong(expected));
+            }
             match self.microfacets(value)? {
                 Roughness { u: Scalar::Value(alpha), v, remap: false, .. } if v == Scalar::Value(alpha) => {
                     Ok(alpha)

@@ -104,14 +104,18 @@ impl<'a> Value<'a> {
 
     /// A finite number that satisfies `ok`.
     pub(super) fn number_where(self, expected: &str, ok: impl Fn(f64) -> bool) -> Result<f64> {
-        self.as_number()
-            .filter(|&number| number.is_finite() && ok(number))
-            .ok_or_else(|| self.wrong(expected))
+        match self.as_number() {
+            Some(number) if number.is_finite() && ok(number) => Ok(number),
+            Some(number) if number.is_infinite() && ok(number) => {
+                Err(self.wrong(&format!("{expected}, and finite")))
+            }
+            _ => Err(self.wrong(expected)),
+        }
     }
 
     /// A finite number.
     pub(super) fn number(self) -> Result<f64> {
-        self.number_where("a finite number", |_| true)
+        self.number_where("a finite number", f64::is_finite)
     }
 
     /// A finite number > 0.
@@ -126,13 +130,16 @@ impl<'a> Value<'a> {
 
     /// A number that is finite as `f32` and satisfies `ok`.
     pub(super) fn single_where(self, expected: &str, ok: impl Fn(f32) -> bool) -> Result<f32> {
-        let single = self.number_where(expected, |number| ok(number as f32))? as f32;
-        if single.is_finite() { Ok(single) } else { Err(self.wrong("a number from -3.4e38 to 3.4e38")) }
+        let number = self.number_where(expected, |number| ok(number as f32))? as f32;
+        if number.is_finite() {
+            return Ok(number);
+        }
+        Err(self.wrong(&format!("{expected}, and at most {:e}", f32::MAX)))
     }
 
     /// A number that is finite as `f32`.
     pub(super) fn single(self) -> Result<f32> {
-        self.single_where("a finite number", |_| true)
+        self.single_where("a finite number", f32::is_finite)
     }
 
     /// A whole number from `low` to `high`.
