@@ -16,6 +16,7 @@ mod whitted;
 pub use coat::{Coat, CoatEstimate};
 pub use disney::Disney;
 pub use hair::{Hair, Pigment};
+pub use inputs::Number;
 pub use kind::MaterialKind;
 pub use microfacets::{Distribution, Energy, Masking, Microfacets, Roughness};
 pub use open_pbr::{OpenPbr, Tangent};

@@ -15,6 +15,7 @@ mod lights;
 mod measured;
 mod medium;
 mod memory;
+mod numbers;
 mod origin;
 mod place;
 mod precision;

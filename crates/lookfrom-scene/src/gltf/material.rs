@@ -1,7 +1,7 @@
 //! Conversion of materials (specification, §3.9, and the extensions `KHR_materials_…`).
 //!
 //! Each becomes a [`Principled`] material, or an unlit one, together with the emission, the alpha and the sidedness of the
-//! surface. Factors outside the range that their extension allows are clamped. Occlusion textures are ignored: they
+//! surface. Factors outside the range that their extension allows are clamped, with a warning. Occlusion textures are ignored: they
 //! approximate what path tracing computes.
 
 mod glossiness;
@@ -170,10 +170,11 @@ impl Reader<'_, '_, '_> {
                 (None, None) => (None, None, ""),
             };
         let [r, g, b, a] = factor.unwrap_or([1.0; 4]);
-        let tint = self.reflectance([r, g, b], &format!("{place}Factor"));
+        let pointer = format!("{place}Factor");
+        let (tint, a) = (self.reflectance([r, g, b], &pointer), self.unit(Some(a), 1.0, &pointer));
         let place = format!("{place}Texture");
         let color = self.color(tint, info, &place)?;
-        let alpha = self.number(unit(Some(a), 1.0), info, &place, Channel::Alpha)?;
+        let alpha = self.number(a, info, &place, Channel::Alpha)?;
         Ok((color, alpha))
     }
 
@@ -182,37 +183,48 @@ impl Reader<'_, '_, '_> {
         if let Some(own) = &entry.pbr_metallic_roughness {
             let (info, place) =
                 (own.metallic_roughness_texture.as_ref(), "/pbrMetallicRoughness/metallicRoughnessTexture");
-            look.metallic = self.number(unit(own.metallic_factor, 1.0), info, place, Channel::Blue)?;
-            look.roughness = self.number(unit(own.roughness_factor, 1.0), info, place, Channel::Green)?;
+            let metallic = self.unit(own.metallic_factor, 1.0, "/pbrMetallicRoughness/metallicFactor");
+            look.metallic = self.number(metallic, info, place, Channel::Blue)?;
+            let roughness = self.unit(own.roughness_factor, 1.0, "/pbrMetallicRoughness/roughnessFactor");
+            look.roughness = self.number(roughness, info, place, Channel::Green)?;
         }
         let extensions = &entry.extensions;
         if let Some(own) = &extensions.ior {
             look.ior = self.ior(own.ior);
         }
         if let Some(own) = &extensions.dispersion {
-            look.dispersion = own.dispersion.map_or(0.0, |d| d.clamp(0.0, 100.0) as f32);
+            let pointer = "/extensions/KHR_materials_dispersion/dispersion";
+            look.dispersion = self.at_least(0.0, own.dispersion.unwrap_or(0.0), pointer).min(100.0);
         }
         if let Some(own) = &extensions.specular {
             let place = "/extensions/KHR_materials_specular/specularTexture";
-            let (info, factor) = (own.specular_texture.as_ref(), unit(own.specular_factor, 1.0));
+            let pointer = "/extensions/KHR_materials_specular/specularFactor";
+            let (info, factor) =
+                (own.specular_texture.as_ref(), self.unit(own.specular_factor, 1.0, pointer));
             look.specular = self.number(factor, info, place, Channel::Alpha)?;
             let place = "/extensions/KHR_materials_specular/specularColorTexture";
-            let factor = own.specular_color_factor.unwrap_or([1.0; 3]).map(positive);
+            let pointer = "/extensions/KHR_materials_specular/specularColorFactor";
+            let factor = own.specular_color_factor.unwrap_or([1.0; 3]);
+            let factor = factor.map(|factor| self.at_least(0.0, factor, pointer));
             look.specular_color = self.color(factor, own.specular_color_texture.as_ref(), place)?;
         }
         if let Some(own) = &extensions.transmission {
             let place = "/extensions/KHR_materials_transmission/transmissionTexture";
-            let (info, factor) = (own.transmission_texture.as_ref(), unit(own.transmission_factor, 0.0));
+            let pointer = "/extensions/KHR_materials_transmission/transmissionFactor";
+            let factor = self.unit(own.transmission_factor, 0.0, pointer);
+            let info = own.transmission_texture.as_ref();
             look.transmission = self.number(factor, info, place, Channel::Red)?;
         }
         if let Some(own) = &extensions.volume {
-            look.is_solid = own.thickness_factor.is_some_and(|thickness| thickness > 0.0);
-            look.absorption = volume::attenuation(own);
+            let pointer = "/extensions/KHR_materials_volume/thicknessFactor";
+            look.is_solid = self.at_least(0.0, own.thickness_factor.unwrap_or(0.0), pointer) > 0.0;
+            look.absorption = self.attenuation(own);
         }
         if let Some(own) = &extensions.diffuse_transmission {
             let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture";
             let info = own.diffuse_transmission_texture.as_ref();
-            let factor = unit(own.diffuse_transmission_factor, 0.0);
+            let pointer = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor";
+            let factor = self.unit(own.diffuse_transmission_factor, 0.0, pointer);
             look.diffuse_transmission = self.number(factor, info, place, Channel::Alpha)?;
             let place = "/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture";
             let factor = own.diffuse_transmission_color_factor.unwrap_or([1.0; 3]);
@@ -229,11 +241,14 @@ impl Reader<'_, '_, '_> {
     fn layers(&mut self, extensions: &json::MaterialExtensions, look: &mut Principled) -> Result<()> {
         if let Some(own) = &extensions.clearcoat {
             let place = "/extensions/KHR_materials_clearcoat/clearcoatTexture";
-            let (info, factor) = (own.clearcoat_texture.as_ref(), unit(own.clearcoat_factor, 0.0));
+            let pointer = "/extensions/KHR_materials_clearcoat/clearcoatFactor";
+            let (info, factor) =
+                (own.clearcoat_texture.as_ref(), self.unit(own.clearcoat_factor, 0.0, pointer));
             look.clearcoat = self.number(factor, info, place, Channel::Red)?;
             let place = "/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture";
             let info = own.clearcoat_roughness_texture.as_ref();
-            let factor = unit(own.clearcoat_roughness_factor, 0.0);
+            let pointer = "/extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor";
+            let factor = self.unit(own.clearcoat_roughness_factor, 0.0, pointer);
             look.clearcoat_roughness = self.number(factor, info, place, Channel::Green)?;
             let place = "/extensions/KHR_materials_clearcoat/clearcoatNormalTexture";
             look.clearcoat_normal = self.normals(own.clearcoat_normal_texture.as_ref(), place)?;
@@ -247,21 +262,25 @@ impl Reader<'_, '_, '_> {
                 _ => self.color(factor, own.sheen_color_texture.as_ref(), place)?,
             };
             let place = "/extensions/KHR_materials_sheen/sheenRoughnessTexture";
-            let (info, factor) =
-                (own.sheen_roughness_texture.as_ref(), unit(own.sheen_roughness_factor, 0.0));
+            let pointer = "/extensions/KHR_materials_sheen/sheenRoughnessFactor";
+            let factor = self.unit(own.sheen_roughness_factor, 0.0, pointer);
+            let info = own.sheen_roughness_texture.as_ref();
             look.sheen_roughness = self.number(factor, info, place, Channel::Alpha)?;
         }
         if let Some(own) = &extensions.iridescence {
             let place = "/extensions/KHR_materials_iridescence/iridescenceTexture";
-            let (info, factor) = (own.iridescence_texture.as_ref(), unit(own.iridescence_factor, 0.0));
-            look.iridescence = self.number(factor, info, place, Channel::Red)?;
-            look.iridescence_ior =
-                own.iridescence_ior.map_or(Principled::FILM_IOR, |ior| ior.clamp(1.0, 10.0) as f32);
+            let pointer = "/extensions/KHR_materials_iridescence/iridescenceFactor";
+            let factor = self.unit(own.iridescence_factor, 0.0, pointer);
+            look.iridescence = self.number(factor, own.iridescence_texture.as_ref(), place, Channel::Red)?;
+            let pointer = "/extensions/KHR_materials_iridescence/iridescenceIor";
+            let ior = own.iridescence_ior.unwrap_or(Principled::FILM_IOR.into());
+            look.iridescence_ior = self.at_least(1.0, ior, pointer).min(10.0);
             look.iridescence_thickness = self.film_thickness(own)?;
         }
         if let Some(own) = &extensions.anisotropy {
             let place = format!("{}/extensions/KHR_materials_anisotropy/anisotropyTexture", self.pointer);
-            let strength = unit(own.anisotropy_strength, 0.0);
+            let pointer = "/extensions/KHR_materials_anisotropy/anisotropyStrength";
+            let strength = self.unit(own.anisotropy_strength, 0.0, pointer);
             let used = Use { info: own.anisotropy_texture.as_ref(), pointer: &place };
             let texture = self.textures.image(used, Channel::Rgb, Meaning::Number, 1.0, false, self.scene)?;
             let rotation = own.anisotropy_rotation.unwrap_or(0.0) as f32;
@@ -274,8 +293,12 @@ impl Reader<'_, '_, '_> {
     /// Thin-film thickness, interpolated between minimum and maximum by the texture's green channel; without a texture, the
     /// maximum.
     fn film_thickness(&mut self, own: &json::Iridescence) -> Result<Scalar> {
-        let most = positive(own.iridescence_thickness_maximum.unwrap_or(Principled::FILM_THICKNESS.into()));
-        let least = positive(own.iridescence_thickness_minimum.unwrap_or(100.0));
+        let most = own.iridescence_thickness_maximum.unwrap_or(Principled::FILM_THICKNESS.into());
+        let pointer = "/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum";
+        let most = self.at_least(0.0, most, pointer);
+        let least = own.iridescence_thickness_minimum.unwrap_or(100.0);
+        let pointer = "/extensions/KHR_materials_iridescence/iridescenceThicknessMinimum";
+        let least = self.at_least(0.0, least, pointer);
         let place = "/extensions/KHR_materials_iridescence/iridescenceThicknessTexture";
         match self.number(1.0, own.iridescence_thickness_texture.as_ref(), place, Channel::Green)? {
             Scalar::Value(_) => Ok(Scalar::Value(most)),
@@ -287,16 +310,40 @@ impl Reader<'_, '_, '_> {
         }
     }
 
-    /// A colour factor that is a reflectance: clamped to [0, 1], with a warning if it is larger.
+    /// A colour factor that is a reflectance: clamped to [0, 1], with a warning if it is not in there.
     fn reflectance(&mut self, factor: [f64; 3], place: &str) -> [f32; 3] {
-        let [r, g, b] = factor;
-        if r.max(g).max(b) > 1.0 {
-            let at = self.document.at(&format!("{}{place}", self.pointer));
-            let message =
-                format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: values above 1 are clamped to 1");
-            self.context.warn(&at, message);
+        self.check_reflectance(factor, place);
+        factor.map(|factor| factor.clamp(0.0, 1.0) as f32)
+    }
+
+    fn check_reflectance(&mut self, factor: [f64; 3], place: &str) {
+        if factor.iter().any(|factor| !(0.0..=1.0).contains(factor)) {
+            let [r, g, b] = factor;
+            self.warn(place, format!("the factor is [{r}, {g}, {b}]; expected 0 to 1: the nearest is used"));
         }
-        factor.map(|factor| unit(Some(factor), 1.0))
+    }
+
+    /// A factor clamped to [0, 1], with a warning if it is not in there; `otherwise` if there is none.
+    fn unit(&mut self, factor: Option<f64>, otherwise: f32, place: &str) -> f32 {
+        let Some(factor) = factor else { return otherwise };
+        if factor > 1.0 {
+            self.warn(place, format!("the factor is {factor}; expected 0 to 1: 1 is used"));
+        }
+        self.at_least(0.0, factor, place).min(1.0)
+    }
+
+    /// A number of at least `least`, with a warning if it is smaller; 1e30 at most.
+    fn at_least(&mut self, least: f32, number: f64, place: &str) -> f32 {
+        if number < least.into() {
+            self.warn(place, format!("the value is {number}; expected at least {least}: {least} is used"));
+        }
+        positive(number.max(least.into()))
+    }
+
+    /// Warns of a property of the material.
+    fn warn(&mut self, place: &str, message: String) {
+        let at = self.document.at(&format!("{}{place}", self.pointer));
+        self.context.warn(&at, message);
     }
 
     fn ior(&mut self, ior: Option<f64>) -> f32 {
@@ -304,9 +351,8 @@ impl Reader<'_, '_, '_> {
             0.0 => 0.0,
             ior if ior >= 1.0 => ior.min(1e6) as f32,
             ior => {
-                let at = self.document.at(&format!("{}/extensions/KHR_materials_ior/ior", self.pointer));
-                self.context
-                    .warn(&at, format!("the index of refraction {ior} is invalid; {} is used", Ior::GLASS));
+                let message = format!("the index of refraction {ior} is invalid; {} is used", Ior::GLASS);
+                self.warn("/extensions/KHR_materials_ior/ior", message);
                 Ior::GLASS
             }
         }
@@ -343,8 +389,10 @@ impl Reader<'_, '_, '_> {
             return Ok(None);
         }
         let strength = entry.extensions.emissive_strength.as_ref().and_then(|own| own.emissive_strength);
-        let strength = f64::from(positive(strength.unwrap_or(1.0)));
-        let factor = entry.emissive_factor.unwrap_or([0.0; 3]).map(|factor| positive(factor * strength));
+        let pointer = "/extensions/KHR_materials_emissive_strength/emissiveStrength";
+        let strength = f64::from(self.at_least(0.0, strength.unwrap_or(1.0), pointer));
+        let factor = entry.emissive_factor.unwrap_or([0.0; 3]);
+        let factor = factor.map(|factor| self.at_least(0.0, factor * strength, "/emissiveFactor"));
         if factor == [0.0; 3] {
             return Ok(None);
         }
@@ -362,8 +410,7 @@ impl Reader<'_, '_, '_> {
         let mode = entry.alpha_mode.as_deref().unwrap_or("OPAQUE");
         if mode != "MASK" && mode != "BLEND" {
             if mode != "OPAQUE" {
-                let at = self.document.at(&format!("{}/alphaMode", self.pointer));
-                self.context.warn(&at, format!("the mode {mode:?} is not known; the material is opaque"));
+                self.warn("/alphaMode", format!("the mode {mode:?} is not known; the material is opaque"));
             }
             return Ok(None);
         }
@@ -382,7 +429,7 @@ impl Reader<'_, '_, '_> {
             }
             (false, base) => base,
         };
-        let edge = positive(entry.alpha_cutoff.unwrap_or(0.5));
+        let edge = self.at_least(0.0, entry.alpha_cutoff.unwrap_or(0.5), "/alphaCutoff");
         Ok(match (mode, value) {
             ("MASK", Scalar::Value(value)) => (value < edge).then_some(Scalar::Value(0.0)),
             ("MASK", value) => {
@@ -409,11 +456,6 @@ impl Reader<'_, '_, '_> {
         let pointer = format!("{}{place}", self.pointer);
         self.textures.number(factor, Use { info, pointer: &pointer }, channel, self.scene)
     }
-}
-
-/// A number clamped to [0, 1].
-fn unit(number: Option<f64>, otherwise: f32) -> f32 {
-    number.map_or(otherwise, |number| number.clamp(0.0, 1.0) as f32)
 }
 
 /// A number clamped to [0, 1e30].

@@ -1,7 +1,15 @@
-//! The textures that a material uses.
+//! The numbers of a material, and the textures that it uses.
+
+use std::ops::RangeInclusive;
 
 use super::{BumpMapping, Coat, Color, Material, MaterialKind, Pigment, Principled, Roughness, Scalar};
 use crate::scene::TextureId;
+
+/// A number of a material: its name in our own format, itself, and what it may be.
+pub type Number = (&'static str, Scalar, RangeInclusive<f32>);
+
+const SHARE: RangeInclusive<f32> = 0.0..=1.0;
+const AT_LEAST_ZERO: RangeInclusive<f32> = 0.0..=f32::INFINITY;
 
 impl Material {
     /// The textures that it uses, not those that they use, nor those of the materials that it is mixed of.
@@ -10,7 +18,7 @@ impl Material {
             Color::Texture(id) => Some(id),
             Color::Value(_) | Color::Curve(_) => None,
         });
-        let mut scalars = self.kind.scalars();
+        let mut scalars: Vec<Scalar> = self.kind.numbers().into_iter().map(|(_, scalar, _)| scalar).collect();
         let mut textures: Vec<TextureId> = colors.collect();
         match self.bump_mapping {
             BumpMapping::Bump(height) => scalars.push(height),
@@ -33,33 +41,56 @@ impl Material {
 }
 
 impl MaterialKind {
-    /// Its numbers.
-    fn scalars(&self) -> Vec<Scalar> {
+    /// Its numbers that may be textures, and factors. Readers of other formats take them as they are written: of a value beyond the
+    /// range, also one of a texture, the nearest end counts.
+    pub fn numbers(&self) -> Vec<Number> {
         match self {
+            Self::DiffuseTransmission { scale, .. } => {
+                vec![("scale", Scalar::Value(*scale), AT_LEAST_ZERO)]
+            }
             Self::Conductor { roughness, .. } | Self::Dielectric { roughness, .. } => {
-                roughness.scalars().into()
+                roughness.numbers("roughness").into()
             }
-            Self::CoatedDiffuse { coat, .. } => coat.scalars(),
+            Self::CoatedDiffuse { coat, .. } => coat.numbers(),
             Self::CoatedConductor { roughness, coat, .. } => {
-                let mut scalars = coat.scalars();
-                scalars.extend(roughness.scalars());
-                scalars
+                let mut numbers = coat.numbers();
+                numbers.extend(roughness.numbers("base_roughness"));
+                numbers
             }
-            Self::Subsurface(below) => below.roughness.scalars().into(),
+            Self::Subsurface(below) => below.roughness.numbers("roughness").into(),
             Self::Hair(hair) => {
-                let mut scalars = vec![hair.eta, hair.beta_m, hair.beta_n, hair.alpha];
+                let mut numbers = vec![
+                    ("ior", hair.eta, AT_LEAST_ZERO),
+                    ("roughness", hair.beta_m, SHARE),
+                    ("radial_roughness", hair.beta_n, SHARE),
+                    ("offset", hair.alpha, -90.0..=90.0),
+                ];
                 if let Pigment::Melanin { eumelanin, pheomelanin } = hair.pigment {
-                    scalars.extend([eumelanin, pheomelanin]);
+                    numbers.push(("eumelanin", eumelanin, AT_LEAST_ZERO));
+                    numbers.push(("pheomelanin", pheomelanin, AT_LEAST_ZERO));
                 }
-                scalars
+                numbers
             }
-            Self::Mix { amount, .. } => vec![*amount],
-            Self::Principled(look) => look.scalars().into(),
-            Self::OpenPbr(look) => look.scalars().map(|(_, scalar)| scalar).into(),
-            Self::Disney(look) => look.scalars().map(|(_, scalar)| scalar).into(),
+            Self::Mix { amount, .. } => vec![("amount", *amount, SHARE)],
+            Self::Principled(look) => look.numbers().into(),
+            Self::OpenPbr(look) => {
+                let ranged = |(key, scalar)| match key {
+                    "specular_weight" | "thin_film_thickness" => (key, scalar, AT_LEAST_ZERO),
+                    _ => (key, scalar, SHARE),
+                };
+                look.scalars().map(ranged).into()
+            }
+            Self::Disney(look) => {
+                let ranged = |(key, scalar)| match key {
+                    "eta" => ("ior", scalar, AT_LEAST_ZERO),
+                    "sheen" => (key, scalar, AT_LEAST_ZERO),
+                    "diff_trans" => (key, scalar, 0.0..=2.0),
+                    _ => (key, scalar, SHARE),
+                };
+                look.scalars().map(ranged).into()
+            }
             Self::Whitted(_)
             | Self::Diffuse { .. }
-            | Self::DiffuseTransmission { .. }
             | Self::ThinDielectric { .. }
             | Self::Plastic(_)
             | Self::Measured(_)
@@ -71,30 +102,31 @@ impl MaterialKind {
 }
 
 impl Roughness {
-    fn scalars(&self) -> [Scalar; 2] {
-        [self.u, self.v]
+    fn numbers(&self, key: &'static str) -> [Number; 2] {
+        [self.u, self.v].map(|scalar| (key, scalar, AT_LEAST_ZERO))
     }
 }
 
 impl Coat {
-    fn scalars(&self) -> Vec<Scalar> {
-        vec![self.roughness.u, self.roughness.v, self.thickness, self.g]
+    fn numbers(&self) -> Vec<Number> {
+        let [u, v] = self.roughness.numbers("roughness");
+        vec![u, v, ("thickness", self.thickness, AT_LEAST_ZERO), ("g", self.g, -1.0..=1.0)]
     }
 }
 
 impl Principled {
-    fn scalars(&self) -> [Scalar; 10] {
+    fn numbers(&self) -> [Number; 10] {
         [
-            self.metallic,
-            self.roughness,
-            self.specular,
-            self.transmission,
-            self.diffuse_transmission,
-            self.clearcoat,
-            self.clearcoat_roughness,
-            self.sheen_roughness,
-            self.iridescence,
-            self.iridescence_thickness,
+            ("metallic", self.metallic, SHARE),
+            ("roughness", self.roughness, SHARE),
+            ("specular", self.specular, SHARE),
+            ("transmission", self.transmission, SHARE),
+            ("diffuse_transmission", self.diffuse_transmission, SHARE),
+            ("clearcoat", self.clearcoat, SHARE),
+            ("clearcoat_roughness", self.clearcoat_roughness, SHARE),
+            ("sheen_roughness", self.sheen_roughness, SHARE),
+            ("iridescence", self.iridescence, SHARE),
+            ("iridescence_thickness", self.iridescence_thickness, AT_LEAST_ZERO),
         ]
     }
 }

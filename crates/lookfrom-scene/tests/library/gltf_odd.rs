@@ -207,3 +207,64 @@ fn colours_above_one_are_told_of() {
     assert!(found.len() == 1 && found[0].contains("/sheenColorFactor: the factor is [2, 0, 0]"), "{found:?}");
     assert!(warnings(r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 0, 1]}}"#).is_empty());
 }
+
+/// Every number that the schema has limits for.
+#[test]
+fn factors_out_of_range_are_told_of() {
+    let told = |material: String| {
+        let mesh = r#""meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}]"#;
+        let text = triangle(&format!(r#"{mesh}, "materials": [{material}]"#));
+        read([("a.gltf", text.as_bytes())]).expect("it is read").1
+    };
+    let one = |found: Vec<String>, place: &str, what: &str| {
+        let expected = format!("a.gltf#/materials/0{place}: {what}");
+        assert!(found.len() == 1 && found[0].starts_with(&expected), "{expected}: {found:?}");
+    };
+    for (group, key, values) in [
+        ("pbrMetallicRoughness", "metallicFactor", &[2.0, -1.0][..]),
+        ("pbrMetallicRoughness", "roughnessFactor", &[2.0, -1.0]),
+        ("KHR_materials_specular", "specularFactor", &[2.0, -1.0]),
+        ("KHR_materials_transmission", "transmissionFactor", &[2.0, -1.0]),
+        ("KHR_materials_volume", "thicknessFactor", &[-1.0]),
+        ("KHR_materials_volume", "attenuationDistance", &[0.0, -1.0]),
+        ("KHR_materials_dispersion", "dispersion", &[-1.0]),
+        ("KHR_materials_clearcoat", "clearcoatFactor", &[3.0, -1.0]),
+        ("KHR_materials_clearcoat", "clearcoatRoughnessFactor", &[3.0, -1.0]),
+        ("KHR_materials_sheen", "sheenRoughnessFactor", &[3.0, -1.0]),
+        ("KHR_materials_iridescence", "iridescenceFactor", &[3.0, -1.0]),
+        ("KHR_materials_iridescence", "iridescenceIor", &[0.5]),
+        ("KHR_materials_iridescence", "iridescenceThicknessMaximum", &[-1.0]),
+        ("KHR_materials_iridescence", "iridescenceThicknessMinimum", &[-1.0]),
+        ("KHR_materials_anisotropy", "anisotropyStrength", &[3.0, -1.0]),
+        ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", &[3.0, -1.0]),
+        ("KHR_materials_emissive_strength", "emissiveStrength", &[-1.0]),
+        ("KHR_materials_pbrSpecularGlossiness", "glossinessFactor", &[3.0, -1.0]),
+    ] {
+        for value in values {
+            let of = format!(r#""{group}": {{"{key}": {value}}}"#);
+            let (text, place) = match group.starts_with("KHR") {
+                true => (format!(r#"{{"extensions": {{{of}}}}}"#), format!("/extensions/{group}/{key}")),
+                false => (format!("{{{of}}}"), format!("/{group}/{key}")),
+            };
+            one(told(text), &place, "the ");
+        }
+    }
+    one(
+        told(r#"{"emissiveFactor": [-1, 0, 0]}"#.to_owned()),
+        "/emissiveFactor",
+        "the value is -1; expected at least 0",
+    );
+    let cut = r#"{"alphaMode": "MASK", "alphaCutoff": -1}"#.to_owned();
+    one(told(cut), "/alphaCutoff", "the value is -1");
+    let opaque = r#"{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 2]}}"#.to_owned();
+    one(told(opaque), "/pbrMetallicRoughness/baseColorFactor", "the factor is 2; expected 0 to 1");
+    let color = r#"{"extensions": {"KHR_materials_volume": {"attenuationColor": [0, 2, 0], "attenuationDistance": 1}}}"#;
+    one(
+        told(color.to_owned()),
+        "/extensions/KHR_materials_volume/attenuationColor",
+        "the factor is [0, 2, 0]",
+    );
+    // What has no upper limit.
+    let strong = r#"{"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 500}}}"#;
+    assert_eq!(told(strong.to_owned()), Vec::<String>::new());
+}

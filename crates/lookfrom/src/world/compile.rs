@@ -16,7 +16,7 @@ use super::lights::Lights;
 use super::medium::EndOfSpace;
 use super::place::{Compiler, Group, Labels};
 use super::quality::quality;
-use super::{Instance, Medium, Names, World, origin, reflectance};
+use super::{Instance, Medium, Names, World, numbers, origin, reflectance};
 use crate::light::{Light, LightChoice};
 use crate::primitive::Primitives;
 use crate::shading::interior_stack::InteriorStack;
@@ -81,6 +81,7 @@ impl World {
             return Err(Error::invalid(&camera.at, format!("lookfrom is {origin}; expected finite numbers")));
         }
         reflectance::check(&scene, warnings);
+        numbers::check(&scene, warnings);
         let render_from_world = DMat4::from_translation(-origin);
         let RenderSettings { media: has_media, open_fronts, hide_lights: hides_lights, .. } = scene.render;
         if scene.materials.len().saturating_add(scene.media.len()) > InteriorStack::MOST {

@@ -8,9 +8,9 @@ use lookfrom_scene::{LoadContext, Memory, image, load};
 
 /// The warnings of reading and compiling the first of some files.
 fn warnings_of(files: &[(&str, String)]) -> Vec<String> {
+    let name = files[0].0;
     let files = files.iter().map(|(name, text)| (PathBuf::from(name), text.as_bytes().to_vec()));
     let mut memory = Memory(files.collect());
-    let name = if memory.0.contains_key(Path::new("a.obj")) { "a.obj" } else { "a.toml" };
     memory.0.insert("white.png".into(), image::encode_png(1, 1, &[255; 3]).expect("a picture"));
     let mut context = LoadContext::new(&memory);
     let scene = load::scene(Path::new(name), &mut context).unwrap_or_else(|error| panic!("{error}"));
@@ -176,6 +176,41 @@ fn reflectances_above_one_are_told_of() {
     is_about(&obj("Kd 255 128 0"), &["a.mtl:1", "diffuse", "`m`", "[255, 128, 0]", "divide by 255"]);
     is_about(&obj("Kd 255 128 0\nmap_Kd white.png"), &["a.mtl:1", "white.png", "[255, 128, 0]"]);
     assert!(!obj("Kd 1 0.5 0\nKe 20 20 20").iter().any(|warning| warning.contains("go from 0 to 1")));
+}
+
+/// Readers of other formats take numbers as they are written; of those out of range the nearest counts.
+#[test]
+fn numbers_out_of_range_are_told_of() {
+    let mitsuba = |bsdf: &str| {
+        let sensor = r#"<sensor type="perspective"><transform name="to_world"><translate z="-5"/></transform></sensor>"#;
+        let rest = format!(r#"<emitter type="constant"/><shape type="sphere">{bsdf}</shape>"#);
+        warnings_of(&[("a.xml", format!(r#"<scene version="3.0.0">{sensor}{rest}</scene>"#))])
+    };
+    let float = |name: &str, value: f32| format!(r#"<float name="{name}" value="{value}"/>"#);
+    let bsdf = |kind: &str, inside: &str| format!(r#"<bsdf type="{kind}">{inside}</bsdf>"#);
+    let rough = mitsuba(&bsdf("roughconductor", &float("alpha", -1.0)));
+    one(&rough, &["a.xml:1:", "the roughness of material", "is -1; expected at least 0: it counts as 0"]);
+    one(
+        &mitsuba(&bsdf("principled", &float("metallic", 2.0))),
+        &["metallic", "expected 0 to 1: it counts as 1"],
+    );
+    let thin = bsdf("principledthin", &float("diff_trans", 3.0));
+    one(&mitsuba(&thin), &["diff_trans", "expected 0 to 2: it counts as 2"]);
+    let both = mitsuba(&bsdf("principled", &(float("metallic", 2.0) + &float("sheen_tint", -1.0))));
+    assert_eq!(both.len(), 2, "{both:?}");
+    none(&mitsuba(&bsdf("roughconductor", &float("alpha", 2.0))));
+    none(&mitsuba(&bsdf("principled", &float("sheen", 3.0))));
+
+    let pbrt = |material: &str| {
+        let text = format!(
+            "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\nMaterial {material}\nTranslate 0 0 5\nShape \"sphere\"\n"
+        );
+        warnings_of(&[("a.pbrt", text)])
+    };
+    one(&pbrt(r#""coateddiffuse" "float g" 2"#), &["a.pbrt:4:1", "the g of", "expected -1 to 1"]);
+    one(&pbrt(r#""hair" "float beta_m" 5"#), &["roughness", "5", "counts as 1"]);
+    one(&pbrt(r#""hair" "float eumelanin" -3"#), &["eumelanin", "counts as 0"]);
+    none(&pbrt(r#""conductor" "float roughness" 3"#));
 }
 
 #[test]

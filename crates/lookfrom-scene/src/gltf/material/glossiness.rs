@@ -3,7 +3,7 @@
 //! A dielectric with the index of refraction 0, which stands for infinity, reflects exactly its specular colour by
 //! Schlick's formula; `KHR_materials_specular` recommends this conversion. Roughness is 1 − glossiness.
 
-use super::{Reader, unit};
+use super::Reader;
 use crate::error::Result;
 use crate::gltf::json;
 use crate::gltf::texture::{Meaning, Use};
@@ -15,9 +15,11 @@ impl Reader<'_, '_, '_> {
     pub(super) fn glossy(&mut self, own: &json::SpecularGlossiness, base_color: Color) -> Result<Principled> {
         let place = "/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture";
         let info = own.specular_glossiness_texture.as_ref();
-        let factor = own.specular_factor.unwrap_or([1.0; 3]).map(|factor| unit(Some(factor), 1.0));
+        let pointer = "/extensions/KHR_materials_pbrSpecularGlossiness/specularFactor";
+        let factor = self.reflectance(own.specular_factor.unwrap_or([1.0; 3]), pointer);
         let specular_color = self.color(factor, info, place)?;
-        let glossiness = unit(own.glossiness_factor, 1.0);
+        let pointer = "/extensions/KHR_materials_pbrSpecularGlossiness/glossinessFactor";
+        let glossiness = self.unit(own.glossiness_factor, 1.0, pointer);
         let pointer = format!("{}{place}", self.pointer);
         let used = Use { info, pointer: &pointer };
         let texture =

@@ -73,23 +73,23 @@ impl Reader<'_, '_, '_> {
         clamped
     }
 
-    /// Warns of a property of the material.
-    fn warn(&mut self, place: &str, message: String) {
-        let at = self.document.at(&format!("{}{place}", self.pointer));
-        self.context.warn(&at, message);
+    /// Beer–Lambert law: white light has the attenuation colour after the distance, so the attenuation coefficient is
+    /// −ln(colour) / distance.
+    pub(super) fn attenuation(&mut self, volume: &json::Volume) -> [f32; 3] {
+        const VOLUME: &str = "/extensions/KHR_materials_volume";
+        let distance = volume.attenuation_distance.unwrap_or(f64::INFINITY);
+        if distance <= 0.0 {
+            let message = format!("the distance is {distance}; expected more than 0: nothing is absorbed");
+            self.warn(&format!("{VOLUME}/attenuationDistance"), message);
+        }
+        if !(distance > 0.0 && distance.is_finite()) {
+            return [0.0; 3];
+        }
+        let color = volume.attenuation_color.unwrap_or([1.0; 3]);
+        self.check_reflectance(color, &format!("{VOLUME}/attenuationColor"));
+        // A colour of 0 would need infinite attenuation, so it is clamped.
+        color.map(|c| positive(-libm::log(c.clamp(1e-6, 1.0)) / distance))
     }
-}
-
-/// Beer–Lambert law: white light has the attenuation colour after the distance, so the attenuation coefficient is
-/// −ln(colour) / distance.
-pub(super) fn attenuation(volume: &json::Volume) -> [f32; 3] {
-    let distance = volume.attenuation_distance.unwrap_or(f64::INFINITY);
-    if !(distance > 0.0 && distance.is_finite()) {
-        return [0.0; 3];
-    }
-    // A colour of 0 would need infinite attenuation, so it is clamped.
-    let color = volume.attenuation_color.unwrap_or([1.0; 3]);
-    color.map(|c| positive(-libm::log(c.clamp(1e-6, 1.0)) / distance))
 }
 
 /// The fraction of collisions that scatter in a medium that reflects the fraction `color` of light after all its bounces (Kulla

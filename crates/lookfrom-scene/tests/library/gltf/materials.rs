@@ -121,7 +121,8 @@ fn volumes_that_only_absorb_have_no_medium() {
     let white = json!({"multiscatterColorFactor": [1, 1, 1]});
     nothing(json!({}), json!({}), &[]);
     nothing(json!({"multiscatterColor": [0, 0, 0]}), json!({}), &[]);
-    nothing(json!({"multiscatterColor": [-1, -0.5, 0]}), json!({}), &[]);
+    let below = "multiscatterColor: the factor is [-1, -0.5, 0]; expected 0 to 1";
+    nothing(json!({"multiscatterColor": [-1, -0.5, 0]}), json!({}), &[below]);
     let volume = |volume: Value| json!({"KHR_materials_volume": volume});
     nothing(white.clone(), volume(json!({"thicknessFactor": 1})), &[]);
     let clear = json!({"thicknessFactor": 1, "attenuationDistance": 1});
