@@ -122,14 +122,9 @@ impl Reader<'_, '_> {
         }
         let attributes = self.attributes(textured)?;
         let geometries = self.geometries(plugin, attributes)?;
-        let is_curve = matches!(&*plugin.kind, "bsplinecurve" | "linearcurve");
-        let is_turned = match &*plugin.kind {
-            // Mitsuba has normals of faces, and those made of them, by the order of corners in the world.
-            "obj" | "ply" | "sdfgrid" | "serialized" => {
-                !self.has_own_normals(&geometries) && to_world.determinant() < 0.0
-            }
-            // Curves have normals away from who looks, as pbrt's; Mitsuba's are tubes that are seen from outside.
-            _ => is_curve,
+        let is_made_of_faces = match &*plugin.kind {
+            "obj" | "ply" | "sdfgrid" | "serialized" => !self.has_own_normals(&geometries),
+            _ => false,
         };
         self.use_disk(plugin.kind == "disk");
         let emission = match plugin.part("emitter", &self.ids)? {
@@ -148,7 +143,7 @@ impl Reader<'_, '_> {
                 "the grain and normal maps of disks lie along the angle, in Mitsuba along the radius";
             self.warn_once(&plugin.at, message);
         }
-        if !is_curve && self.is_hair(surface) {
+        if self.is_hair(surface) && !matches!(&*plugin.kind, "bsplinecurve" | "linearcurve") {
             let message = "hair on what is no curve lies along u, and v is the place across it; in Mitsuba its normal tells that place";
             self.warn_once(&plugin.at, message);
         }
@@ -157,7 +152,8 @@ impl Reader<'_, '_> {
             emission,
             alpha: surface.alpha,
             sides,
-            reverse_orientation: flip != is_turned,
+            // Mitsuba has normals of faces, and those made of them, by the order of corners in the world.
+            reverse_orientation: flip != (is_made_of_faces && to_world.determinant() < 0.0),
             world_from_object: to_world * own,
             ..Shape::new(plugin.at.clone(), geometry, surface.material)
         };

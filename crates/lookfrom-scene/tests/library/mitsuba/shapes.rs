@@ -252,8 +252,6 @@ fn curves_are_strands_of_bezier() {
         panic!("no hair")
     };
     assert_eq!((hair.beta_m, hair.alpha), (Scalar::Value(0.3), Scalar::Value(2.0)));
-    // Their normals are away from who looks here, as in pbrt, and opaque surfaces are black from behind.
-    assert!(linear.shapes[0].reverse_orientation);
     // A straight spline of equal steps goes from the second to the third point.
     let spline = of("bsplinecurve", "0 0 0 1\n1 0 0 1\n2 0 0 1\n3 0 0 1").expect("curves");
     let [first, .., last] = strands(&spline)[0].points;
