@@ -116,11 +116,6 @@ pub(crate) fn forms() -> Vec<Form> {
             at: |u, v| around(300f64.to_radians() * u, 0.8, -0.9 + v * 1.6),
         },
         Form {
-            name: "torus",
-            geometry: Geometry::Torus { radius: 0.9, tube: 0.4 },
-            at: |u, v| around(2.0 * PI * u, 0.9 + 0.4 * (2.0 * PI * v).cos(), 0.4 * (2.0 * PI * v).sin()),
-        },
-        Form {
             name: "patch",
             geometry: Geometry::Bilinear(Arc::new(patches)),
             at: |u, v| {
@@ -132,6 +127,11 @@ pub(crate) fn forms() -> Vec<Form> {
             name: "parallelogram",
             geometry: Geometry::Bilinear(Arc::new(flat)),
             at: |u, v| DVec3::new(2.0 * u - 1.0, 2.0 * v - 1.0, 0.5 * u),
+        },
+        Form {
+            name: "torus",
+            geometry: Geometry::Torus { radius: 0.9, tube: 0.4 },
+            at: |u, v| around(2.0 * PI * u, 0.9 + 0.4 * (2.0 * PI * v).cos(), 0.4 * (2.0 * PI * v).sin()),
         },
     ]
 }
