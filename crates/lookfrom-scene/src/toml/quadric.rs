@@ -84,8 +84,7 @@ pub(super) fn disk(table: &Table<'_>) -> Result<(Geometry, DMat4)> {
     });
     let height = table.or("height", 0.0, Value::number);
     let part = Geometry::PartialDisk { height, radius, inner_radius, phi_max };
-    let is_upright = center == DVec3::ZERO && normal == DVec3::Z;
-    Ok((part, if is_upright { DMat4::IDENTITY } else { along(center, normal.normalize()) }))
+    Ok((part, around(center, normal)))
 }
 
 /// A cylinder between two points, and the transform from its own space.
@@ -120,6 +119,12 @@ fn phi_max(table: &Table<'_>) -> f64 {
     table.or("phi_max", 360.0, |value| {
         value.number_where("degrees, more than 0 and at most 360", |phi| phi > 0.0 && phi <= 360.0)
     })
+}
+
+/// The space whose origin is `center` and whose z axis goes along `axis`, of any length; exactly its own where they are those.
+pub(super) fn around(center: DVec3, axis: DVec3) -> DMat4 {
+    let is_own = center == DVec3::ZERO && axis == DVec3::Z;
+    if is_own { DMat4::IDENTITY } else { along(center, axis.normalize()) }
 }
 
 /// The transform from a space with its origin at a point and z along a unit vector.

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 
 use super::Reader;
 use super::mesh::too_many;
-use super::quadric::along;
+use super::quadric::{along, around};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Result;
@@ -61,8 +61,7 @@ impl Reader<'_, '_> {
         let radius = table.need("radius", "1", 1.0, Value::positive);
         let tube = table.need("tube", "0.25", 0.25, Value::positive);
         table.sound(&["axis", "radius", "tube"])?;
-        let is_upright = center == DVec3::ZERO && axis == DVec3::Z;
-        let own = if is_upright { DMat4::IDENTITY } else { along(center, axis.normalize()) };
+        let own = around(center, axis);
         if table.has("segments") {
             return self.revolved(table, "torus", &tube_around(radius, tube), own);
         }

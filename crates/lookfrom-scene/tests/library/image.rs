@@ -167,7 +167,7 @@ fn light_is_kept_as_it_is() {
     assert!(excess.abs() / (3.0 * texels.len() as f32) < 2e-4, "{excess}");
 }
 
-/// What a Radiance picture cannot hold is as near as it can be: it neither wraps to another exponent nor becomes black.
+/// Values beyond the range of RGBE (Ward 1991) saturate: their exponents do not wrap, and bright ones do not become black.
 #[test]
 fn the_ends_of_shared_exponents() {
     let brightest = 255.0 * 2.0_f32.powi(119);

@@ -312,7 +312,7 @@ fn media_of_our_own_format_are_read() {
     assert_eq!((a.bounds, a.grid.stored()), (b.bounds, b.grid.stored()));
 }
 
-/// What multiplies the emission is where its own file, or formula, places it, whatever the cells of the densities are.
+/// The map of `emission_density` is that of its own file or formula, independent of the cells of `density`.
 #[test]
 fn densities_of_emission_have_a_place_of_their_own() {
     let mut smoke = sketch();

@@ -4,11 +4,21 @@ use glam::{DMat4, DVec3};
 
 use super::text::{Fields, Item};
 use crate::motion::Motion;
+use crate::toml::quadric::along;
 
 /// Whether two matrices are the same, the signs of zeros included.
 pub(super) fn same_bits(a: &DMat4, b: &DMat4) -> bool {
     let bits = |matrix: &DMat4| matrix.to_cols_array().map(f64::to_bits);
     bits(a) == bits(b)
+}
+
+/// The center and the axis by which keys give the matrix of a shape around the z axis (`around` of the reader), if it is
+/// one of these, and not the identity.
+pub(super) fn center_and_axis(matrix: &DMat4) -> Option<(DVec3, DVec3)> {
+    let (center, axis) = (matrix.w_axis.truncate(), matrix.z_axis.truncate());
+    let own = along(center, axis.normalize());
+    let is_placed = same_bits(matrix, &(DMat4::IDENTITY * own)) && *matrix != DMat4::IDENTITY;
+    is_placed.then_some((center, axis))
 }
 
 /// 16 numbers, row by row.

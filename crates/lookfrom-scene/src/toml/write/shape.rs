@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use super::Writer;
 use super::cannot;
 use super::names::spoken;
-use super::placing::{put_transform, same_bits};
+use super::placing::{center_and_axis, put_transform, same_bits};
 use super::text::{Fields, Item};
 use crate::composite::{sphereflake, sphereflake_count};
 use crate::error::Result;
@@ -110,10 +110,8 @@ impl Writer<'_> {
                 ("sphere", is_placed)
             }
             Geometry::PartialDisk { height, radius, inner_radius, phi_max } => {
-                let (center, normal) = (matrix.w_axis.truncate(), matrix.z_axis.truncate());
-                let own = along(center, normal.normalize());
-                let is_placed = same_bits(matrix, &(DMat4::IDENTITY * own)) && *matrix != DMat4::IDENTITY;
-                let (center, normal) = if is_placed { (center, normal) } else { (DVec3::ZERO, DVec3::Z) };
+                let placed = center_and_axis(matrix);
+                let (center, normal) = placed.unwrap_or((DVec3::ZERO, DVec3::Z));
                 fields.put("center", center);
                 fields.put("normal", normal);
                 fields.put("radius", *radius);
@@ -122,7 +120,7 @@ impl Writer<'_> {
                 if *phi_max != 360.0 || (*height, *inner_radius) == (0.0, 0.0) {
                     fields.put("phi_max", *phi_max);
                 }
-                ("disk", is_placed)
+                ("disk", placed.is_some())
             }
             Geometry::Cylinder { radius, z: [low, high], phi_max } => {
                 let from = matrix.w_axis.truncate();
@@ -142,15 +140,13 @@ impl Writer<'_> {
                 ("cylinder", is_placed)
             }
             Geometry::Torus { radius, tube } => {
-                let (center, axis) = (matrix.w_axis.truncate(), matrix.z_axis.truncate());
-                let own = along(center, axis.normalize());
-                let is_placed = same_bits(matrix, &(DMat4::IDENTITY * own)) && *matrix != DMat4::IDENTITY;
-                let (center, axis) = if is_placed { (center, axis) } else { (DVec3::ZERO, DVec3::Z) };
+                let placed = center_and_axis(matrix);
+                let (center, axis) = placed.unwrap_or((DVec3::ZERO, DVec3::Z));
                 fields.put_unless("center", center, DVec3::ZERO);
                 fields.put_unless("axis", axis, DVec3::Y);
                 fields.put("radius", *radius);
                 fields.put("tube", *tube);
-                ("torus", is_placed)
+                ("torus", placed.is_some())
             }
             Geometry::Bilinear(patches) => {
                 self.patches(fields, patches);

@@ -60,7 +60,7 @@ impl Quartic {
         0.25 * self.q * self.q + self.p * self.p * self.p / 27.0
     }
 
-    /// Where it has its extremes, in ascending order, and infinities (Cardano, Viète).
+    /// Parameters of the extremes, ascending, then infinities: Cardano's formula for one, Viète's for three.
     fn extremes(&self) -> [f64; 4] {
         let Self { p, q, .. } = *self;
         let discriminant = self.discriminant();
@@ -86,7 +86,7 @@ struct Crossing {
     torus: Torus,
     line: Line,
     quartic: Quartic,
-    /// The ends of what is near enough to the torus; in ascending order if there is anything.
+    /// The ends of the line within the bounds of the torus ([`Torus::ends`]).
     from: f64,
     to: f64,
     /// Of the line's parameter: the way to its origin, the unit of s, and the way by t.
@@ -125,24 +125,11 @@ impl Crossing {
     }
 
     /// The root between a parameter where it is outside and one where it is inside.
-    fn root(&self, [mut outside, mut inside]: [f64; 2]) -> f64 {
+    fn root(&self, [outside, inside]: [f64; 2]) -> f64 {
         // From the root of the parabola through both ends whose vertex is at the inner one.
         let [above, below] = [outside, inside].map(|end| self.at(end).0);
-        let mut s = inside + (outside - inside) * (below / (below - above)).sqrt();
-        for _ in 0..MOST_STEPS {
-            let (value, slope) = self.at(s);
-            *(if value > 0.0 { &mut outside } else { &mut inside }) = s;
-            let newton = s - value / slope;
-            let is_between = newton > outside.min(inside) && newton < outside.max(inside);
-            let next = if is_between { newton } else { 0.5 * (outside + inside) };
-            let step = (next - s).abs();
-            s = next;
-            // The next step would be some square of this one.
-            if step <= FOUND {
-                break;
-            }
-        }
-        s
+        let start = inside + (outside - inside) * (below / (below - above)).sqrt();
+        newton(|s| self.at(s), [inside, outside], start)
     }
 
     /// The first root after `first` of a quartic with one extreme, if there is one, without that extreme. An error where Newton's method
@@ -170,6 +157,25 @@ impl Crossing {
         }
         Err(Unclear)
     }
+}
+
+/// The root of a function, given with its derivative, between an end where it is not positive and one where it is: Newton's method, with
+/// bisection where a step would leave the bracket.
+fn newton(function: impl Fn(f64) -> (f64, f64), [mut below, mut above]: [f64; 2], mut x: f64) -> f64 {
+    for _ in 0..MOST_STEPS {
+        let (value, slope) = function(x);
+        *(if value > 0.0 { &mut above } else { &mut below }) = x;
+        let next = x - value / slope;
+        let is_between = next > above.min(below) && next < above.max(below);
+        let next = if is_between { next } else { 0.5 * (above + below) };
+        let step = (next - x).abs();
+        x = next;
+        // The next step would be some square of this one.
+        if step <= FOUND {
+            break;
+        }
+    }
+    x
 }
 
 /// A line from its point nearest to the centre on, in units of the torus's size: `origin + s direction`.
@@ -240,8 +246,7 @@ impl Torus {
         self.tube >= THIN && self.tube <= self.radius
     }
 
-    /// Where a line enters the ball around the torus, of size 1, between the planes that it touches, and where it leaves that: in
-    /// ascending order if it does.
+    /// The segment of a line within the bounding sphere, of radius 1, and the slab |z| ≤ r; its ends descend where there is none.
     fn ends(&self, line: &Line) -> [f64; 2] {
         let Line { origin: o, direction: d } = *line;
         let half = (1.0 - o.length_squared()).sqrt();
@@ -323,20 +328,11 @@ impl Torus {
         // The area grows by the angle as radius + tube cos: its integral is radius angle + tube sin.
         let half = self.half_angle();
         let wanted = (2.0 * u - 1.0) * (radius * half + tube * libm::sin(half));
-        let (mut low, mut high) = (-half, half);
-        let mut angle = (2.0 * u - 1.0) * half;
-        for _ in 0..MOST_STEPS {
+        let beyond = |angle: f64| {
             let (sin, cos) = libm::sincos(angle);
-            let beyond = radius * angle + tube * sin - wanted;
-            *(if beyond < 0.0 { &mut low } else { &mut high }) = angle;
-            let newton = angle - beyond / (radius + tube * cos);
-            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-            let step = (next - angle).abs();
-            angle = next;
-            if step <= FOUND {
-                break;
-            }
-        }
+            (radius * angle + tube * sin - wanted, radius + tube * cos)
+        };
+        let angle = newton(beyond, [-half, half], (2.0 * u - 1.0) * half);
         let (sin, cos) = libm::sincos(angle);
         [radius + tube * cos, tube * sin]
     }

@@ -92,7 +92,8 @@ impl<R: Real> Inside<R> {
 }
 
 impl<R: Real> ThinFilm<R> {
-    /// How far the film is there, 0 … 1: one of zero thickness is none, whatever Schlick's approximation makes of its boundaries.
+    /// The weight of the film, 0 … 1: a smooth step from zero thickness to 0.03 nm, below which Schlick's approximation would still reflect
+    /// grazing light at boundaries between equal indices.
     #[inline(always)]
     pub(super) fn presence(&self) -> R {
         let t = Float::clamp(self.thickness / 0.03, 0.0, 1.0);
