@@ -23,8 +23,8 @@ use clap_complete::Shell;
 use glam::DVec3;
 use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{
-    Allocation, ColorMode, Filter, Integrator, Layers, LightPathLayer, LightSampler, PixelBounds, Portals,
-    Sampler, Sensor, SpectralFilm, Tonemap,
+    Allocation, ColorMode, CryptomatteKind, Filter, Integrator, Layers, LightPathLayer, LightSampler,
+    PixelBounds, Portals, Sampler, Sensor, SpectralFilm, Tonemap,
 };
 
 use crate::scenes;
@@ -426,6 +426,13 @@ pub(crate) struct Overrides {
     /// of Open Shading Language; docs/guide/path-tracing.md explains it.
     #[arg(long, value_name = "NAME=EXPRESSION", value_parser = values::light_path)]
     pub(crate) light_path: Vec<LightPathLayer>,
+
+    /// Cryptomattes of an EXR: masks of every object and material, by name, for compositors: object, material or both
+    ///
+    /// The layers CryptoObject and CryptoMaterial tell for each pixel the six names that cover most of it, and how much. Camera rays are
+    /// traced once more for them, of at most 256 samples of a pixel.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = values::word(CryptomatteKind::WORDS))]
+    pub(crate) cryptomatte: Vec<CryptomatteKind>,
 
     /// Spectral film: the light of this number of buckets of wavelengths as layers of an EXR; 0 for colours alone. It needs spectral
     /// light

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lookfrom::film::Picture;
-use lookfrom::session::{Developed, Development, FilmFile, FilmParts, Fireflies};
+use lookfrom::session::{Developed, Development, Exposure, FilmFile, FilmParts, Fireflies};
 use lookfrom_scene::image::{self, Channels, Encoding, Reading};
 use lookfrom_scene::settings::{Background, Tonemap};
 use lookfrom_scene::{Disk, Inputs, LoadContext, Location};
@@ -52,7 +52,7 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
     let mut context = LoadContext::within(&arguments.memory.budget(), &files);
     let is_exr = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr"));
     let mut film = None;
-    let developed = if is_exr {
+    let mut developed = if is_exr {
         let is_film = FilmFile::is_film(&context.read(path)?);
         if is_film && arguments.layer.is_none() {
             let mut parts = FilmParts::new(&files, &context.budget);
@@ -82,6 +82,9 @@ fn develop(path: &Path, target: &Target, arguments: &DevelopArguments) -> Result
             Picture { width: image.width, height: image.height, pixels: image.texels().collect(), alpha };
         of_picture((picture, Vec::new(), Vec::new()), path, arguments)?
     };
+    if arguments.exposure == Some(Exposure::Auto) {
+        context.warnings.push(developed.expose(path));
+    }
     exit::say_warnings(&context.warnings);
     target.format().check_background(developed.development.background).map_err(exit::in_scene(path))?;
     target.write_by(&inputs, &|mut out| developed.write(film.as_ref(), target.format(), &mut out))
@@ -125,7 +128,7 @@ fn of_picture(
         fireflies: Fireflies::Keep,
     };
     change(&mut development, arguments, has_alpha, path)?;
-    Ok(Developed { picture, layers, header, denoised: false, development })
+    Ok(Developed { picture, layers, cryptomattes: Vec::new(), header, denoised: false, development })
 }
 
 /// Applies what can be changed of any linear picture.
@@ -145,8 +148,8 @@ fn change(
         }
         development.background = background;
     }
-    if let Some(exposure) = arguments.exposure {
-        development.exposure = exposure;
+    if let Some(Exposure::Stops(stops)) = arguments.exposure {
+        development.exposure = stops;
     }
     if let Some(tonemap) = arguments.tonemap {
         development.tonemap = tonemap;

@@ -49,7 +49,7 @@ const GROUPS: &[(&str, &[&str])] = &[
             "filter",
         ],
     ),
-    ("Layers of an EXR", &["layers", "light_path", "spectral_buckets", "wavelengths"]),
+    ("Layers of an EXR", &["layers", "light_path", "cryptomatte", "spectral_buckets", "wavelengths"]),
     ("The call", &["watch", "quiet", "verbose", "json", "strict", "threads", "memory"]),
 ];
 
@@ -83,8 +83,8 @@ const SHORT: &[&str] = &[
 /// Commands that take the options of a picture, with those that change nothing there. They are accepted all the same, so
 /// that the words of a render can be repeated.
 const BORROWERS: &[(&str, &[&str])] = &[
-    ("inspect", &["layers", "light_path", "denoise", "exposure", "tonemap", "crop"]),
-    ("view", &["layers", "light_path"]),
+    ("inspect", &["layers", "light_path", "cryptomatte", "denoise", "exposure", "tonemap", "crop"]),
+    ("view", &["layers", "light_path", "cryptomatte"]),
     ("bench", &["denoise", "exposure", "tonemap"]),
     ("farm", &[]),
     ("convert", &["turn"]),

@@ -39,6 +39,7 @@ impl Overrides {
             portals: self.portals,
             layers: self.layers,
             light_paths: self.light_path.clone(),
+            cryptomattes: self.cryptomatte.clone(),
             spectral_buckets: self.spectral_buckets,
             wavelengths: self.wavelengths,
             denoise: self.denoise,

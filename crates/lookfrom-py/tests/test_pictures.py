@@ -290,6 +290,9 @@ def test_films_are_developed_otherwise_or_say_why_not() -> None:
     assert plain.develop(fireflies="median").header["fireflies"] == "median"
     assert (transparent.develop(background="white").srgb[0, 0, :3] == 255).all()
     assert (film.develop(background="environment").linear == film.develop().linear).all()
+    exposed = film.develop(exposure="auto")
+    assert exposed.header["exposure"] != film.develop().header["exposure"]
+    assert (film.develop(exposure=float(exposed.header["exposure"])).srgb == exposed.srgb).all()
     assert film.develop(samples=None, exposure=1, tonemap="filmic", denoise=True).size == (48, 32)  # type: ignore[typeddict-item]
     for options, message in [
         ({"size": 16}, "size needs another render; the development of a film has background, denoise"),
@@ -297,7 +300,6 @@ def test_films_are_developed_otherwise_or_say_why_not() -> None:
         ({"exposure": 1, "lookfrom": (1, 2, 3)}, "lookfrom needs another render"),
         ({"time": 3}, "time needs another render"),
         ({"threads": 1}, "threads needs another render"),
-        ({"exposure": "auto"}, 'exposure is "auto", which needs the scene'),
         ({"background": "white"}, "background cannot become #ffffff: the film has no alpha"),
         ({"background": "transparent"}, "background cannot become transparent: the film has no alpha"),
         ({"exposed": 1}, "there is no option exposed"),

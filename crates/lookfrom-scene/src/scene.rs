@@ -129,6 +129,8 @@ pub struct Object {
 /// A placed copy of an object.
 #[derive(Clone, Debug)]
 pub struct Instance {
+    /// Its name, if it has one: that of a glTF node, say.
+    pub name: Option<Arc<String>>,
     /// The location in the file.
     pub at: Location,
     /// The instanced object.

@@ -1,10 +1,12 @@
 //! Settings of the image and of the integrator, with their defaults.
 
+mod cryptomatte;
 mod filter;
 mod image;
 mod render;
 mod spectral_film;
 
+pub use self::cryptomatte::CryptomatteKind;
 pub use self::filter::{Filter, FilterShape};
 pub use self::image::{
     Background, CHANNEL_NAME, ImageSettings, Layers, LightPathLayer, MOST_PIXELS, PixelBounds, Sensor,

@@ -2,17 +2,23 @@
 //!
 //! The whole way from a step to the film. Steps leave the surfaces that they have at hand, and others are found again after the batch
 //! (`first_surfaces`, in the `columns` of eight). In camera space (`camera_space`) they are AOVs, of which eight pixels are summed side by
-//! side (`accumulator`). The film keeps the `sums`.
+//! side (`accumulator`). The film keeps the `sums`. What covers a ray in part is told one by one (`coverage`), for AOVs and for Cryptomattes
+//! (`cryptomatte`).
 
 mod accumulator;
 mod camera_space;
 mod columns;
+mod coverage;
+mod cryptomatte;
 mod first_surfaces;
 mod sums;
 
 pub(crate) use accumulator::AovAccumulator;
 pub(crate) use camera_space::CameraSpace;
 pub(crate) use columns::{AovColumns, FirstSurfaceColumns};
+pub(crate) use coverage::Cover;
+pub use cryptomatte::Cryptomatte;
+pub(crate) use cryptomatte::{ATTRIBUTES as CRYPTOMATTE_ATTRIBUTES, CryptomatteId, PixelMatte};
 pub use first_surfaces::FirstSurfaces;
 pub(crate) use first_surfaces::RayHit;
 pub(crate) use sums::{AovSums, LayerSums};

@@ -52,7 +52,7 @@ use lookfrom_scene::settings::{ImageSettings, PixelBounds};
 use lookfrom_scene::spectrum::space::xyz_of_rec709 as xyz;
 use lookfrom_scene::{Error, ErrorKind, Location, Result};
 
-use crate::aov::{AovSums, LayerSums};
+use crate::aov::{AovSums, LayerSums, PixelMatte};
 pub use crate::aov::{Aovs, DenoiserFeatures, FEATURE_SAMPLES};
 pub use crate::core::fixed_point::BRIGHTEST;
 pub use crate::core::sampler::SampleId;
@@ -157,7 +157,10 @@ impl Film {
     /// The bytes of a film for these settings, with those that are needed at the same time to develop and encode its picture:
     /// an estimate.
     pub fn memory(image: &ImageSettings) -> u64 {
-        Layout::of_image(image).memory([image.width, image.height], area_of(image))
+        let pixels = u64::from(image.width) * u64::from(image.height);
+        let mattes = image.cryptomattes.len() as u64 * PixelMatte::BYTES;
+        let layout = Layout::of_image(image).memory([image.width, image.height], area_of(image));
+        layout.saturating_add(pixels.saturating_mul(mattes))
     }
 
     /// As [`Film::memory`], for a film with the same sums, of an area of the same picture.
@@ -304,7 +307,7 @@ impl Film {
 }
 
 /// The pixels of a film for these settings.
-fn area_of(image: &ImageSettings) -> PixelBounds {
+pub(crate) fn area_of(image: &ImageSettings) -> PixelBounds {
     let whole = PixelBounds::of_size(image.width, image.height);
     whole.intersection(image.crop.unwrap_or(whole))
 }

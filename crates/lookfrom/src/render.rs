@@ -7,6 +7,7 @@
 mod aovs;
 mod camera_warnings;
 mod cost;
+mod cryptomattes;
 mod driver;
 mod footprint;
 mod guide;
@@ -49,6 +50,7 @@ use crate::world::{MeasuredSurface, World};
 
 pub(crate) use camera_warnings::Subject;
 pub use cost::Cost;
+pub use cryptomattes::MOST_MATTE_SAMPLES;
 use start::Start;
 use transport::Transport;
 

@@ -302,9 +302,7 @@ impl Session {
         };
         if options.exposure.map_or(has_own_lights, |exposure| exposure == Exposure::Auto) {
             let stops = session.expose()?;
-            let message = format!("the exposure is {stops}, chosen by what is seen");
-            let notice = Warning::notice(&Location::file(path), message);
-            session.warnings.push(notice.remedy(Remedy::Exposure(stops)));
+            session.warnings.push(exposure::notice(stops, path));
         }
         if let Some(degrees) = options.turn {
             session.set_turn(degrees)?;

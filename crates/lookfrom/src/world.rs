@@ -31,10 +31,12 @@ pub use instance::PlacedInstance;
 pub(crate) use measured::MeasuredSurface;
 use medium::EndOfSpace;
 
+use std::fmt;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
+use lookfrom_scene::Location;
 use lookfrom_scene::scene::MediumId;
 
 use crate::core::spectrum::Spectrum;
@@ -123,10 +125,32 @@ pub struct World {
 pub struct Names {
     /// Names of materials, by index.
     pub materials: Vec<String>,
-    /// Names of shapes, by index.
-    pub shapes: Vec<String>,
+    /// Labels of shapes, by index.
+    pub shapes: Vec<ShapeLabel>,
     /// Names of lights, by index.
     pub lights: Vec<String>,
+    /// Names of objects, by index.
+    pub objects: Vec<String>,
+    /// Names of instances, by index; empty where the scene names none.
+    pub instances: Vec<Option<Arc<String>>>,
+}
+
+/// What a shape is called: every shape has a label, which tells it from others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShapeLabel {
+    /// Its name in the scene; of a shape without one, a name by its material and kind.
+    pub name: String,
+    /// Where a shape without a name is written.
+    pub at: Option<Location>,
+}
+
+impl fmt::Display for ShapeLabel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.at {
+            None => f.write_str(&self.name),
+            Some(at) => write!(f, "{} ({at})", self.name),
+        }
+    }
 }
 
 impl World {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use lookfrom::session::Fireflies;
+use lookfrom::session::{Exposure, Fireflies};
 use lookfrom_scene::settings::{Background, Tonemap};
 
 use super::{Common, EncodingArguments, MemoryArguments, VariableArguments};
@@ -145,9 +145,9 @@ pub(crate) struct DevelopArguments {
     #[arg(long, value_name = "NAME", conflicts_with_all = ["denoise", "fireflies"])]
     pub(crate) layer: Option<String>,
 
-    /// Exposure in stops, for pictures that screens show [default: the film's, or 0]
-    #[arg(long, value_name = "STOPS", value_parser = values::between(-64.0f32, 64.0), allow_hyphen_values = true)]
-    pub(crate) exposure: Option<f32>,
+    /// Exposure in stops, or by what the picture shows (auto), for pictures that screens show [default: the film's, or 0]
+    #[arg(long, value_name = "STOPS|auto", value_parser = values::exposure, allow_hyphen_values = true)]
+    pub(crate) exposure: Option<Exposure>,
 
     /// Tone map from linear light to what a screen shows [default: the film's, or clamp]
     #[arg(long, value_name = "NAME", value_parser = values::word(Tonemap::WORDS))]

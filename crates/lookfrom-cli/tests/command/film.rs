@@ -188,6 +188,15 @@ fn films_are_developed_without_rendering() {
     assert!(command.arg("direct=CD[LB]").output().unwrap().status.success());
     stage.done("develop paths.exr -o paths.png --exposure 1 --tonemap agx");
     assert!(stage.bytes("a.png") == stage.bytes("paths.png"));
+    // The exposure by what a picture shows, of films and others, is one that can be repeated.
+    for dark in ["a.exr", "plain.exr"] {
+        let run = stage.done(&format!("develop {dark} -o auto.png --exposure auto"));
+        let stops = run.stderr.split("the exposure is ").nth(1).and_then(|rest| rest.split(',').next());
+        stage.done(&format!("develop {dark} -o again.png --exposure={}", stops.expect(&run.stderr)));
+        assert!(stage.bytes("auto.png") == stage.bytes("again.png"));
+        stage.done(&format!("develop {dark} -o zero.png --exposure 0"));
+        assert!(stage.bytes("auto.png") != stage.bytes("zero.png"));
+    }
     // A layer can be developed for itself, and compared.
     stage.done("develop paths.exr -o direct.exr --layer direct");
     let read = |file: &str| image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();

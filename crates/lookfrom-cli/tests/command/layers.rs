@@ -131,3 +131,40 @@ fn what_light_is_and_how_lights_are_chosen_is_in_the_header() {
         assert!(found.contains(&(name.to_owned(), text.to_owned())), "{name}: {found:?}");
     }
 }
+
+#[test]
+fn cryptomattes_have_the_layout_that_compositors_read() {
+    let stage = Stage::new("cryptomatte");
+    let told = stage.done("render scene.toml -o plain.png --cryptomatte object").stderr;
+    assert!(told.contains("PNG pictures have no layers"), "{told}");
+    let told = stage.run("render scene.toml -o no.exr --cryptomatte asset");
+    assert!(told.code == Some(2) && told.stderr.contains("object, material"), "{}", told.stderr);
+
+    // In the picture, and in the file of a film, but not in pictures that are developed from its sums.
+    let mattes = "--cryptomatte object,material,object --samples 4";
+    stage.done(&format!("render scene.toml -q -o matte.exr {mattes}"));
+    stage.done(&format!("render scene.toml -q -o film.exr --film {mattes}"));
+    stage.done("develop film.exr -o developed.exr");
+    let read = |file: &str| image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
+    let of_mattes = |file: &str| -> Vec<String> {
+        let found = read(file);
+        let attributes = found.attributes.into_iter().filter(|(name, _)| name.starts_with("cryptomatte/"));
+        let channels = found.channels.into_iter().filter(|(name, _)| name.starts_with("Crypto"));
+        attributes.map(|(_, text)| text).chain(channels.map(|(name, _)| name)).collect()
+    };
+    let found = of_mattes("matte.exr");
+    assert_eq!(found.len(), 2 * (4 + 12), "{found:?}");
+    for expected in
+        ["CryptoObject", "CryptoMaterial", "MurmurHash3_32", "CryptoObject00.R", "CryptoMaterial02.A"]
+    {
+        assert!(found.iter().any(|text| text == expected), "{expected} is not in {found:?}");
+    }
+    assert_eq!(of_mattes("film.exr"), found);
+    assert_eq!(of_mattes("developed.exr"), [""; 0]);
+
+    // A film that goes on has the mattes of all of its samples.
+    stage.done("render scene.toml -q -o half.exr --film --cryptomatte object --samples 2");
+    stage.done("resume half.exr -q --samples 4");
+    let channel = |file: &str| read(file).channel("CryptoObject00.G").unwrap().to_vec();
+    assert_eq!(channel("half.exr"), channel("film.exr"));
+}

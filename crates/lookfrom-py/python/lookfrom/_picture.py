@@ -181,8 +181,10 @@ class Film:
     def develop(self, **options: Unpack[Options]) -> Picture:
         """The picture, as it was to be developed, or with another exposure, tonemap, background, denoise or fireflies.
 
-        Raises Error for other options, for exposure="auto", which needs the scene, and for a background that the film cannot
-        have: one of environment has no alpha, and others have no environment.
+        exposure="auto" chooses it by what the picture shows.
+
+        Raises Error for other options, and for a background that the film cannot have: one of environment has no alpha, and
+        others have no environment.
         """
         return Picture(self._native.develop(words(options)))
 

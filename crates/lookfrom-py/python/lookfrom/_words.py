@@ -81,6 +81,7 @@ class Options(TypedDict, total=False):
     # Layers.
     layers: str
     light_path: Mapping[str, str]
+    cryptomatte: str | Sequence[str]
     spectral_buckets: int
     wavelengths: tuple[float, float]
     # The call.

@@ -79,14 +79,8 @@ impl Film {
         }
         let file = &self.file;
         let mut development = file.provenance.development;
-        match options.exposure {
-            None => {}
-            Some(Exposure::Stops(stops)) => development.exposure = stops,
-            Some(_) => {
-                let message =
-                    "exposure is \"auto\", which needs the scene; for a film it is a number of stops";
-                return Err(Nonsense::new_err(message));
-            }
+        if let Some(Exposure::Stops(stops)) = options.exposure {
+            development.exposure = stops;
         }
         if let Some(background) = options.background.filter(|other| *other != development.background) {
             let reason = match (development.background, background) {
@@ -105,7 +99,11 @@ impl Film {
         if names.iter().any(|name| name == "fireflies") {
             development.fireflies = options.fireflies;
         }
-        Ok(Picture::of_film(file, parallel::in_pool(py, 0, || file.develop(&development))))
+        let mut developed = parallel::in_pool(py, 0, || file.develop(&development));
+        if options.exposure == Some(Exposure::Auto) {
+            developed.expose(Path::new(""));
+        }
+        Ok(Picture::of_film(file, developed))
     }
 
     /// Columns and rows, samples of all pixels together, and whether all are there that were to be.

@@ -29,5 +29,5 @@ pub(super) fn arrays<'py>(py: Python<'py>, labels: &[Label]) -> PyResult<Bound<'
 /// Names of shapes and materials, by index.
 pub(super) fn names(renderer: &Renderer) -> (Vec<String>, Vec<String>) {
     let names = renderer.world().names();
-    (names.shapes.clone(), names.materials.clone())
+    (names.shapes.iter().map(ToString::to_string).collect(), names.materials.clone())
 }

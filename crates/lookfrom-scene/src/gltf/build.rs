@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 
@@ -206,7 +207,7 @@ impl Builder<'_, '_, '_> {
                 let memory = (places.len() * size_of::<Instance>()) as u64;
                 self.context.keep(memory, "its instances", &at)?;
                 for place in places {
-                    self.instance(at.clone(), object, world_from_node * place);
+                    self.instance(None, at.clone(), object, world_from_node * place);
                 }
                 continue;
             }
@@ -218,7 +219,8 @@ impl Builder<'_, '_, '_> {
                 // One location for all, which may be millions: that of the mesh.
                 let at = self.model.objects[object.index()].at.clone();
                 self.context.keep(size_of::<Instance>() as u64, "an instance", &at)?;
-                self.instance(at, object, world_from_node);
+                let name = nodes[node].name.clone().map(Arc::new);
+                self.instance(name, at, object, world_from_node);
                 continue;
             }
             for converted in &primitives {
@@ -368,10 +370,17 @@ impl Builder<'_, '_, '_> {
         id
     }
 
-    fn instance(&mut self, at: Location, object: ObjectId, world_from_object: DMat4) {
+    fn instance(
+        &mut self,
+        name: Option<Arc<String>>,
+        at: Location,
+        object: ObjectId,
+        world_from_object: DMat4,
+    ) {
         let is_empty = self.model.objects[object.index()].shapes.is_empty();
         if !is_empty && is_invertible(&world_from_object) {
             self.model.instances.push(Instance {
+                name,
                 at,
                 object,
                 world_from_object,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
@@ -105,7 +106,15 @@ impl Reader<'_, '_> {
         };
         let object = self.group(&group)?;
         let at = plugin.at.clone();
-        self.scene.instances.push(Instance { at, object, world_from_object, material: None, motion: None });
+        let name = plugin.id.clone().map(Arc::new);
+        self.scene.instances.push(Instance {
+            name,
+            at,
+            object,
+            world_from_object,
+            material: None,
+            motion: None,
+        });
         Ok(())
     }
 

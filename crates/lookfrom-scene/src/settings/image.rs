@@ -1,6 +1,6 @@
 //! Settings of the image: resolution, sensor, tone mapping, layers.
 
-use super::{Filter, SpectralFilm, word_of};
+use super::{CryptomatteKind, Filter, SpectralFilm, word_of};
 use crate::error::Location;
 use crate::image::srgb_from_linear;
 use crate::spectrum::CameraSensor;
@@ -37,6 +37,8 @@ pub struct ImageSettings {
     pub layers: Layers,
     /// Further layers of an EXR: parts of the light, by light-path expressions.
     pub light_paths: Vec<LightPathLayer>,
+    /// Cryptomattes of an EXR, each kind at most once.
+    pub cryptomattes: Vec<CryptomatteKind>,
     /// The spectral film; `None` for one of colours alone, whose wavelengths are sampled by the sensitivity of the eye.
     pub spectral_film: Option<SpectralFilm>,
     /// The background of the image where the camera sees no surface.
@@ -72,7 +74,13 @@ impl ImageSettings {
     #[must_use]
     pub fn without_layers(self) -> Self {
         let spectral_film = self.spectral_film.as_ref().map(SpectralFilm::of_picture);
-        Self { layers: Layers::None, light_paths: Vec::new(), spectral_film, ..self }
+        Self {
+            layers: Layers::None,
+            light_paths: Vec::new(),
+            cryptomattes: Vec::new(),
+            spectral_film,
+            ..self
+        }
     }
 }
 
@@ -177,6 +185,7 @@ impl Default for ImageSettings {
             sensor: Sensor::default(),
             layers: Layers::None,
             light_paths: Vec::new(),
+            cryptomattes: Vec::new(),
             spectral_film: None,
             background: Background::default(),
             denoise: false,

@@ -1,9 +1,11 @@
 //! `[objects]`, groups of shapes, and `[[instance]]`, which places them.
 
+use std::sync::Arc;
+
 use super::shape::{INSTANCE, kinds};
 use super::table::Table;
 use super::value::Value;
-use super::{Reader, transform};
+use super::{Reader, light, transform};
 use crate::scene::{Instance, Object, ObjectId};
 use crate::shape::Shape;
 
@@ -51,9 +53,11 @@ impl Reader<'_, '_> {
             let message = "the emission of an instance's material is ignored: its shapes keep theirs";
             self.context.warn(&table.at(), message);
         }
+        let name = light::name(table);
         let world_from_object = transform::world_from_object(table);
         if let Some(object) = object {
             self.scene.instances.push(Instance {
+                name: name.map(Arc::new),
                 at: table.at(),
                 object,
                 world_from_object,

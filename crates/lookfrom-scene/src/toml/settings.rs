@@ -7,8 +7,8 @@ use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::VertexNormals;
 use crate::settings::{
-    Allocation, Background, Band, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
-    LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, Portals, RenderSettings, Sampler, Sensor,
+    Allocation, Background, Band, ColorMode, CryptomatteKind, Filter, FilterShape, ImageSettings, Integrator,
+    Layers, LightPathLayer, LightSampler, MOST_PIXELS, PixelBounds, Portals, RenderSettings, Sampler, Sensor,
     SpectralFilm, Tonemap,
 };
 use crate::spectrum::CameraSensor;
@@ -27,6 +27,7 @@ pub(super) const IMAGE: &[&str] = &[
     "max_component",
     "layers",
     "light_paths",
+    "cryptomatte",
     "spectral_buckets",
     "wavelengths",
     "bands",
@@ -99,6 +100,7 @@ pub(super) fn image(table: &Table<'_>) -> ImageSettings {
         },
         layers: table.or("layers", default.layers, layers),
         light_paths: table.or("light_paths", Vec::new(), light_paths),
+        cryptomattes: table.or("cryptomatte", Vec::new(), cryptomattes),
         spectral_film: spectral_film(table),
         background: table.or("background", default.background, background),
         denoise: table.or("denoise", default.denoise, Value::boolean),
@@ -118,6 +120,16 @@ fn layers(value: Value<'_>) -> Result<Layers> {
         Ok(false) => Ok(Layers::None),
         Err(_) => value.choice(Layers::WORDS),
     }
+}
+
+/// Kinds of Cryptomattes by their words, or the word for one.
+fn cryptomattes(value: Value<'_>) -> Result<Vec<CryptomatteKind>> {
+    let kind = |value: Value<'_>| value.choice(CryptomatteKind::WORDS);
+    if value.as_text().is_some() {
+        return Ok(vec![kind(value)?]);
+    }
+    let kinds = value.list("\"object\", \"material\" or a list of both")?.map(kind);
+    Ok(CryptomatteKind::distinct(kinds.collect::<Result<Vec<_>>>()?))
 }
 
 /// The spectral film, if there are buckets or a range of wavelengths.

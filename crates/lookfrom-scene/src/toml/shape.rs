@@ -75,7 +75,7 @@ pub(super) const SIDES: &[&str] = &["inside", "outside"];
 /// Keys of all shapes that are parts of a solid.
 pub(super) const OPERAND: &[&str] = &["type", "name", "material", "emission", "power", "two_sided", "alpha"];
 /// The keys of `[[instance]]`.
-pub(super) const INSTANCE: &[&str] = &["object", "material", "motion"];
+pub(super) const INSTANCE: &[&str] = &["name", "object", "material", "motion"];
 
 /// The keys of a shape's table besides its geometry.
 pub(super) struct ShapeAttributes {

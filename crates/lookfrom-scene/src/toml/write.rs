@@ -26,7 +26,7 @@ mod texture;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use self::names::{FileNames, Names};
+use self::names::{FileNames, Names, spoken};
 use self::picture::{For, Picture};
 use self::placing::{put_motion, put_transform};
 use self::reach::Reached;
@@ -223,8 +223,11 @@ impl<'a> Writer<'a> {
     }
 
     fn instance(&self, instance: &Instance) -> Fields {
-        let Instance { at: _, object, world_from_object, material, motion } = instance;
+        let Instance { name, at: _, object, world_from_object, material, motion } = instance;
         let mut fields = Fields::one("object", self.objects.of(object.index()));
+        if let Some(name) = name {
+            fields.put("name", spoken("instance", name));
+        }
         if let Some(material) = material {
             fields.put("material", self.materials.of(material.index()));
         }

@@ -168,6 +168,7 @@ fn what_is_not_used_is_not_written() {
     let object = |name: &str, shapes| Object { name: name.to_owned(), at: Location::default(), shapes };
     scene.objects = vec![object("empty", Vec::new()), object("unused", scene.shapes.clone())];
     let instance = |object| Instance {
+        name: None,
         at: Location::default(),
         object: ObjectId(object),
         world_from_object: DMat4::IDENTITY,

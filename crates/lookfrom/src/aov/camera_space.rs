@@ -20,7 +20,7 @@ pub(crate) struct CameraSpace {
     /// The origin of render space.
     origin: DVec3,
     /// The medium that the camera is in, if light is scattered in media.
-    pub(super) in_media: Option<InteriorStack>,
+    pub(super) media: Option<InteriorStack>,
 }
 
 impl CameraSpace {
@@ -28,12 +28,17 @@ impl CameraSpace {
     pub(crate) fn new(world_from_view: DMat4, origin: DVec3) -> Self {
         let view_from_world = world_from_view.inverse();
         let [x, y, z, w] = std::array::from_fn(|column| view_from_world.col(column).truncate());
-        Self { view_from_world: [x, y, z, w], origin, in_media: None }
+        Self { view_from_world: [x, y, z, w], origin, media: None }
     }
 
     /// The space of a camera in a medium, of a picture with media that scatter or emit light.
     pub(crate) fn in_media(self, interior: InteriorStack) -> Self {
-        Self { in_media: Some(interior), ..self }
+        Self { media: Some(interior), ..self }
+    }
+
+    /// The bodies and the medium that the camera is in, if light is scattered in media.
+    pub(crate) fn media(&self) -> Option<InteriorStack> {
+        self.media
     }
 
     /// The AOVs of a medium, as it covers a way. Its shading normal faces the camera: so it differs from what surrounds it, which is white

@@ -10,18 +10,12 @@ use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::LaneMask;
 
-use super::{AovColumns, Aovs, CameraSpace, FirstSurfaceColumns};
+use super::{AovColumns, Aovs, CameraSpace, Cover, FirstSurfaceColumns};
 use crate::core::lanes::LANES;
 use crate::core::times::Times;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
-
-/// Number of surfaces of fractional alpha that are looked through.
-const MOST_LAYERS: usize = 16;
-
-/// The part of a pixel, left behind surfaces that cover nearly all of it, below which nothing is looked at.
-const LEAST_PART: f32 = 1.0 / 256.0;
 
 /// The first surfaces of a batch, by slot, in memory that is reused.
 #[derive(Debug, Default)]
@@ -62,7 +56,7 @@ impl FirstSurfaces {
     /// Whether steps are to leave surfaces that rays from the camera meet in a medium.
     #[inline]
     pub(crate) fn are_left_in(&self, interior: InteriorStack) -> bool {
-        self.space.as_ref().is_some_and(|space| space.in_media.is_none() || interior.is_empty())
+        self.space.as_ref().is_some_and(|space| space.media.is_none() || interior.is_empty())
     }
 
     /// Removes all, for a batch of `count` camera rays.
@@ -167,7 +161,7 @@ impl FirstSurfaces {
         (ray, time): (Ray, f32),
     ) -> Option<Aovs> {
         let outermost = RayHit { ray, hit: self.outermost[slot] };
-        let is_blended = world.has_gaps() || space.in_media.is_some();
+        let is_blended = world.has_gaps() || space.media.is_some();
         let blended = if is_blended { space.blended_aovs(world, outermost, time) } else { None };
         blended.or_else(|| {
             let RayHit { ray, hit } = self.seen(slot, ray);
@@ -178,7 +172,7 @@ impl FirstSurfaces {
 
 /// Whether rays from the camera are in a medium without an end, which is seen where they hit nothing.
 fn fills_space(space: &CameraSpace) -> bool {
-    space.in_media.is_some_and(|interior| interior.space().is_some())
+    space.media.is_some_and(|interior| interior.space().is_some())
 }
 
 impl CameraSpace {
@@ -186,44 +180,26 @@ impl CameraSpace {
     /// what covers most; `None` where no surface has an alpha between 0 and 1, and no medium covers anything. What nothing covers is
     /// white, as a miss is. Where there are media, the normal is as long as the part that is covered.
     fn blended_aovs(&self, world: &World, outermost: RayHit, time: f32) -> Option<Aovs> {
-        let RayHit { mut ray, mut hit } = outermost;
-        let (mut left, mut is_blended, mut has_medium) = (1.0, false, false);
+        let (mut is_blended, mut has_medium) = (false, false);
         let (mut albedo, mut ns) = (Vec3::ZERO, Vec3::ZERO);
         let mut most: Option<(f32, Aovs)> = None;
-        let mut cover = |part: f32, aovs: Aovs| {
+        let left = world.covers(self.media, outermost, time, |part, cover| {
+            let aovs = match cover {
+                Cover::Medium { cover, way } => {
+                    (is_blended, has_medium) = (true, true);
+                    self.aovs_of_medium(cover, way)
+                }
+                Cover::Surface { surface, opacity, .. } => {
+                    is_blended |= opacity < 1.0;
+                    self.aovs(world, surface, None)
+                }
+            };
             albedo += part * Vec3::from(aovs.albedo);
             ns += part * Vec3::from(aovs.ns);
             if most.is_none_or(|(greatest, _)| part > greatest) {
                 most = Some((part, aovs));
             }
-        };
-        let mut interior = self.in_media;
-        for _ in 0..MOST_LAYERS {
-            if let Some((way, medium)) = interior.and_then(|interior| world.cover(interior, &ray, &hit)) {
-                (is_blended, has_medium) = (true, true);
-                cover(left * medium.part, self.aovs_of_medium(&medium, &way));
-                left *= 1.0 - medium.part;
-            }
-            if !hit.is_hit() || left < LEAST_PART {
-                break;
-            }
-            let surface = world.surface_at(&ray, &hit, time);
-            let opacity = world.opacity(&surface);
-            is_blended |= opacity > 0.0 && opacity < 1.0;
-            if opacity > 0.0 {
-                cover(left * opacity, self.aovs(world, &surface, None));
-            }
-            left *= 1.0 - opacity;
-            if left < LEAST_PART {
-                break;
-            }
-            if world.is_interface(&surface) {
-                let direction = Vec3::from(ray.direction);
-                interior = interior.map(|of| of.leaving(&world.materials, &surface, direction, true));
-            }
-            ray = Ray::new(surface.origin(Vec3::from(ray.direction)), ray.direction);
-            hit = world.bvh.query().origin(surface.origin_primitive).time(time).closest_hit(&ray);
-        }
+        });
         let (_, aovs) = most.filter(|_| is_blended)?;
         let length = if has_medium { 1.0 - left } else { 1.0 };
         let ns = ns.normalize_or_zero() * length;

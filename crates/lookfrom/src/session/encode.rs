@@ -178,6 +178,7 @@ impl Developed {
             Some(film) => Layers::OfFilm {
                 film,
                 light_paths: header::light_paths(&self.header).collect(),
+                cryptomattes: &self.cryptomattes,
                 buckets: spectral::channels(&self.header),
                 noisy: self.denoised.then_some(self.development.background),
             },
@@ -251,7 +252,8 @@ pub(super) fn write(
         Format::Exr => {
             let rows = Rows { light: Light::Picture(picture), layers, background: development.background };
             let channels = rows.channels().into_iter().map(|name| (name, ExrChannel::Float)).collect();
-            let attributes = header.to_vec();
+            let mut attributes = header.to_vec();
+            attributes.extend(layers.attributes());
             let header = ExrHeader { width, height, channels, attributes, ..ExrHeader::default() };
             write_exr(&header, &mut |row: u32, bytes: &mut [u8]| rows.fill(row, bytes), out)
         }

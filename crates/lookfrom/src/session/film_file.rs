@@ -194,7 +194,8 @@ impl Provenance {
         texts: &[(String, String)],
         out: &mut (impl Write + Seek),
     ) -> Result<()> {
-        let header = self.exr_header(film, rows.channels(), texts);
+        let texts: Vec<_> = texts.iter().cloned().chain(rows.layers.attributes()).collect();
+        let header = self.exr_header(film, rows.channels(), &texts);
         write_exr(&header, &mut |row: u32, bytes: &mut [u8]| fill(film, rows, row, bytes), out)
     }
 

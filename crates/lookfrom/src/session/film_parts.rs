@@ -164,7 +164,14 @@ impl<'a> FilmParts<'a> {
             picture.alpha.extend(alpha);
         }
         let header = header::finished(&provenance.header, film, development, false);
-        Ok(Developed { picture, layers: Vec::new(), header, denoised: false, development: *development })
+        Ok(Developed {
+            picture,
+            layers: Vec::new(),
+            cryptomattes: Vec::new(),
+            header,
+            denoised: false,
+            development: *development,
+        })
     }
 
     /// The merged film before its first row is read.
@@ -215,7 +222,7 @@ impl Bands<'_> {
         let film = &self.film;
         let light_paths = self.light_paths.iter().map(String::as_str).collect();
         let buckets = self.buckets.clone();
-        let layers = &Layers::OfFilm { film, light_paths, buckets, noisy: None };
+        let layers = &Layers::OfFilm { film, light_paths, cryptomattes: &[], buckets, noisy: None };
         use_rows(&Rows { light: Light::Film(film), layers, background: self.background });
     }
 

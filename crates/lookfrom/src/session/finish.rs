@@ -1,10 +1,11 @@
-//! From the film of a render to a finished picture: fireflies, denoising, AOVs, header, in this order.
+//! From the film of a render to a finished picture: fireflies, denoising, header, Cryptomattes, in this order.
 
 use std::time::Duration;
 
 use lookfrom_scene::settings::{Background, ImageSettings, Tonemap};
 
 use super::{Fireflies, Session, header};
+use crate::aov::Cryptomatte;
 use crate::core::clock::Stopwatch;
 use crate::film::{Film, Picture};
 use crate::post::denoise::denoise;
@@ -41,6 +42,8 @@ pub struct Developed {
     /// Further channels for formats that can hold them, by name, where it is of no film: those of a film, AOVs and the light before
     /// denoising, are made as they are [written](Developed::write).
     pub layers: Vec<(String, Vec<f32>)>,
+    /// Cryptomattes, of a picture that its session has just rendered: a film has none.
+    pub cryptomattes: Vec<Cryptomatte>,
     /// The settings of the picture, as names and values: everything that determines its light, and nothing else, so
     /// that the same picture has the same bytes.
     pub header: Vec<(String, String)>,
@@ -82,8 +85,11 @@ impl Session {
     /// Finishes the picture of a film that its renderer has rendered.
     pub fn finish(&self, rendered: Rendered) -> Finished {
         let started = Stopwatch::start();
-        let developed = self.develop(&rendered.film, &self.development());
+        let mut developed = self.develop(&rendered.film, &self.development());
         let has_layers = self.has_room_for_layers();
+        if has_layers {
+            developed.cryptomattes = self.renderer.cryptomattes(rendered.samples);
+        }
         Finished { rendered, developed, has_layers, developing: started.elapsed() }
     }
 
@@ -103,5 +109,12 @@ pub(super) fn develop(film: &Film, development: &Development, common: &[(String,
         denoise(film, &mut picture);
     }
     let header = header::finished(common, film, development, is_denoised);
-    Developed { picture, layers: Vec::new(), header, denoised: is_denoised, development: *development }
+    Developed {
+        picture,
+        layers: Vec::new(),
+        cryptomattes: Vec::new(),
+        header,
+        denoised: is_denoised,
+        development: *development,
+    }
 }

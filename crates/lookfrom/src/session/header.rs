@@ -10,6 +10,7 @@ use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Portals, Sensor};
 
 use super::{Development, Fireflies, Session, spectral};
+use crate::aov::CRYPTOMATTE_ATTRIBUTES;
 use crate::core::color;
 use crate::film::Film;
 
@@ -181,7 +182,9 @@ pub(super) fn with_samples(
 
 /// The common texts among those of a finished picture.
 pub(super) fn common(mut texts: Vec<(String, String)>) -> Vec<(String, String)> {
-    texts.retain(|(name, _)| !OF_FINISHED.contains(&name.as_str()));
+    texts.retain(|(name, _)| {
+        !OF_FINISHED.contains(&name.as_str()) && !name.starts_with(CRYPTOMATTE_ATTRIBUTES)
+    });
     texts
 }
 

@@ -1,9 +1,10 @@
-//! Further channels of a picture in an EXR: AOVs, with the names of pbrt's `gbuffer` film, light-path expressions, the buckets of a
-//! spectral film, and the light before denoising. They are made row by row as they are written.
+//! Further channels of a picture in an EXR: AOVs, with the names of pbrt's `gbuffer` film, light-path expressions, Cryptomattes, the
+//! buckets of a spectral film, and the light before denoising. They are made row by row as they are written.
 
 use lookfrom_scene::settings::Background;
 
 use super::encode::behind;
+use crate::aov::Cryptomatte;
 use crate::film::Film;
 
 /// Channel names, in the order of [`to_array`](crate::film::Aovs::to_array); `depth` is ours, the others are pbrt's.
@@ -32,6 +33,8 @@ pub(super) enum Layers<'a> {
         film: &'a Film,
         /// The names of the layers of light-path expressions.
         light_paths: Vec<&'a str>,
+        /// Cryptomattes of its picture.
+        cryptomattes: &'a [Cryptomatte],
         /// The names of the channels of a spectral film.
         buckets: Vec<String>,
         /// The background of the light before denoising, if the picture is denoised.
@@ -44,7 +47,7 @@ impl Layers<'_> {
     pub(super) fn names(&self) -> Vec<String> {
         match self {
             Self::Given(layers) => layers.iter().map(|(name, _)| name.clone()).collect(),
-            Self::OfFilm { film, light_paths, buckets, noisy } => {
+            Self::OfFilm { film, light_paths, cryptomattes, buckets, noisy } => {
                 let aovs = AOVS.iter().chain(&VARIANCES).filter(|_| film.has_layers());
                 let motion = MOTION.iter().filter(|_| film.has_motion());
                 let noisy = NOISY.iter().filter(|_| noisy.is_some());
@@ -52,7 +55,18 @@ impl Layers<'_> {
                     light_paths.iter().flat_map(|name| ["R", "G", "B"].map(|c| format!("{name}.{c}")));
                 let names = aovs.chain(motion).map(|name| (*name).to_owned()).chain(of_light_paths);
                 let buckets = buckets.iter().take(film.buckets()).cloned();
+                let names = names.chain(cryptomattes.iter().flat_map(Cryptomatte::channels));
                 names.chain(buckets).chain(noisy.map(|name| (*name).to_owned())).collect()
+            }
+        }
+    }
+
+    /// The texts of a file's header that tell what its channels are.
+    pub(super) fn attributes(&self) -> Vec<(String, String)> {
+        match self {
+            Self::Given(_) => Vec::new(),
+            Self::OfFilm { cryptomattes, .. } => {
+                cryptomattes.iter().flat_map(Cryptomatte::attributes).collect()
             }
         }
     }
@@ -69,7 +83,7 @@ impl Layers<'_> {
                     }
                 }
             }
-            Self::OfFilm { film, light_paths, buckets, noisy } => {
+            Self::OfFilm { film, light_paths, cryptomattes, buckets, noisy } => {
                 for x in 0..width {
                     let mut channel = 0;
                     let mut put_next = |number: f32| {
@@ -85,6 +99,9 @@ impl Layers<'_> {
                     if !light_paths.is_empty() {
                         film.light_paths(x, row).flatten().for_each(&mut put_next);
                     }
+                    let pixel = row as usize * width as usize + x as usize;
+                    let mattes = cryptomattes.iter().flat_map(|matte| matte.numbers(pixel));
+                    mattes.for_each(&mut put_next);
                     film.spectrum(x, row).take(buckets.len()).for_each(&mut put_next);
                     if let Some(background) = noisy {
                         film.mean_before(x, row, behind(*background)).into_iter().for_each(&mut put_next);

@@ -10,8 +10,8 @@ use lookfrom_scene::camera::{Camera, Projection};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{
-    Allocation, Background, ColorMode, Filter, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, Portals, RenderSettings, Sampler, SpectralFilm, Tonemap,
+    Allocation, Background, ColorMode, CryptomatteKind, Filter, ImageSettings, Integrator, Layers,
+    LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, SpectralFilm, Tonemap,
 };
 use lookfrom_scene::studio::Viewpoint;
 use lookfrom_scene::{
@@ -55,6 +55,8 @@ pub struct Options {
     pub layers: Option<Layers>,
     /// Layers of light-path expressions: those of the file's with the same names are replaced.
     pub light_paths: Vec<LightPathLayer>,
+    /// Cryptomattes, in place of those of the file; empty for those of the file.
+    pub cryptomattes: Vec<CryptomatteKind>,
     /// The number of buckets of a spectral film, for an EXR; 0 for a film of colours alone.
     pub spectral_buckets: Option<u32>,
     /// The range of the wavelengths of a spectral film, in nm ([`SpectralFilm::range`]).
@@ -237,6 +239,9 @@ impl Options {
             image.light_paths.retain(|other| other.name != layer.name);
             image.light_paths.push(layer.clone());
         }
+        if !self.cryptomattes.is_empty() {
+            image.cryptomattes = CryptomatteKind::distinct(self.cryptomattes.iter().copied());
+        }
         image.spectral_film = self.spectral_film(image.spectral_film.take());
         replace(&mut image.denoise, self.denoise);
         replace(&mut image.background, self.background);
@@ -328,6 +333,7 @@ impl Options {
     pub(super) fn asks_for_layers(&self) -> bool {
         self.layers.is_some_and(|layers| layers != Layers::None)
             || !self.light_paths.is_empty()
+            || !self.cryptomattes.is_empty()
             || self.spectral_buckets.is_some_and(|buckets| buckets > 0)
     }
 

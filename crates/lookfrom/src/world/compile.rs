@@ -132,6 +132,11 @@ impl World {
         // Build the BVH of the world, over those of the objects. What is compiled makes room for it.
         let written_materials = std::mem::take(&mut scene.materials);
         let written_media = std::mem::take(&mut scene.media);
+        let names_of_objects = scene.objects.iter().map(|object| object.name.clone()).collect();
+        let names_of_instances = match scene.instances.iter().any(|instance| instance.name.is_some()) {
+            true => scene.instances.iter().map(|instance| instance.name.clone()).collect(),
+            false => Vec::new(),
+        };
         let vertex_normals = scene.vertex_normals;
         drop((scene, labels));
         let primitives = in_world.into_primitives();
@@ -153,7 +158,13 @@ impl World {
         let compiler = material::Compiler::new(&textures, vertex_normals);
         let (materials, names_of_materials) =
             compiled(compiler, written_materials.into_iter().zip(need_footprints), &textures, &mut media);
-        let names = Names { shapes, lights: light_names, materials: names_of_materials };
+        let names = Names {
+            shapes,
+            lights: light_names,
+            materials: names_of_materials,
+            objects: names_of_objects,
+            instances: names_of_instances,
+        };
         let is_any_in_use = |is_so: fn(&Material) -> bool| {
             in_use.iter().filter_map(|&index| materials.get(index as usize)).any(is_so)
         };

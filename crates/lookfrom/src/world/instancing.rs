@@ -10,6 +10,7 @@ use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{Instance as WrittenInstance, MaterialId, Scene};
 use lookfrom_scene::shape::{Geometry, Shape};
 
+use super::ShapeLabel;
 use super::compile::tree;
 use super::place::{self, Compiler, Group, Labels};
 use crate::core::math;
@@ -51,7 +52,7 @@ impl<'a> Instancing<'a> {
     }
 
     /// The shapes of an object with their labels.
-    fn shapes(&self, object: usize) -> impl Iterator<Item = (&'a Shape, &'a String)> + use<'a> {
+    fn shapes(&self, object: usize) -> impl Iterator<Item = (&'a Shape, &'a ShapeLabel)> + use<'a> {
         self.scene.objects[object].shapes.iter().zip(&self.labels.objects[object])
     }
 

@@ -96,7 +96,10 @@ impl World {
     /// `Invalid` where there is no such surface, or none that is sampled: in an object, of curves, moving, without area.
     pub(crate) fn measured_surface(&self, name: &str, at: &Location) -> Result<MeasuredSurface> {
         let invalid = |message: String| Err(Error::invalid(at, message));
-        let is_named = |binding: &MaterialBinding| self.names.shapes[binding.shape as usize] == name;
+        let is_named = |binding: &MaterialBinding| {
+            let label = &self.names.shapes[binding.shape as usize];
+            label.at.is_none() && label.name == name
+        };
         let mut parts = Vec::new();
         for (geometry, primitives) in (0..).zip(&*self.primitives) {
             let mut add = |primitive: usize, area: f64| {

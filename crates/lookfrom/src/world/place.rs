@@ -16,6 +16,7 @@ use lookfrom_scene::scene::Scene;
 use lookfrom_scene::shape::{Emission, Geometry, Shape, Sphere};
 use lookfrom_scene::{Error, Location, Result, Warning};
 
+use super::ShapeLabel;
 use super::lights::Lights;
 use crate::light::{AreaLight, DiskLight, EmissionSpectrum, Light, LightMotion, LightShape, QuadricLight};
 use crate::primitive::{
@@ -77,7 +78,7 @@ pub(super) struct Compiler<'a> {
     pub(super) warnings: &'a mut Vec<Warning>,
     pub(super) lights: Lights<'a>,
     /// Labels by shape number.
-    pub(super) shapes: Vec<String>,
+    pub(super) shapes: Vec<ShapeLabel>,
     /// By material: whether it is anisotropic or bump-mapped, and so needs derivatives by texture coordinates.
     pub(super) grains: Vec<bool>,
     /// Whether an instance gives the object that is being placed such a material.
@@ -138,7 +139,7 @@ impl Compiler<'_> {
     /// Adds a shape with its label to a group; `group_from_parent` transforms to the group's space.
     pub(super) fn place(
         &mut self,
-        (shape, label): (&Shape, &String),
+        (shape, label): (&Shape, &ShapeLabel),
         group_from_parent: &DMat4,
         material: Option<u32>,
         group: &mut Group,
@@ -348,7 +349,7 @@ impl Compiler<'_> {
             Some(mean) => light.radiance.scale * mean,
             None => self.lights.brightness_of(&light.radiance),
         };
-        let label = self.shapes[binding.shape as usize].clone();
+        let label = self.shapes[binding.shape as usize].to_string();
         Some(self.lights.push(Light::Area(light), brightness, label))
     }
 

@@ -10,6 +10,7 @@ mod by_code;
 mod changed;
 mod coated_lamps;
 mod converted;
+mod cryptomattes;
 mod curve_lights;
 mod denoise;
 mod dispersion;

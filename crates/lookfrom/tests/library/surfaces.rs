@@ -248,6 +248,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
     if as_instance {
         scene.objects.push(Object { name: String::new(), at: nowhere(), shapes: vec![shape] });
         scene.instances.push(Instance {
+            name: None,
             at: nowhere(),
             object: ObjectId(0),
             material: None,
@@ -348,6 +349,7 @@ fn further_coordinates_and_opacities_come_with_the_surface() {
         if as_instance {
             scene.objects.push(Object { name: String::new(), at: nowhere(), shapes: vec![shape] });
             scene.instances.push(Instance {
+                name: None,
                 at: nowhere(),
                 object: ObjectId(0),
                 material: None,

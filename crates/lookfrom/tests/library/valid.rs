@@ -561,6 +561,7 @@ fn ids_without_a_target_are_refused_where_a_scene_is_compiled_and_take_no_place(
 
     scene.shape(Geometry::Mesh(MeshId(77)), none);
     scene.instances.push(Instance {
+        name: None,
         object: ObjectId(77),
         material: None,
         world_from_object: DMat4::IDENTITY,

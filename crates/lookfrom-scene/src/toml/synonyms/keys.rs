@@ -269,7 +269,7 @@ pub(super) const KEYS: &[(&[&str], &[&[&str]])] = &[
     (&["src", "source", "url", "uri", "model", "obj", "filename", "path"], &[&["file"], &["image"]]),
     (&["mat", "shader", "bsdf", "surface", "texture", "brdf"], &[&["material"]]),
     (&["flipnormals", "invertnormals"], &[&["reverse_orientation"]]),
-    (&["shape", "ref", "of", "group", "name", "prototype"], &[&["object"]]),
+    (&["shape", "ref", "of", "group", "prototype"], &[&["object"]]),
     (&["levels", "recursion"], &[&["depth"]]),
     // Scenes.
     (&["include", "includes", "imports", "use"], &[&["import"]]),

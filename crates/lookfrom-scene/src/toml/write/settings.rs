@@ -6,9 +6,9 @@ use super::text::{Fields, Item};
 use crate::light::{Light, LightKind};
 use crate::scene::{Scene, VertexNormals};
 use crate::settings::{
-    Allocation, Background, Band, ColorMode, Filter, FilterShape, ImageSettings, Integrator, Layers,
-    LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm,
-    Tonemap,
+    Allocation, Background, Band, ColorMode, CryptomatteKind, Filter, FilterShape, ImageSettings, Integrator,
+    Layers, LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor,
+    SpectralFilm, Tonemap,
 };
 use crate::toml::settings::{BACKGROUNDS, VERTEX_NORMALS};
 use crate::toml::word_of;
@@ -25,6 +25,7 @@ impl Writer<'_> {
             sensor,
             layers,
             light_paths,
+            cryptomattes,
             spectral_film,
             background,
             denoise,
@@ -58,6 +59,14 @@ impl Writer<'_> {
                 paths.put(name, expression.as_str());
             }
             fields.put("light_paths", paths);
+        }
+        match cryptomattes[..] {
+            [] => {}
+            [kind] => fields.put("cryptomatte", word_of(CryptomatteKind::WORDS, &kind)),
+            _ => {
+                let words = cryptomattes.iter().map(|kind| word_of(CryptomatteKind::WORDS, kind));
+                fields.put("cryptomatte", Item::list(words));
+            }
         }
         if let Some(SpectralFilm { buckets, range, bands }) = spectral_film {
             fields.put_unless("spectral_buckets", *buckets, 0);

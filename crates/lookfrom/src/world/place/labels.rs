@@ -9,15 +9,17 @@ use std::collections::HashMap;
 use lookfrom_scene::Scene;
 use lookfrom_scene::shape::{Geometry, Shape};
 
+use crate::world::ShapeLabel;
+
 /// Name of materials that nobody chose.
 const DEFAULT: &str = "default";
 
 /// The labels of a scene's shapes.
 pub(in crate::world) struct Labels {
     /// The labels of shapes that are in no object.
-    pub(in crate::world) shapes: Vec<String>,
+    pub(in crate::world) shapes: Vec<ShapeLabel>,
     /// The labels of the shapes of each object.
-    pub(in crate::world) objects: Vec<Vec<String>>,
+    pub(in crate::world) objects: Vec<Vec<ShapeLabel>>,
 }
 
 impl Labels {
@@ -32,10 +34,10 @@ impl Labels {
         let mut numbers: HashMap<String, usize> = HashMap::new();
         let mut label = |shape: &Shape| {
             if let Some(name) = &shape.name {
-                return name.clone();
+                return ShapeLabel { name: name.clone(), at: None };
             }
             let words = words(scene, shape);
-            let label = match material(scene, shape) {
+            let name = match material(scene, shape) {
                 Some(material) if by_material[material] == 1 => material.to_owned(),
                 _ if by_words[&words] == 1 => words,
                 _ => {
@@ -44,7 +46,7 @@ impl Labels {
                     format!("{words} {number}")
                 }
             };
-            format!("{label} ({})", shape.at)
+            ShapeLabel { name, at: Some(shape.at.clone()) }
         };
         Self {
             shapes: scene.shapes.iter().map(&mut label).collect(),
@@ -132,9 +134,10 @@ mod tests {
         add(1, 2, None);
         add(1, 0, None);
         add(1, 1, Some("door"));
-        let place = format!(" ({})", Location::default());
-        let labels: Vec<String> =
-            Labels::new(&scene).shapes.iter().map(|label| label.replace(&place, "")).collect();
-        assert_eq!(labels, ["wall Bust", "wall mesh 1", "wall mesh 2", "lamp", "mesh", "door"]);
+        let labels = Labels::new(&scene).shapes;
+        assert_eq!(labels[3].to_string(), format!("lamp ({})", Location::default()));
+        assert_eq!(labels[5].to_string(), "door");
+        let names: Vec<&str> = labels.iter().map(|label| &*label.name).collect();
+        assert_eq!(names, ["wall Bust", "wall mesh 1", "wall mesh 2", "lamp", "mesh", "door"]);
     }
 }

@@ -85,7 +85,7 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ),
     (
         "session",
-        "math clock color parallel denoise develop exposure film inspect integrator render view world",
+        "aov math clock color parallel denoise develop exposure film inspect integrator render view world",
     ),
 ];
 

@@ -4,8 +4,9 @@ use glam::{DMat4, DVec3};
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::scene::VertexNormals;
 use lookfrom_scene::settings::{
-    Allocation, Background, Band, ColorMode, FilterShape, ImageSettings, Integrator, Layers, LightPathLayer,
-    LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm, Tonemap,
+    Allocation, Background, Band, ColorMode, CryptomatteKind, FilterShape, ImageSettings, Integrator, Layers,
+    LightPathLayer, LightSampler, PixelBounds, Portals, RenderSettings, Sampler, Sensor, SpectralFilm,
+    Tonemap,
 };
 use lookfrom_scene::shape::{Emission, Shape};
 use lookfrom_scene::spectrum::{CameraSensor, Curve};
@@ -100,6 +101,7 @@ pub(super) fn settings() -> Vec<(String, Scene)> {
             },
             layers: Layers::Motion,
             light_paths: vec![layer],
+            cryptomattes: vec![CryptomatteKind::Material, CryptomatteKind::Object],
             spectral_film: Some(SpectralFilm { buckets: 7, range: [400.0, 700.5], bands: bands() }),
             background,
             denoise: true,

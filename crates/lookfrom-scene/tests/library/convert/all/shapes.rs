@@ -129,10 +129,10 @@ pub(super) fn meshes() -> Vec<(String, Scene)> {
         // Shared by shapes of an object, which may change their form.
         scene.objects.push(Object { name: "o".to_owned(), at: here(), shapes: vec![shape.clone()] });
         let motion = Motion::of_maps(vec![shear(), DMat4::IDENTITY, shear()]).map(Arc::new);
-        for motion in [None, motion] {
+        for (name, motion) in [(None, None), (Some(Arc::new("a \"b\"".to_owned())), motion)] {
             let world_from_object = shear();
             let (at, object, material) = (here(), ObjectId(0), Some(MaterialId(0)));
-            scene.instances.push(Instance { at, object, world_from_object, material, motion });
+            scene.instances.push(Instance { name, at, object, world_from_object, material, motion });
         }
         if scene.meshes[0].later.is_empty() {
             scene.shapes.push(shape);
