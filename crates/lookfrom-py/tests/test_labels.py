@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
 import numpy as np
 import pytest
 from test_scenes import FACES, VERTICES, mesh_scene
@@ -84,6 +90,36 @@ def test_instances_are_told_apart() -> None:
         scene.add("instance", object="post", translate=[x, 0.5, 0.5])
     labels = lookfrom.Session(scene, size=64).labels()
     assert set(np.unique(labels.instance)) == {-1, 0, 1}
+
+
+def test_labels_use_as_many_threads_as_the_session() -> None:
+    tasks = Path("/proc/self/task")
+    if not tasks.exists():
+        pytest.skip("no /proc here")
+    session = lookfrom.Session(mesh_scene(), size=1000, threads=1)
+    before, most, done = len(list(tasks.iterdir())), 0, threading.Event()
+
+    def work() -> None:
+        session.labels()
+        done.set()
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while not done.is_set():
+        most = max(most, len(list(tasks.iterdir())))
+    thread.join()
+    assert most <= before + 1
+
+
+def test_ctrl_c_stops_labels() -> None:
+    session = lookfrom.Session(mesh_scene(), size=8000)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        session.labels()
+    assert time.monotonic() - started < 3
+    timer.join()
 
 
 def test_vertices_are_where_they_are() -> None:

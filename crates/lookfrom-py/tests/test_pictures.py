@@ -500,6 +500,64 @@ def test_sessions_are_copied_and_pickled() -> None:
         assert (other.render().linear == expected).all()
 
 
+KNOT = Path(__file__).parents[3] / "scenes/models/knot.obj"
+
+
+@pytest.mark.parametrize(
+    ("options", "changes"),
+    [
+        # A model is framed and lit when it is read; later it keeps its light, and what sees it is moved.
+        ({}, [{"size": (12, 30)}]),
+        ({}, [{"width": 10}, {"height": 20}]),
+        ({}, [{"fov": 20}]),
+        ({}, [{"up": "z"}]),
+        ({}, [{"integrator": "whitted"}]),
+        ({"view": "persp"}, [{"lookfrom": (1, 2, 5), "lookat": (0, 0, 0)}]),
+        ({"azimuth": 20}, [{"lookfrom": (1, 2, 5)}, {"seed": 3}]),
+        ({}, [{"crop": (1, 1, 9, 8)}, {"size": 32}]),
+        ({}, [{"lookfrom": (1, 2, 5)}, {"exposure": "auto"}, {"lookfrom": (0, 9, 9)}]),
+        ({"turn": 0}, [{"lookfrom": (1, 2, 5)}, {"turn": 30}]),
+    ],
+)
+def test_changed_sessions_stay_as_they_are(options: dict[str, Any], changes: list[dict[str, Any]]) -> None:
+    if not KNOT.exists():
+        pytest.skip("this is not a clone of the repository")
+    session = lookfrom.Session(KNOT, **{"size": (24, 16), "samples": 1, **options})
+    for change in changes:
+        session.set(**change)
+    expected, camera = session.render().srgb, session.camera
+    for other in (copy.copy(session), pickle.loads(pickle.dumps(session))):
+        assert np.array_equal(other.render().srgb, expected)
+    # Also where the scene is read again.
+    session.set(environment=np.ones((2, 4, 3)))
+    assert np.array_equal(session.camera.lookfrom, camera.lookfrom)
+    assert np.array_equal(session.camera.intrinsics, camera.intrinsics)
+
+
+def test_a_copy_changes_by_itself() -> None:
+    session = lookfrom.Session(BALL, size=24, keep=True)
+    other = copy.copy(session)
+    other.set(fov=90)
+    other.set_material("red", type="diffuse", reflectance=0)
+    assert (session.render().linear == lookfrom.render(BALL, size=24).linear).all()
+    assert other.camera.intrinsics[0, 0] < session.camera.intrinsics[0, 0]
+
+
+def test_a_session_can_be_put_on_a_turntable() -> None:
+    session = lookfrom.Session(BALL)
+    session.set(turn=30)
+    assert (session.render().linear == lookfrom.render(BALL, turn=30).linear).all()
+
+
+def test_films_of_changed_sessions_are_resumed(ball: Path) -> None:
+    session = lookfrom.Session(ball, samples=2, film=True)
+    for change in ({"seed": 5}, {"size": 20}, {"lookfrom": (1, 2, 5)}, {"depth": 2}):
+        session.set(**change)
+    film = session.render().film
+    session.set(samples=4)
+    assert film is not None and (film.resume(samples=4).linear == session.render().linear).all()
+
+
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.slow
 def test_many_renders_take_no_memory() -> None:

@@ -354,6 +354,16 @@ impl Session {
         allocation::of_pixel(self.settings())
     }
 
+    /// The number of threads of a render; `None` for one on each core.
+    pub fn threads(&self) -> Option<usize> {
+        self.threads
+    }
+
+    /// Whether the scene is on a turntable, which [`Session::set_turn`] turns.
+    pub fn has_turntable(&self) -> bool {
+        self.turntable.is_some()
+    }
+
     /// The compiled world.
     pub fn world(&self) -> &Arc<World> {
         self.renderer.world()

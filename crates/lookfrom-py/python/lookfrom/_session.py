@@ -31,6 +31,12 @@ Progress = Callable[[int, int], object]
 
 # Options whose change depends on what they were: it is simplest to read the scene again.
 _OF_BEFORE = frozenset({"fireflies", "light_path", "part"})
+# Options that frame the scene: where they change, nothing stays of another camera.
+_OF_VIEW = frozenset({"azimuth", "bounds", "camera", "elevation", "view"})
+_OF_CAMERA = frozenset({"lookfrom", "lookat", "up", "fov"})
+_OF_SIZE = frozenset({"size", "width", "height", "crop"})
+# Options that also decide how a scene is framed, lit and denoised when it is read; later they change the picture alone.
+_OF_PICTURE = _OF_CAMERA | _OF_SIZE | {"integrator"}
 
 
 class SceneWarning(UserWarning):
@@ -50,20 +56,24 @@ class Session:
     Raises SceneError, which has file, line and column, where the scene cannot be read or the options do not suit it; Error for
     options that do not exist or make no sense. What the readers doubt is a SceneWarning.
 
-    A session may be used by several threads at once, and after a fork; it can be copied and pickled (then it is read again).
+    A session may be used by several threads at once, and after a fork. It can be copied (copies share memory) and pickled (it is
+    read again): the pictures are the same.
     """
 
     def __init__(self, scene: Any, *, name: str = "", keep: bool = False, **options: Unpack[Options]) -> None:
         self._source = _source(scene, name)
         self._keep = keep
+        # Those that the scene is read with, and those of `_OF_PICTURE` that were given later.
         self._options: dict[str, Any] = dict(options)
+        self._changes: dict[str, Any] = {}
         # The last call that changed each part of the scene, by the part: for where the scene is read again.
         self._edits: dict[tuple[str, str | int], tuple[Any, ...]] = {}
         self._native = self._opened(self._options)
         for text in self.warnings:
             warnings.warn(text, SceneWarning, stacklevel=2)
 
-    def _opened(self, options: Mapping[str, Any]) -> _lookfrom.Session:
+    def _opened(self, options: Mapping[str, Any], *changes: Mapping[str, Any]) -> _lookfrom.Session:
+        """The scene, read with some options and then changed by others, one after the other."""
         path, files = self._source
         given = dict(options)
         environment = given.get("environment")
@@ -74,6 +84,9 @@ class Session:
         native = _lookfrom.Session(path, files, words(given), self._keep)
         for (name, _), arguments in self._edits.items():
             getattr(native, name)(*arguments)
+        for change in changes:
+            given = _merged(given, change)
+            native.change(words(change), words(given))
         return native
 
     def _edit(self, name: str, *arguments: Any) -> None:
@@ -108,28 +121,47 @@ class Session:
         return _finished(lambda: self._native.render(native, progress or None))
 
     def set(self, **options: Unpack[Options]) -> None:
-        """Changes options; others stay. Nothing is read or built for another size, crop, samples, camera (lookfrom, lookat,
-        up, fov), exposure, tonemap, background, integrator, depth, seed, filter, layers, noise or time; for others the scene
-        is read again.
+        """Changes options; others stay, as does the camera, however it was found. Nothing is read or built for another size, crop,
+        samples, camera (lookfrom, lookat, up, fov), exposure, tonemap, background, integrator, depth, seed, filter, layers, noise
+        or time; for others the scene is read again. Where they frame it (view, azimuth, elevation, bounds, camera), all is as
+        if given from the start.
 
         Raises as Session; then nothing has changed.
         """
-        merged: dict[str, Any] = {**self._options, **options}
-        if options.get("size") is not None:
-            merged.update(width=options.get("width"), height=options.get("height"))
-        elif options.get("width") is not None or options.get("height") is not None:
-            merged.update(size=None)
-        is_array = isinstance(options.get("environment"), np.ndarray)
-        changed = dict(options)
-        if options.get("time") is not None or options.get("noise") is not None:
+        given: dict[str, Any] = dict(options)
+        late = {name: value for name, value in given.items() if name in _OF_PICTURE}
+        early = {name: value for name, value in given.items() if name not in _OF_PICTURE}
+        read, before = _merged(self._options, early), self._changes
+        if not _OF_VIEW.isdisjoint(given):
+            read, before, late = _merged(_merged(read, before), late), {}, {}
+        changed = dict(given)
+        if given.get("time") is not None or given.get("noise") is not None:
             # A limit alone replaces the number of samples, but not one that was asked for.
-            changed.setdefault("samples", merged.get("samples"))
+            changed.setdefault("samples", read.get("samples"))
+        is_array = isinstance(given.get("environment"), np.ndarray)
+        is_of_before = not _OF_BEFORE.isdisjoint(given)
         # What was given before cannot be taken back without reading.
-        is_taken_back = any(value is None or value is False for value in options.values())
-        is_of_before = not _OF_BEFORE.isdisjoint(options)
-        if is_array or is_taken_back or is_of_before or self._native.change(words(changed)) is not None:
-            self._native = self._opened(merged)
-        self._options = merged
+        taken_back = {name: None for name, value in given.items() if value is None or value is False}
+        everything = _merged(_merged(read, before), late)
+        if isinstance(everything.get("environment"), np.ndarray):
+            # No words open such a session again.
+            del everything["environment"]
+        all_words = words(everything)
+        if (
+            is_array
+            or is_of_before
+            or taken_back
+            or self._native.change(words(changed), all_words) is not None
+        ):
+            read, before = _merged(read, taken_back), _merged(before, taken_back)
+            self._native = self._opened(read, before, late)
+        elif given.get("turn") is not None:
+            # The camera is that of the turntable.
+            before = {name: value for name, value in before.items() if name not in _OF_CAMERA}
+        self._options, self._changes = read, _merged(before, late)
+        if not _OF_SIZE.isdisjoint(self._changes):
+            # As they are now: one side alone keeps the aspect ratio that there was, and a crop its part of the picture.
+            self._changes = _merged(self._changes, {"size": self.size, "crop": self._native.crop()})
 
     def set_material(self, material: str, **words: Any) -> None:
         """Replaces a material of this name, by the words of `[materials.NAME]`: set_material("paint", type="diffuse",
@@ -256,13 +288,24 @@ class Session:
         """What the readers chose or left out without harm."""
         return [text for text, is_note in self._native.warnings() if is_note]
 
+    def __copy__(self) -> Session:
+        session = type(self).__new__(type(self))
+        session.__dict__.update(self.__dict__, _edits=dict(self._edits), _native=self._native.snapshot())
+        return session
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Session:
+        return self.__copy__()
+
     def __getstate__(self) -> dict[str, Any]:
-        return {"source": self._source, "keep": self._keep, "options": self._options, "edits": self._edits}
+        # One that was chosen by what is seen is that of then.
+        state = {**self.__dict__, "_exposure": self.exposure}
+        del state["_native"]
+        return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._source, self._keep = state["source"], state["keep"]
-        self._options, self._edits = dict(state["options"]), dict(state["edits"])
-        self._native = self._opened(self._options)
+        exposure = state.pop("_exposure")
+        self.__dict__.update(state)
+        self._native = self._opened(self._options, {**self._changes, "exposure": exposure})
 
     def __repr__(self) -> str:
         width, height = self.size
@@ -275,6 +318,16 @@ def render(
     """The picture of a scene: `Session(scene, ...).render()`. A model without lights stands in a studio; without a camera it
     is framed."""
     return Session(scene, name=name, **options).render(progress=progress)
+
+
+def _merged(options: Mapping[str, Any], more: Mapping[str, Any]) -> dict[str, Any]:
+    """Options with more of them. The size in one word replaces its sides in two, and the other way round."""
+    merged = {**options, **more}
+    if more.get("size") is not None:
+        merged.update(width=more.get("width"), height=more.get("height"))
+    elif more.get("width") is not None or more.get("height") is not None:
+        merged.update(size=None)
+    return merged
 
 
 def _source(scene: Any, name: str) -> tuple[str, dict[str, bytes]]:

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use lookfrom::glam::DMat4;
 use lookfrom::inspect::{self, SvgView};
-use lookfrom::render::{Progress, SampleId, TileDone};
+use lookfrom::render::{Label, Progress, SampleId, TileDone};
 use lookfrom::scene::image;
 use lookfrom::scene::scene::MaterialId;
 use lookfrom::scene::{LoadContext, Result as SceneResult, Warning, WarningGroup, WarningKind, json};
@@ -31,7 +31,7 @@ use crate::parallel;
 pub(crate) struct Session {
     files: Overlay,
     /// The arguments of `lookfrom render` that open the same session.
-    typed: Vec<String>,
+    typed: Mutex<Vec<String>>,
     inner: Mutex<session::Session>,
 }
 
@@ -63,18 +63,27 @@ impl Session {
             }
         });
         let inner = Mutex::new(opened.map_err(|error| raised(py, &error, &files))?);
-        Ok(Self { files, typed: asked.typed, inner })
+        Ok(Self { files, typed: Mutex::new(asked.typed), inner })
     }
 
-    /// Changes options, for which nothing is read. Returns the name of an option for which the scene must be read again; then
-    /// nothing has changed.
-    fn change(&self, py: Python<'_>, words: Words) -> PyResult<Option<&'static str>> {
-        let asked = asked(words)?;
-        let of_scene = asked.options.of_scene().or(asked.environment.is_some().then_some("environment"));
+    /// Changes options, for which nothing is read; `all` are those that the session then has. Returns the name of an option for
+    /// which the scene must be read again; then nothing has changed.
+    fn change(&self, py: Python<'_>, words: Words, all: Words) -> PyResult<Option<&'static str>> {
+        let changed = asked(words)?;
+        let lacks_turntable = changed.options.turn.is_some() && !self.now().has_turntable();
+        let of_scene = changed
+            .options
+            .of_scene()
+            .or(changed.environment.is_some().then_some("environment"))
+            .or(lacks_turntable.then_some("turn"));
         if of_scene.is_some() {
             return Ok(of_scene);
         }
-        self.exchange(py, |session| session.change(&asked.options))?;
+        self.exchange(py, |session| session.change(&changed.options))?;
+        // A camera that was moved may exclude the view that the scene was read with: no options then open the same session.
+        if let Ok(all) = asked(all) {
+            *self.typed.lock().unwrap_or_else(PoisonError::into_inner) = all.typed;
+        }
         Ok(None)
     }
 
@@ -117,8 +126,13 @@ impl Session {
     /// Labels of all pixels: arrays by name.
     fn labels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let session = self.now();
-        let labels = parallel::in_pool(py, 0, || session.renderer().labels());
-        labels::arrays(py, &labels)
+        let (renderer, width, height) = (session.renderer(), session.image().width, session.image().height);
+        let mut rows = vec![Vec::new(); height as usize];
+        let items = rows.iter_mut().zip(0..height);
+        parallel::for_each(py, session.threads().unwrap_or(0), items, || {
+            |(row, y): (&mut Vec<Label>, u32)| row.extend((0..width).map(|x| renderer.label([x, y])))
+        })?;
+        labels::arrays(py, &rows.concat())
     }
 
     /// Names of shapes and of materials, by index.
@@ -129,6 +143,11 @@ impl Session {
     /// The camera.
     fn camera<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         view::described(py, self.now().renderer().view().camera())
+    }
+
+    /// The crop window: columns and rows of its corners; `None` for the whole picture.
+    fn crop(&self) -> Option<[u32; 4]> {
+        self.now().image().crop.map(|crop| [crop.x0, crop.y0, crop.x1, crop.y1])
     }
 
     /// Columns and rows of the picture, samples per pixel, exposure in stops.
@@ -180,7 +199,8 @@ impl Session {
 
     /// The session as it is now, which no later change of this one changes.
     fn snapshot(&self) -> Self {
-        Self { files: self.files.clone(), typed: self.typed.clone(), inner: Mutex::new(self.now()) }
+        let typed = self.typed.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        Self { files: self.files.clone(), typed: Mutex::new(typed), inner: Mutex::new(self.now()) }
     }
 
     /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).
@@ -259,7 +279,7 @@ impl Session {
         let mut provenance = session.provenance().ok()?;
         let scene = Path::new(session.name());
         provenance.scene = scene.is_file().then(|| scene.display().to_string());
-        provenance.arguments.clone_from(&self.typed);
+        provenance.arguments.clone_from(&self.typed.lock().unwrap_or_else(PoisonError::into_inner));
         Some(provenance)
     }
 }
