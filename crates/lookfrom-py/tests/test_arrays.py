@@ -155,6 +155,7 @@ ONE = np.zeros((1, 3))
             Error,
             r"masks has shape \(2,\), but there are 320 primitives",
         ),
+        (lambda: Bvh(VERTICES, [[0, 1, 2], [0, 1]]), TypeError, "faces must be .* rows differ in length"),
         (lambda: Bvh(VERTICES, FACES, masks=2**32), Error, "32 bits"),
         (lambda: Bvh(VERTICES, FACES, quality="good"), Error, "quality is 'good'"),
         (lambda: Bvh.from_geometries([VERTICES]), TypeError, r"geometries\[0\] is ndarray, but Triangles"),

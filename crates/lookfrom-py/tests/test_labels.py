@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import copy
 import os
+import pickle
 import signal
 import threading
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -42,6 +45,8 @@ def test_matrices_are_those_of_opencv_and_opengl() -> None:
     for convention in ("opencv", "opengl"):
         matrix = camera.world_from_camera(convention)  # type: ignore[arg-type]
         assert np.allclose(np.linalg.det(matrix), 1) and np.allclose(matrix[:3, 3], [3, 2, 3])
+    with pytest.raises(lookfrom.Error, match=r"points has shape \(2,\)"):
+        camera.project([1, 2])
     with pytest.raises(lookfrom.Error, match="'opencv' or 'opengl'"):
         camera.extrinsics("blender")  # type: ignore[arg-type]
     around = lookfrom.Session(
@@ -49,6 +54,72 @@ def test_matrices_are_those_of_opencv_and_opengl() -> None:
     ).camera
     with pytest.raises(lookfrom.Error, match="equirectangular"):
         around.project([1, 2, 3])
+
+
+K = np.array([[50.0, 0, 21.5], [0, 45, 30.25], [0, 0, 1]])
+
+
+@pytest.mark.parametrize("convention", ["opencv", "opengl"])
+def test_a_camera_of_matrices_sees_what_its_rays_meet(convention: Any) -> None:
+    pose = lookfrom.look_at([3, 2, 2.5], [0.2, 0.3, 0.2], [0.3, 1, 0], convention=convention)
+    session = lookfrom.Session(mesh_scene(), size=(60, 40), samples=1)
+    session.set_camera(pose, intrinsics=K, convention=convention)
+    camera, labels = session.camera, session.labels()
+    assert np.allclose(camera.intrinsics, K) and np.allclose(camera.world_from_camera(convention), pose)
+    tree = lookfrom.Bvh(VERTICES, FACES)
+    half = np.array([[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]])
+    of_opencv = lookfrom.pinhole_rays(
+        60, 40, intrinsics=K - half, world_from_camera=pose, convention=convention
+    )
+    for rays in (camera.rays(), of_opencv):
+        hits = tree.closest_hits(*rays)
+        assert hits.hit.sum() > 50 and np.array_equal(hits.primitive, labels.primitive)
+        assert np.allclose(hits.t[hits.hit], labels.depth[labels.hit], atol=1e-5)
+    # Other poses keep what it sees, and copies and other processes have it.
+    pose[:3, 3] += 0.1
+    session.set_camera(pose, convention=convention)
+    session.set(size=(30, 20))
+    for other in (session, copy.copy(session), pickle.loads(pickle.dumps(session))):
+        assert np.allclose(other.camera.intrinsics, np.diag([0.5, 0.5, 1]) @ K)
+        assert np.allclose(other.camera.world_from_camera(convention), pose)
+    # A view replaces it.
+    session.set(view="front")
+    assert session.camera.projection == "orthographic"
+    hits = tree.closest_hits(*session.camera.rays())
+    assert (hits.hit == session.labels().hit).all() and hits.hit.any()
+
+
+@pytest.mark.parametrize(
+    ("pose", "intrinsics", "message"),
+    [
+        (np.eye(3), None, r"but a finite affine matrix"),
+        (2 * np.eye(4), None, "but a finite affine matrix"),
+        (np.diag([1, 1, -1, 1]), None, "but a rotation"),
+        (np.diag([2, 2, 2, 1]), None, "but a rotation"),
+        (np.full((4, 4), np.nan), None, "finite"),
+        (np.eye(4), np.eye(4), "intrinsics is .* but"),
+        (np.eye(4), np.add(K, [[0, 1, 0], [0, 0, 0], [0, 0, 0]]), "intrinsics is .* but"),
+        (np.eye(4), -K, "intrinsics is .* but"),
+    ],
+)
+def test_matrices_of_no_camera(pose: Any, intrinsics: Any, message: str) -> None:
+    session = lookfrom.Session(mesh_scene(), size=8)
+    with pytest.raises(lookfrom.Error, match=message):
+        session.set_camera(pose, intrinsics=intrinsics)
+
+
+def test_films_of_other_windows_do_not_go_together() -> None:
+    films = []
+    for samples, shift in ((range(0, 1), 0.0), (range(1, 2), 0.5)):
+        session = lookfrom.Session(mesh_scene(), size=(60, 40), samples=samples, film=True)
+        k = K.copy()
+        k[0, 2] += shift
+        session.set_camera(lookfrom.look_at([3, 2, 3], [0, 0, 0], [0, 1, 0]), intrinsics=k)
+        film = session.render().film
+        assert film is not None
+        films.append(film)
+    with pytest.raises(lookfrom.SceneError, match=r"camera\.window"):
+        lookfrom.Film.merge(films)
 
 
 def test_masks_and_names() -> None:

@@ -250,6 +250,13 @@ def test_an_environment_may_be_an_array() -> None:
     assert np.allclose(lit[0, 0], 1, atol=1e-3)
     # Half of the light that a white ball would reflect, at most: the albedo.
     assert 0.7 < lit[18, 24, 0] < 0.85 and 0.05 < lit[18, 24, 1] < 0.15
+    white[0, 0] = np.nan
+    with pytest.warns(lookfrom.SceneWarning, match="3 values are not finite"):
+        session = lookfrom.Session(scene, environment=white)
+    session.set(environment=np.ones((4, 8, 3)))
+    assert not any("finite" in text for text in session.warnings)
+    with pytest.warns(lookfrom.SceneWarning, match="3 values are not finite"):
+        session.set(environment=white)
 
 
 def test_films_add_up_bit_for_bit(ball: Path) -> None:
@@ -532,6 +539,13 @@ def test_changed_sessions_stay_as_they_are(options: dict[str, Any], changes: lis
     session.set(environment=np.ones((2, 4, 3)))
     assert np.array_equal(session.camera.lookfrom, camera.lookfrom)
     assert np.array_equal(session.camera.intrinsics, camera.intrinsics)
+
+
+def test_pictures_tell_what_can_be_pickled() -> None:
+    picture = lookfrom.render(BALL, size=4, samples=1)
+    with pytest.raises(TypeError, match=r"cannot be pickled: give other processes its arrays \(linear"):
+        pickle.dumps(picture)
+    assert copy.deepcopy([picture])[0] is picture
 
 
 def test_a_copy_changes_by_itself() -> None:

@@ -83,6 +83,101 @@ def test_arrays_are_the_same_in_memory_on_disk_and_in_text(tmp_path: Path) -> No
     ).all()
 
 
+class Tensor:
+    """An array of others than numpy, such as PyTorch."""
+
+    def __init__(self, numbers: Any) -> None:
+        self.numbers = np.array(numbers)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Any:
+        return self.numbers if dtype is None else self.numbers.astype(dtype)
+
+
+def test_arrays_of_others_are_arrays(tmp_path: Path) -> None:
+    scenes = []
+    for made in (np.array, Tensor):
+        scene = lookfrom.Scene()
+        scene.material("grey", type="diffuse", reflectance=made([0.1, 0.2, 0.3]))
+        scene.mesh(made(VERTICES), made(FACES), material="grey", translate=made([0.1, 0, 0]))
+        scene.light(type="environment", image=made(np.full((2, 4, 3), 0.5)))
+        scene.camera(lookfrom=made([3, 2, 3]), lookat=[0.2, 0.3, 0.2])
+        scenes.append(scene)
+    assert scenes[0] == scenes[1]
+    sky = np.ones((2, 4, 3))
+    expected = lookfrom.render(scenes[0], size=16, samples=2, fov=30, environment=sky).linear
+    options: Any = {"fov": Tensor(30.0), "environment": Tensor(sky)}
+    assert (lookfrom.render(scenes[1], size=16, samples=2, **options).linear == expected).all()
+    session = lookfrom.Session(scenes[1], size=16, samples=2, keep=True)
+    session.set(**options)
+    session.set_material("grey", type="diffuse", reflectance=Tensor([0.1, 0.2, 0.3]))
+    assert (session.render().linear == expected).all()
+
+
+def test_pictures_of_pillow_are_images() -> None:
+    image = pytest.importorskip("PIL.Image")
+    pixels = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
+    scenes = [lookfrom.Scene(), lookfrom.Scene()]
+    for scene, file in zip(scenes, (pixels, image.fromarray(pixels)), strict=True):
+        scene.texture("map", type="image", file=file)
+    assert scenes[0]._in_memory() == scenes[1]._in_memory()
+
+
+def test_images_of_lights_and_matrices_may_be_arrays(tmp_path: Path) -> None:
+    pose = np.array([[0, -1, 0, 0.5], [1, 0, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1.0]])
+    scene, plain = lookfrom.Scene(), lookfrom.Scene()
+    for other, turned in ((scene, pose), (plain, [{"matrix": pose.ravel().tolist()}])):
+        other.mesh(VERTICES, FACES, transform=turned)
+        other.light(type="environment", image=np.linspace(0, 1, 24).reshape(2, 4, 3))
+    camera = np.diag([-1.0, 1, -1, 1])
+    camera[:3, 3] = 0, 0, 5
+    scene.camera(matrix=camera, lookat=[0, 0, 0])
+    plain.camera(matrix=camera.ravel().tolist(), lookat=[0, 0, 0])
+    assert scene == plain
+    expected = lookfrom.render(plain, size=16, samples=2).linear
+    assert (lookfrom.render(scene, size=16, samples=2).linear == expected).all() and expected.max() > 0
+    scene.save(tmp_path / "a.toml")
+    assert (lookfrom.render(tmp_path / "a.toml", size=16, samples=2).linear == expected).all()
+
+
+def test_arrays_of_a_loaded_scene_stay(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    mesh_scene().save(path)
+    scene = lookfrom.Scene.load(path)
+    scene.mesh(0.5 * VERTICES, FACES, translate=[1, 0, 0])
+    fresh = mesh_scene()
+    fresh.mesh(0.5 * VERTICES, FACES, translate=[1, 0, 0])
+    expected = lookfrom.Session(fresh, size=32).labels().position
+    assert np.array_equal(lookfrom.Session(scene, size=32).labels().position, expected, equal_nan=True)
+    scene.save(path)
+    assert np.array_equal(lookfrom.Session(path, size=32).labels().position, expected, equal_nan=True)
+
+
+def test_names_of_files_follow_a_scene_to_another_folder(tmp_path: Path) -> None:
+    for folder in ("here/maps", "there/deeper"):
+        (tmp_path / folder).mkdir(parents=True)
+    lookfrom.render(mesh_scene(), size=8, samples=1).save(tmp_path / "here/maps/a.png")
+    mesh_scene().save(tmp_path / "here/part.toml")
+    scene = lookfrom.Scene({"import": ["part.toml"]}, folder=tmp_path / "here")
+    scene.data["variables"] = {"picture": "maps/a.png"}
+    scene.texture("maps/a.png", type="image", file="= picture")
+    scene.material("map", type="diffuse", reflectance="maps/a.png", normal_map="maps/a.png")
+    scene.add("sphere", center=[0, 0, 0], radius=0.3, material="map", name="part.toml")
+    scene.save(tmp_path / "there/deeper/scene.toml")
+    saved = lookfrom.Scene.load(tmp_path / "there/deeper/scene.toml")
+    assert saved.data["import"] == ["../../here/part.toml"]
+    assert saved.data["variables"]["picture"] == "../../here/maps/a.png"
+    assert saved.data["materials"]["map"]["normal_map"] == "../../here/maps/a.png"
+    assert saved.data["materials"]["map"]["reflectance"] == "maps/a.png"
+    assert saved.data["sphere"][0]["name"] == "part.toml"
+    pictures = [lookfrom.render(one, size=16, samples=2).linear for one in (scene, saved)]
+    assert (pictures[0] == pictures[1]).all()
+    # To its own folder, nothing changes.
+    scene.save(tmp_path / "here/scene.toml")
+    assert lookfrom.Scene.load(tmp_path / "here/scene.toml") == scene
+    with pytest.raises(lookfrom.Error, match=r"written as \.toml"):
+        scene.save(tmp_path / "scene.png")
+
+
 def test_scenes_are_copied_and_pickled() -> None:
     scene = mesh_scene()
     for other in (copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
@@ -114,7 +209,9 @@ def test_a_mesh_far_away_keeps_its_details() -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"vertices": VERTICES[:, :2]}, "cannot reshape|shape"),
+        ({"vertices": VERTICES[:, :2]}, r"vertices has shape \(4, 2\)"),
+        ({"vertices": np.zeros((6, 2))}, r"vertices has shape \(6, 2\)"),
+        ({"colors": np.full((4, 3), 200)}, "colors is an array of int64 with numbers up to 200"),
         ({"faces": FACES.astype(float)}, "triangles must be integers"),
         ({"faces": -FACES}, "triangles must be integers"),
         ({"faces": FACES[:, :2]}, r"triangles is an array of int64 of shape \(4, 2\)"),
@@ -201,6 +298,8 @@ def test_points_are_spheres() -> None:
         len(np.unique(labels.shape[labels.hit])) == 3
         and len(labels.mask(material="point 1 0 0").nonzero()[0]) > 9
     )
+    with pytest.raises(lookfrom.Error, match=r"points has shape \(3, 2\)"):
+        scene.points(np.eye(3)[:, :2], 0.1)
     with pytest.raises(lookfrom.Error, match="colors has 2 rows"):
         scene.points(np.eye(3), 0.1, colors=np.eye(3)[:2])
 

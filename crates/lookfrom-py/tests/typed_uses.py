@@ -33,3 +33,6 @@ origin, directions = lookfrom.pinhole_rays(
 assert_type(directions, NDArray[np.float64])
 ray = lookfrom.trimesh.RayMeshIntersector(object())
 assert_type(ray.intersects_first([(0, 0, 0)], [(0, 0, 1)]), NDArray[np.int64])
+session = lookfrom.Session({}, samples=np.int64(4), fov=np.float32(30), size=(np.uint8(8), 8), keep=True)
+session.set_camera(np.eye(4), intrinsics=[[8, 0, 4], [0, 8, 4], [0, 0, 1]], convention="opengl")
+assert_type(session.labels().depth, NDArray[np.float64])

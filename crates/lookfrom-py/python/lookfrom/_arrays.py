@@ -28,15 +28,25 @@ Shape: TypeAlias = tuple[int, ...]
 MOST_ROWS = 2**32 - 1
 
 
+def is_array(value: object) -> bool:
+    """Whether a value is an array: of numpy, or of others that numpy reads, such as PyTorch, JAX and Pillow."""
+    is_read = hasattr(value, "__array__") or hasattr(value, "__array_interface__")
+    return is_read and not isinstance(value, np.generic)
+
+
+def _array(value: ArrayLike, name: str) -> NDArray[Any]:
+    try:
+        return np.asarray(value)
+    except ValueError as error:
+        raise TypeError(f"{name} must be an array of numbers, but rows differ in length: {error}") from error
+
+
 def numbers(value: ArrayLike, name: str) -> Floats:
     """An array of float32 or float64, as it is where it has that type; of integers and other floats a copy in float64.
 
     Raises TypeError for anything that is not an array of real numbers.
     """
-    try:
-        array: NDArray[Any] = np.asarray(value)
-    except (ValueError, TypeError) as error:
-        raise TypeError(f"{name} must be an array of numbers, but rows differ in length: {error}") from error
+    array = _array(value, name)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} must be an array of numbers, but its type is {array.dtype}")
     if array.dtype not in (np.float32, np.float64):
@@ -79,7 +89,7 @@ def finite(array: Floats, name: str) -> None:
 
 def indices(value: ArrayLike, name: str, vertices: int) -> NDArray[np.uint32]:
     """Faces: an array of shape (m, 3) of integers from 0 to below `vertices`."""
-    array: NDArray[Any] = np.asarray(value)
+    array = _array(value, name)
     if array.size == 0:
         return np.zeros((0, 3), np.uint32)
     if array.dtype.kind not in "iu":

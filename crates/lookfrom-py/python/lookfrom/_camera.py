@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from . import _arrays
 from ._lookfrom import Error
 
 if TYPE_CHECKING:
@@ -40,8 +41,9 @@ class Camera:
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
-        """K, shape (3, 3), from (x/z, y/z, 1) in OpenCV's axes (x right, y down, z forward) to pixels; of an orthographic
-        camera from (x, y, 1). Raises Error for panoramas, which have none."""
+        """K, shape (3, 3), from (x/z, y/z, 1) in OpenCV's axes (x right, y down, z forward) to pixels, of which the first has its
+        middle at (0.5, 0.5); of an orthographic camera from (x, y, 1). `pinhole_rays` has that middle at (0, 0), as OpenCV does:
+        for its intrinsics subtract 0.5 from the principal point, or take `rays`. Raises Error for panoramas, which have none."""
         self._is_flat()
         return np.asarray(np.linalg.inv(self._plane_from_pixel), np.float64)
 
@@ -68,7 +70,7 @@ class Camera:
         distance along the view axis, negative behind the camera. Raises Error for panoramas.
         """
         self._is_flat()
-        world: NDArray[Any] = np.asarray(points, np.float64)
+        world = _arrays.vectors(points, "points").astype(np.float64)
         matrix = self.extrinsics("opencv")
         camera = world @ matrix[:3, :3].T + matrix[:3, 3]
         depth = camera[..., 2]
@@ -78,6 +80,20 @@ class Camera:
             )
         k = self.intrinsics
         return plane @ k[:2, :2].T + k[:2, 2], depth
+
+    def rays(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The rays through the middles of all pixels, for `Bvh.closest_hits`: origins of shape (3,), since they are all one, or of
+        an orthographic camera (height, width, 3); directions of shape (height, width, 3), or of an orthographic camera (3,).
+
+        Directions end at a distance of 1 along the camera's axis, so t of a hit is its depth. Raises Error for panoramas.
+        """
+        self._is_flat()
+        x, y = np.meshgrid(np.arange(self.width) + 0.5, np.arange(self.height) + 0.5)
+        plane = np.stack([x, y, np.ones_like(x)], axis=-1) @ self._plane_from_pixel.T
+        axes = self.world_from_camera()[:3, :3]
+        if self.projection == "perspective":
+            return self.lookfrom, plane @ axes.T
+        return self.lookfrom + plane[..., :2] @ axes[:, :2].T, axes[:, 2]
 
     def _is_flat(self) -> None:
         if self.projection not in ("perspective", "orthographic"):

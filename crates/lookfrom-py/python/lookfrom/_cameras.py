@@ -50,7 +50,7 @@ def pinhole_rays(
     width, height: pixels.
     fov: the vertical angle of view in degrees, or instead
     intrinsics: OpenCV's matrix, shape (3, 3): focal lengths and principal point in pixels, where the middle of the first pixel is
-        at (0, 0) as in OpenCV; skew is allowed.
+        at (0, 0) as in OpenCV; skew is allowed. (That of `Camera.intrinsics` is at (0.5, 0.5), as in COLMAP.)
     world_from_camera: the camera's place, shape (4, 4) or (3, 4), for example of `look_at`; without one, the origin.
     convention: the camera's axes, as of `look_at`.
 

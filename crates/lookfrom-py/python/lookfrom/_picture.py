@@ -55,7 +55,7 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
 
     @functools.cached_property
     def alpha(self) -> NDArray[np.float32] | None:
-        """Alpha, shape (h, w), of a picture with a transparent background; None for others."""
+        """Alpha, shape (h, w), of a picture whose background is transparent or a colour; None for others."""
         alpha = self._native.alpha()
         return None if alpha is None else alpha.reshape(self.height, self.width)
 
@@ -147,6 +147,17 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
 
     def _repr_png_(self) -> bytes:
         return self.encode("png")
+
+    def __copy__(self) -> Picture:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Picture:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError(
+            'a picture cannot be pickled: give other processes its arrays (linear, srgb), its bytes (encode("exr")) or its film'
+        )
 
     def __repr__(self) -> str:
         return f"Picture({self.width}×{self.height}, {self.samples} samples per pixel)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import io
+import itertools
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _toml
+from . import _arrays, _toml
 from ._colors import linear
 from ._lookfrom import Error, replace_files
 
@@ -32,14 +33,18 @@ _LISTS = {
     "uvs": (np.float32, 2),
     "colors": (np.float32, 3),
 }
+# Keys whose values are names of images, and of any files.
+_IMAGES = ("file", "image", "normal_map", "aperture_shape")
+_FILES = (*_IMAGES, "import", "npy", "spd", "font", "lens")
 
 
 class Scene:
     """A scene as plain data, in the words of the scene format (docs/guide/scene-format.md).
 
     data: a dictionary of the tables of a scene file: `{"camera": {...}, "materials": {"red": {...}}, "sphere": [{...}], ...}`.
-        The scene keeps a copy of it. Lists of meshes (positions, triangles, normals, uvs, colors) and images (a texture's or
-        light's `file`) may be arrays; colours and images of uint8 are sRGB.
+        The scene keeps a copy of it. Lists of meshes (positions, triangles, normals, uvs, colors), images (a texture's `file`,
+        a light's `image`, a `normal_map`), matrices of shape (4, 4) and other lists of numbers may be arrays: of numpy, or those
+        that it reads, such as tensors of PyTorch. Colours and images of uint8 are sRGB.
     folder: the folder to which names of files are relative; the current one by default.
 
     Everything is in `data`, which may be changed at will; what a renderer makes of it is told when it is opened, by Session or
@@ -80,14 +85,20 @@ class Scene:
 
         Raises TypeError for what TOML cannot say, and Error for an image that is an array, which a text cannot hold.
         """
-        return _toml.document(_written(self.data))
+        return _toml.document(written(self.data))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a .toml file; arrays are .npy, .ppm and .pfm files beside it, named after it. Files that were there stay until
-        all new ones are on the disk. Raises OSError where they cannot be written."""
+        """Writes a .toml file; arrays are .npy, .ppm and .pfm files beside it, named after it. Names of files that are relative to
+        the scene's folder become relative to that of the new file. Files that were there stay until all new ones are on the disk.
+
+        Raises Error for another extension, and OSError where files cannot be written.
+        """
         path = Path(path)
+        if path.suffix != ".toml":
+            raise Error(f"a scene is written as .toml, but the name of the file is {path.name!r}")
         files: dict[str, bytes] = {}
-        text = _toml.document(_with_files(self.data, path.stem, files))
+        data = _rebased(self.data, self.folder, path.parent)
+        text = _toml.document(_with_files(data, f"{path.stem}-", files))
         beside = [(path.parent / name, content) for name, content in files.items()]
         replace_files([*beside, (path, text.encode())])
 
@@ -104,7 +115,7 @@ class Scene:
 
     def texture(self, name: str, **words: Any) -> str:
         """Adds a texture, or replaces the one of this name, and returns its name. Its `file` may be an array: float of shape
-        (h, w, 3) in linear light, or uint8 in sRGB."""
+        (h, w, 3) or (h, w) in linear light, or uint8 in sRGB."""
         self.data.setdefault("textures", {})[name] = copy.deepcopy(words)
         return name
 
@@ -135,7 +146,7 @@ class Scene:
             uint8, for the texture "vertex_color". Without a material, a mesh with colours is painted by them.
         words: further words of `[[mesh]]`, such as material="red".
         """
-        positions = np.asarray(vertices, np.float64).reshape(-1, 3)
+        positions = _arrays.vectors(vertices, "vertices").astype(np.float64).reshape(-1, 3)
         if not any(word in words for word in ("translate", "rotate", "scale", "transform", "matrix", "axis")):
             middle = _middle(positions)
             if middle is not None:
@@ -163,7 +174,7 @@ class Scene:
         self, points: ArrayLike, radius: float, *, colors: ArrayLike | None = None, **words: Any
     ) -> None:
         """Adds a point cloud as spheres; colors: linear, or sRGB of uint8, shape (n, 3), each of which becomes a material."""
-        centers = np.asarray(points, np.float64).reshape(-1, 3)
+        centers = _arrays.vectors(points, "points").astype(np.float64).reshape(-1, 3)
         painted: NDArray[np.float64] | None = None
         if colors is not None:
             painted = _numbers("colors", np.asarray(colors)).astype(np.float64).reshape(-1, 3)
@@ -190,8 +201,9 @@ class Scene:
     def _in_memory(self) -> tuple[str, dict[str, bytes]]:
         """The name of the scene's file, and all files in memory by name: the text, and arrays."""
         files: dict[str, bytes] = {}
-        text = _toml.document(_with_files(self.data, "scene", files))
-        name = os.fspath(self.folder / "scene.toml")
+        # Of names that no file is likely to have.
+        text = _toml.document(_with_files(self.data, "in memory/", files))
+        name = os.fspath(self.folder / _unused("scene", ".toml", _texts(self.data)))
         beside = {os.fspath(self.folder / file): content for file, content in files.items()}
         return name, {name: text.encode(), **beside}
 
@@ -211,8 +223,15 @@ def _rows(name: str, value: ArrayLike) -> NDArray[Any]:
 
 def _numbers(key: str, array: NDArray[Any]) -> NDArray[Any]:
     """The numbers of an array as the scene format has them: linear light, where colours of uint8 are sRGB."""
-    is_encoded = key == "colors" and array.dtype == np.uint8 and array.shape[1:] == (3,)
-    return linear(array) if is_encoded else array
+    if key != "colors":
+        return array
+    if array.dtype == np.uint8 and array.shape[1:] == (3,):
+        return linear(array)
+    if array.dtype.kind in "iu" and array.size > 0 and array.max() > 1:
+        raise Error(
+            f"colors is an array of {array.dtype} with numbers up to {array.max()}: colours are linear light, or sRGB of uint8"
+        )
+    return array
 
 
 def _middle(positions: NDArray[np.float64]) -> NDArray[np.float64] | None:
@@ -224,57 +243,117 @@ def _middle(positions: NDArray[np.float64]) -> NDArray[np.float64] | None:
     return middle if np.abs(middle).max() > 16 * (high - low).max() else None
 
 
-def _map(item: Any, array: Any, key: str = "") -> Any:
-    """A copy of plain data, with each array replaced by what `array(key, array)` makes of it."""
-    if isinstance(item, np.ndarray):
-        return array(key, item)
+def _map(item: Any, array: Any, text: Any = lambda key, item: item, key: str = "") -> Any:
+    """A copy of plain data, with each array and text replaced by what `array(key, array)` and `text(key, text)` make of it."""
+    if _arrays.is_array(item):
+        return array(key, np.asarray(item))
+    if isinstance(item, str):
+        return text(key, item)
     if isinstance(item, Mapping):
-        return {name: _map(part, array, name) for name, part in item.items()}
+        return {name: _map(part, array, text, name) for name, part in item.items()}
     if isinstance(item, list | tuple):
-        return [_map(part, array, key) for part in item]
+        return [_map(part, array, text, key) for part in item]
     return item
 
 
+def _listed(key: str, array: NDArray[Any]) -> Any:
+    """The numbers of an array as a text has them: matrices row by row."""
+    if key == "transform" and array.shape == (4, 4):
+        return [{"matrix": array.reshape(16).tolist()}]
+    if key in ("matrix", "motion") and array.shape[-2:] == (4, 4):
+        array = array.reshape(*array.shape[:-2], 16)
+    return _numbers(key, array).tolist()
+
+
 def _plain(data: Mapping[str, Any]) -> Any:
-    return _map(data, lambda key, array: _numbers(key, array).tolist())
+    return _map(data, _listed)
 
 
-def _written(data: Mapping[str, Any]) -> Any:
-    def written(key: str, array: NDArray[Any]) -> Any:
-        if key == "file":
+def written(data: Mapping[str, Any]) -> Any:
+    """The data without arrays. Raises Error for an image that is one."""
+
+    def listed(key: str, array: NDArray[Any]) -> Any:
+        if key in _IMAGES:
             raise Error(
                 "an image that is an array cannot be written into a text: Scene.save writes it as a file"
             )
-        return _numbers(key, array).tolist()
+        return _listed(key, array)
 
-    return _map(data, written)
+    return _map(data, listed)
 
 
-def _with_files(data: Mapping[str, Any], stem: str, files: dict[str, bytes]) -> Any:
-    """The data with arrays as files, which are added to `files` by name."""
+def _texts(data: Mapping[str, Any]) -> set[str]:
+    """All texts among the values: names of files are some of them."""
+    texts: set[str] = set()
+    _map(data, lambda key, array: None, lambda key, text: texts.add(os.path.normpath(text)))
+    return texts
+
+
+def _unused(start: str, end: str, used: set[str]) -> str:
+    """A name for a file that no other one has: `start` and `end`, with a number between them if need be."""
+    names = itertools.chain([start + end], (f"{start}-{number}{end}" for number in itertools.count(1)))
+    return next(name for name in names if os.path.normpath(name) not in used)
+
+
+def _rebased(data: Mapping[str, Any], old: Path, new: Path) -> Any:
+    """The data with names of files that are relative to one folder as names that are relative to another one."""
+    here, there = os.path.realpath(old), os.path.realpath(new)
+    if here == there:
+        return data
+
+    def rebased(text: str) -> str:
+        # Words for shapes of apertures have no suffix; some texts of variables cannot be names, as they have zeros in them.
+        if not Path(text).suffix or os.path.isabs(text) or "\0" in text:
+            return text
+        file = os.path.join(here, text)
+        if not os.path.isfile(file):
+            return text
+        try:
+            return Path(os.path.relpath(file, there)).as_posix()
+        except ValueError:
+            # On another drive of Windows.
+            return Path(file).as_posix()
+
+    def kept(_: str, array: NDArray[Any]) -> NDArray[Any]:
+        return array
+
+    moved = _map(data, kept, lambda key, text: rebased(text) if key in _FILES else text)
+    if "variables" in data:
+        # Any of them may be a name.
+        moved["variables"] = _map(data["variables"], kept, lambda _, text: rebased(text))
+    return moved
+
+
+def _with_files(data: Mapping[str, Any], start: str, files: dict[str, bytes]) -> Any:
+    """The data with arrays as files, which are added to `files` by name. The names are numbers after `start`, but none that the
+    data have for other files."""
+    used = _texts(data)
+    numbers = itertools.count()
+
+    def added(extension: str, content: bytes) -> str:
+        names = (f"{start}{number}.{extension}" for number in numbers)
+        name = next(name for name in names if os.path.normpath(name) not in used)
+        files[name] = content
+        return name
 
     def filed(key: str, array: NDArray[Any]) -> Any:
-        if key == "file":
-            extension, content = image_file(array)
-            name = f"{stem}-{len(files)}.{extension}"
-            files[name] = content
-            return name
+        if key in _IMAGES:
+            return added(*image_file(array))
         if key in _LISTS and array.ndim == 2:
             buffer = io.BytesIO()
             np.save(buffer, _rows(key, array))
-            name = f"{stem}-{len(files)}.npy"
-            files[name] = buffer.getvalue()
-            return {"npy": name}
-        return array.tolist()
+            return {"npy": added("npy", buffer.getvalue())}
+        return _listed(key, array)
 
     return _map(data, filed)
 
 
-def image_file(array: NDArray[Any]) -> tuple[str, bytes]:
+def image_file(image: ArrayLike) -> tuple[str, bytes]:
     """The extension and the bytes of a file of an image: linear light of floats of shape (h, w, 3) or (h, w), or sRGB of uint8.
 
     Raises Error for other arrays.
     """
+    array: NDArray[Any] = np.asarray(image)
     if array.ndim == 2:
         array = np.repeat(array[:, :, None], 3, axis=2)
     if (

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from . import _lookfrom, _toml
-from ._camera import Camera
+from . import _arrays, _lookfrom, _toml
+from ._arrays import is_array
+from ._camera import Camera, Convention
 from ._inspect import Inspection, PixelInspection, from_json
 from ._labels import Labels
 from ._lookfrom import Error
 from ._picture import Film, Picture
-from ._scene import Scene, image_file
+from ._scene import Scene, image_file, written
 from ._words import words
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._words import Options
+
+Edits: TypeAlias = dict[tuple[str, str | int], tuple[Any, ...]]
 
 # Called with the samples so far and in all, of all pixels.
 Progress = Callable[[int, int], object]
@@ -33,10 +36,13 @@ Progress = Callable[[int, int], object]
 _OF_BEFORE = frozenset({"fireflies", "light_path", "part"})
 # Options that frame the scene: where they change, nothing stays of another camera.
 _OF_VIEW = frozenset({"azimuth", "bounds", "camera", "elevation", "view"})
-_OF_CAMERA = frozenset({"lookfrom", "lookat", "up", "fov"})
+_OF_PLACE = frozenset({"lookfrom", "lookat", "up"})
+_OF_CAMERA = _OF_PLACE | {"fov"}
 _OF_SIZE = frozenset({"size", "width", "height", "crop"})
 # Options that also decide how a scene is framed, lit and denoised when it is read; later they change the picture alone.
 _OF_PICTURE = _OF_CAMERA | _OF_SIZE | {"integrator"}
+# The part of the scene that `set_camera` changes.
+_CAMERA = ("set_camera", "")
 
 
 class SceneWarning(UserWarning):
@@ -67,22 +73,27 @@ class Session:
         self._options: dict[str, Any] = dict(options)
         self._changes: dict[str, Any] = {}
         # The last call that changed each part of the scene, by the part: for where the scene is read again.
-        self._edits: dict[tuple[str, str | int], tuple[Any, ...]] = {}
+        self._edits: Edits = {}
         self._native = self._opened(self._options)
-        for text in self.warnings:
-            warnings.warn(text, SceneWarning, stacklevel=2)
+        self._warn(())
 
-    def _opened(self, options: Mapping[str, Any], *changes: Mapping[str, Any]) -> _lookfrom.Session:
+    def _warn(self, known: Collection[str]) -> None:
+        for text in self.warnings:
+            if text not in known:
+                warnings.warn(text, SceneWarning, stacklevel=3)
+
+    def _opened(
+        self, options: Mapping[str, Any], *changes: Mapping[str, Any], edits: Edits | None = None
+    ) -> _lookfrom.Session:
         """The scene, read with some options and then changed by others, one after the other."""
         path, files = self._source
         given = dict(options)
-        environment = given.get("environment")
-        if isinstance(environment, np.ndarray):
-            extension, content = image_file(environment)
+        if is_array(given.get("environment")):
+            extension, content = image_file(given["environment"])
             given["environment"] = f"environment.{extension}"
             files = {**files, given["environment"]: content}
         native = _lookfrom.Session(path, files, words(given), self._keep)
-        for (name, _), arguments in self._edits.items():
+        for (name, _), arguments in (self._edits if edits is None else edits).items():
             getattr(native, name)(*arguments)
         for change in changes:
             given = _merged(given, change)
@@ -131,34 +142,38 @@ class Session:
         given: dict[str, Any] = dict(options)
         late = {name: value for name, value in given.items() if name in _OF_PICTURE}
         early = {name: value for name, value in given.items() if name not in _OF_PICTURE}
-        read, before = _merged(self._options, early), self._changes
+        read, before, edits = _merged(self._options, early), self._changes, self._edits
         if not _OF_VIEW.isdisjoint(given):
             read, before, late = _merged(_merged(read, before), late), {}, {}
+        if not _OF_VIEW.isdisjoint(given) or given.get("turn") is not None:
+            edits = {part: edit for part, edit in edits.items() if part != _CAMERA}
         changed = dict(given)
         if given.get("time") is not None or given.get("noise") is not None:
             # A limit alone replaces the number of samples, but not one that was asked for.
             changed.setdefault("samples", read.get("samples"))
-        is_array = isinstance(given.get("environment"), np.ndarray)
+        has_array = is_array(given.get("environment"))
         is_of_before = not _OF_BEFORE.isdisjoint(given)
         # What was given before cannot be taken back without reading.
         taken_back = {name: None for name, value in given.items() if value is None or value is False}
         everything = _merged(_merged(read, before), late)
-        if isinstance(everything.get("environment"), np.ndarray):
+        if is_array(everything.get("environment")):
             # No words open such a session again.
             del everything["environment"]
         all_words = words(everything)
         if (
-            is_array
+            has_array
             or is_of_before
             or taken_back
             or self._native.change(words(changed), all_words) is not None
         ):
             read, before = _merged(read, taken_back), _merged(before, taken_back)
-            self._native = self._opened(read, before, late)
+            known = self.warnings
+            self._native = self._opened(read, before, late, edits=edits)
+            self._warn(known)
         elif given.get("turn") is not None:
             # The camera is that of the turntable.
             before = {name: value for name, value in before.items() if name not in _OF_CAMERA}
-        self._options, self._changes = read, _merged(before, late)
+        self._options, self._changes, self._edits = read, _merged(before, late), edits
         if not _OF_SIZE.isdisjoint(self._changes):
             # As they are now: one side alone keeps the aspect ratio that there was, and a crop its part of the picture.
             self._changes = _merged(self._changes, {"size": self.size, "crop": self._native.crop()})
@@ -170,12 +185,12 @@ class Session:
         Only what depends on materials is compiled again, no tree is built. Raises Error for a name that no material has, and
         SceneError for words that make no material, and for textures, which a session cannot be given. Needs keep=True.
         """
-        self._edit("set_material", material, _toml.document({"materials": {material: words}}))
+        self._edit("set_material", material, _toml.document(written({"materials": {material: words}})))
 
     def set_lights(self, lights: Iterable[Mapping[str, Any]]) -> None:
         """Replaces all lights that are no shapes, the studio of a model included, by the words of `[[light]]`. As
         `set_material`."""
-        self._edit("set_lights", _toml.document({"light": [dict(light) for light in lights]}))
+        self._edit("set_lights", _toml.document(written({"light": [dict(light) for light in lights]})))
 
     def set_poses(self, poses: Mapping[int, ArrayLike]) -> None:
         """Moves instances, by their numbers in the scene's `instance` list from 0.
@@ -194,6 +209,55 @@ class Session:
                 raise Error(f"there is no instance {number}; they are counted from 0")
             moved.append((int(number), rows.tolist()))
         self._edit("set_poses", moved)
+
+    def set_camera(
+        self,
+        world_from_camera: ArrayLike,
+        *,
+        intrinsics: ArrayLike | None = None,
+        convention: Convention = "opencv",
+    ) -> None:
+        """Moves the camera by matrices, as real cameras that were calibrated have them. Nothing is read or built.
+
+        world_from_camera: rotation and translation, shape (4, 4), as of `Camera.world_from_camera`.
+        intrinsics: the focal lengths and the principal point in pixels of the picture as large as it is now, shape (3, 3), without
+            skew, as of `Camera.intrinsics`: the upper left corner is at (0, 0), as in COLMAP. Where the middle of the first pixel
+            is there, as in OpenCV, add 0.5 to the principal point. Without them, what the camera sees stays as large.
+        convention: the camera's axes: see `Camera.extrinsics`.
+
+        Raises Error for other matrices.
+        """
+        place = _arrays.numbers(world_from_camera, "world_from_camera").astype(np.float64)
+        if place.shape != (4, 4) or not np.isfinite(place).all() or (place[3] != [0, 0, 0, 1]).any():
+            raise Error(
+                f"world_from_camera is {place.tolist()}, but a finite affine matrix of shape (4, 4) is expected"
+            )
+        axes = place[:3, :3]
+        if np.abs(axes.T @ axes - np.eye(3)).max() > 1e-4 or np.linalg.det(axes) < 0:
+            raise Error(f"the axes of world_from_camera are {axes.tolist()}, but a rotation is expected")
+        _arrays.one_of(convention, "convention", "opencv", "opengl")
+        # Of a camera here x is to the left, y up, z forward.
+        signs = [-1, -1, 1, 1] if convention == "opencv" else [-1, 1, -1, 1]
+        rows: list[list[float]] = (place * signs).tolist()
+        window = None if intrinsics is None else self._window(intrinsics)
+        self._native.set_camera(rows, window)
+        kept = _OF_PICTURE - (_OF_PLACE if window is None else _OF_CAMERA)
+        self._changes = {name: value for name, value in self._changes.items() if name in kept}
+        if window is None and _CAMERA in self._edits:
+            window = self._edits[_CAMERA][1]
+        self._edits = {**self._edits, _CAMERA: (rows, window)}
+
+    def _window(self, intrinsics: ArrayLike) -> tuple[tuple[float, float], tuple[float, float]]:
+        """What a camera sees of the plane at distance 1: from left to right, and from bottom to top."""
+        k = _arrays.numbers(intrinsics, "intrinsics").astype(np.float64)
+        expected = "[[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with positive focal lengths is expected"
+        if k.shape != (3, 3) or not np.isfinite(k).all():
+            raise Error(f"intrinsics is {k.tolist()}, but {expected}")
+        (fx, skew, cx), (zero, fy, cy), last = k.tolist()
+        if skew or zero or last != [0, 0, 1] or fx <= 0 or fy <= 0:
+            raise Error(f"intrinsics is {k.tolist()}, but {expected}")
+        width, height = self.size
+        return (-cx / fx, (width - cx) / fx), ((cy - height) / fy, cy / fy)
 
     @property
     def camera(self) -> Camera:

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from ._arrays import is_array
+
 # Tables that have no values of their own, but tables by name.
 _NAMED = ("materials", "textures", "objects", "media")
 
@@ -37,8 +39,8 @@ def value(item: Any) -> str:
         return (
             repr(number) if math.isfinite(number) else {math.inf: "inf", -math.inf: "-inf"}.get(number, "nan")
         )
-    if isinstance(item, np.ndarray):
-        return value(item.tolist())
+    if is_array(item):
+        return value(np.asarray(item).tolist())
     if isinstance(item, Mapping):
         return "{ " + ", ".join(f"{_key(key)} = {value(part)}" for key, part in item.items()) + " }"
     if isinstance(item, Sequence):

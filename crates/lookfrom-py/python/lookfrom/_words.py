@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 import numpy as np
 
 from . import _toml
+from ._arrays import is_array
 from ._lookfrom import Error, keyword_list
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+Int: TypeAlias = "int | np.integer[Any]"
+Float: TypeAlias = "float | np.floating[Any] | np.integer[Any]"
 Vector: TypeAlias = "Sequence[float] | NDArray[Any]"
 Words: TypeAlias = list[tuple[str, "str | None"]]
 
@@ -26,67 +29,67 @@ class Options(TypedDict, total=False):
     """
 
     # Size.
-    size: int | tuple[int, int]
-    width: int
-    height: int
-    crop: Sequence[int]
+    size: Int | tuple[Int, Int]
+    width: Int
+    height: Int
+    crop: Sequence[Int]
     # Samples, time, noise.
-    samples: int | range | tuple[int, int]
-    time: float | str | datetime.timedelta
-    noise: float
+    samples: Int | range | tuple[Int, Int]
+    time: Float | str | datetime.timedelta
+    noise: Float
     allocation: str
     denoise: bool
     fireflies: str
-    part: tuple[int, int]
+    part: tuple[Int, Int]
     # Camera.
     lookfrom: Vector
     lookat: Vector
     up: str | Vector
-    fov: float
+    fov: Float
     view: str
-    azimuth: float
-    elevation: float
-    bounds: Sequence[float] | NDArray[Any]
-    turn: float
+    azimuth: Float
+    elevation: Float
+    bounds: Sequence[Float] | NDArray[Any]
+    turn: Float
     camera: str
     # Light, background, colours.
     environment: str | os.PathLike[str] | NDArray[Any]
-    rotate_environment: float
-    background: str | Sequence[float]
+    rotate_environment: Float
+    background: str | Sequence[Float]
     floor: bool
-    exposure: float | str
+    exposure: Float | str
     tonemap: str
     # Contents of the scene.
     define: Mapping[str, Any]
-    at: float
-    shutter: float
-    fps: float
-    animation: str | int
-    variant: str | int
-    scene_of_file: str | int
-    subdivide: int
+    at: Float
+    shutter: Float
+    fps: Float
+    animation: str | Int
+    variant: str | Int
+    scene_of_file: str | Int
+    subdivide: Int
     instanced_lights: bool
     # Films.
     film: bool
     # Light transport.
     integrator: str
-    depth: int
+    depth: Int
     color: str
     light_sampler: str
     portals: str
-    min_contribution: float
+    min_contribution: Float
     sampler: str
-    seed: int
-    filter: str | tuple[str, float] | tuple[str, float, float]
+    seed: Int
+    filter: str | tuple[str, Float] | tuple[str, Float, Float]
     # Layers.
     layers: str
     light_path: Mapping[str, str]
     cryptomatte: str | Sequence[str]
-    spectral_buckets: int
-    wavelengths: tuple[float, float]
+    spectral_buckets: Int
+    wavelengths: tuple[Float, Float]
     # The call.
-    threads: int
-    memory: int | str
+    threads: Int
+    memory: Int | str
 
 
 def options() -> dict[str, str]:
@@ -123,8 +126,8 @@ def _pairs(name: str, value: Any) -> Words:
 
 
 def _worded(name: str, value: Any) -> str:
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
+    if is_array(value):
+        value = np.asarray(value).tolist()
     if isinstance(value, str | os.PathLike):
         return os.fspath(value)
     if isinstance(value, bool | np.bool_):

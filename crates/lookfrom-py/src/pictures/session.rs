@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use lookfrom::glam::DMat4;
 use lookfrom::inspect::{self, SvgView};
 use lookfrom::render::{Label, Progress, SampleId, TileDone};
+use lookfrom::scene::camera::{Projection, View, Window};
 use lookfrom::scene::image;
 use lookfrom::scene::scene::MaterialId;
 use lookfrom::scene::{LoadContext, Result as SceneResult, Warning, WarningGroup, WarningKind, json};
@@ -32,6 +33,8 @@ pub(crate) struct Session {
     files: Overlay,
     /// The arguments of `lookfrom render` that open the same session.
     typed: Mutex<Vec<String>>,
+    /// What the reader of the environment map doubted.
+    of_environment: Vec<Warning>,
     inner: Mutex<session::Session>,
 }
 
@@ -49,11 +52,11 @@ impl Session {
         let asked = asked(words)?;
         let (is_on_disk, files) = (!files.contains_key(&path), Overlay::new(files));
         let threads = asked.options.threads.unwrap_or(0);
+        let mut of_environment = Vec::new();
         let opened = parallel::in_pool(py, threads, || -> SceneResult<session::Session> {
-            let environment = asked
-                .environment
-                .as_deref()
-                .map(|path| image::read(path, &mut LoadContext::within(&asked.options.budget, &files)));
+            let mut context = LoadContext::within(&asked.options.budget, &files);
+            let environment = asked.environment.as_deref().map(|path| image::read(path, &mut context));
+            of_environment = context.warnings;
             let options =
                 Options { environment: environment.transpose()?, keep_scene, ..asked.options.clone() };
             match is_on_disk {
@@ -63,7 +66,7 @@ impl Session {
             }
         });
         let inner = Mutex::new(opened.map_err(|error| raised(py, &error, &files))?);
-        Ok(Self { files, typed: Mutex::new(asked.typed), inner })
+        Ok(Self { files, typed: Mutex::new(asked.typed), of_environment, inner })
     }
 
     /// Changes options, for which nothing is read; `all` are those that the session then has. Returns the name of an option for
@@ -166,8 +169,9 @@ impl Session {
     /// Warnings and notes of the readers, each with whether it is a mere note.
     fn warnings(&self) -> Vec<(String, bool)> {
         let session = self.now();
+        let all = self.of_environment.iter().chain(session.warnings());
         let told = |warning: &Warning| warning.clone().worded(worded);
-        let groups = WarningGroup::of(&session.warnings().iter().map(told).collect::<Vec<_>>());
+        let groups = WarningGroup::of(&all.map(told).collect::<Vec<_>>());
         groups.iter().map(|group| (group.to_string(), group.kind() != WarningKind::Warning)).collect()
     }
 
@@ -197,10 +201,36 @@ impl Session {
         self.exchange(py, |session| session.set_poses(poses))
     }
 
+    /// Moves the camera: by the rows of the map from the camera's space (x to the left, y up, z forward) to the world, and by what
+    /// it sees of the plane at distance 1, from left to right and from bottom to top, where that changes.
+    fn set_camera(
+        &self,
+        py: Python<'_>,
+        world_from_camera: [[f64; 4]; 4],
+        window: Option<[[f64; 2]; 2]>,
+    ) -> PyResult<()> {
+        self.exchange(py, |session| {
+            let mut camera = session.camera().clone();
+            camera.view = View::Matrix(DMat4::from_cols_array_2d(&world_from_camera).transpose());
+            camera.target = None;
+            if let Some([x, y]) = window {
+                // Half of its height is 1 at distance 1.
+                camera.projection = Projection::Perspective { fov: 90.0 };
+                camera.window = Some(Window { x, y });
+            }
+            session.set_camera(camera)
+        })
+    }
+
     /// The session as it is now, which no later change of this one changes.
     fn snapshot(&self) -> Self {
         let typed = self.typed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        Self { files: self.files.clone(), typed: Mutex::new(typed), inner: Mutex::new(self.now()) }
+        Self {
+            files: self.files.clone(),
+            typed: Mutex::new(typed),
+            of_environment: self.of_environment.clone(),
+            inner: Mutex::new(self.now()),
+        }
     }
 
     /// A report on one sample of a pixel as JSON, or on all (`sample` is `None`).

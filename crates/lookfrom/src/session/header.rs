@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use lookfrom_scene::camera::{Projection, View};
+use lookfrom_scene::camera::{Projection, View, Window};
 use lookfrom_scene::contents::Moment;
 use lookfrom_scene::image::compare::{CHANNELS_ATTRIBUTE, channels_text};
 use lookfrom_scene::settings::{Allocation, Background, ImageSettings, Layers, PixelBounds, Portals, Sensor};
@@ -87,6 +87,9 @@ pub(super) fn header(session: &Session) -> Vec<(String, String)> {
             texts.push(("camera.projection", "irradiance".to_owned()));
             texts.push(("camera.surface", surface.clone()));
         }
+    }
+    if let Some(Window { x: [left, right], y: [bottom, top] }) = camera.window {
+        texts.push(("camera.window", format!("{left} {right} {bottom} {top}")));
     }
     if let Some(lens) = camera.lens {
         texts.push(("camera.lens_radius", lens.radius.to_string()));
