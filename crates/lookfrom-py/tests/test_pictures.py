@@ -612,6 +612,24 @@ def test_a_page_is_served() -> None:
         urllib.request.urlopen(page.url, timeout=2)
 
 
+def test_a_page_of_a_scene_finds_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tempfile
+
+    for name in ("temporary", "mine"):
+        (tmp_path / name).mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    lookfrom.Scene(BALL).save(tmp_path / "mine/ball.toml")
+    scene = lookfrom.Scene({"import": "ball.toml"}, folder=tmp_path / "mine")
+    expected = lookfrom.render(BALL, size=8, samples=1, environment=np.ones((2, 4, 3))).linear
+    with lookfrom.show(scene, browser=False, environment=np.ones((2, 4, 3))):
+        (folder,) = (tmp_path / "temporary").iterdir()
+        shown = lookfrom.render(
+            folder / "scene.toml", size=8, samples=1, environment=folder / "environment.pfm"
+        )
+        assert (shown.linear == expected).all()
+    assert not list((tmp_path / "temporary").iterdir())
+
+
 def test_a_page_of_bytes_stays_in_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import tempfile
 

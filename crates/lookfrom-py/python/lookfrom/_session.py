@@ -404,17 +404,24 @@ def _source(scene: Any, name: str) -> tuple[str, dict[str, bytes]]:
                 f'name is {name!r}, but the bytes of a file need one that tells their format, such as "model.glb"'
             )
         return name, {name: bytes(scene)}
-    if isinstance(scene, Mapping):
-        scene = Scene(scene)
-    elif hasattr(scene, "vertices") and hasattr(scene, "faces"):
-        built = Scene()
-        built.trimesh(scene)
-        scene = built
-    if isinstance(scene, Scene):
-        return scene._in_memory()
+    if (made := as_scene(scene)) is not None:
+        return made._in_memory()
     raise TypeError(
         f"a scene is a name, a Scene, a dictionary, a mesh of trimesh or the bytes of a file, but not {type(scene).__name__}"
     )
+
+
+def as_scene(scene: Any) -> Scene | None:
+    """The scene of plain data or of a mesh of trimesh; None for anything else."""
+    if isinstance(scene, Scene):
+        return scene
+    if isinstance(scene, Mapping):
+        return Scene(scene)
+    if hasattr(scene, "vertices") and hasattr(scene, "faces"):
+        made = Scene()
+        made.trimesh(scene)
+        return made
+    return None
 
 
 def _report(native: _lookfrom.Session, x: int, y: int, sample: int | None) -> str:

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _lookfrom
+from ._arrays import is_array
 from ._lookfrom import Error
-from ._scene import Scene
-from ._session import _source
+from ._scene import image_file
+from ._session import _source, as_scene
 from ._words import words
 
 if TYPE_CHECKING:
@@ -69,21 +70,29 @@ def show(
     Raises Error for options that make no sense, and for a name of bytes that is no path within a folder; OSError where the port
     is in use. What is wrong with the scene is shown on the page.
     """
-    folder: tempfile.TemporaryDirectory[str] | None = None
-    if isinstance(scene, Scene) and scene.folder != Path():
-        raise ValueError("a scene with a folder refers to files there: save it there, and show that file")
-    path, files = _source(scene, name)
+    given: dict[str, Any] = dict(options)
+    made, has_map = as_scene(scene), is_array(given.get("environment"))
+    path, files = ("", {}) if made is not None else _source(scene, name)
     for file in files:
         if Path(file).anchor or ".." in Path(file).parts:
             raise Error(f'name is {file!r}, but one within a folder is expected, such as "models/cube.obj"')
-    if files:
+    folder: tempfile.TemporaryDirectory[str] | None = None
+    if made is not None or files or has_map:
         folder = tempfile.TemporaryDirectory(prefix="lookfrom-")
+    if folder is not None and has_map:
+        extension, content = image_file(given["environment"])
+        given["environment"] = os.path.join(folder.name, f"environment.{extension}")
+        Path(given["environment"]).write_bytes(content)
+    if folder is not None and made is not None:
+        path = os.path.join(folder.name, "scene.toml")
+        made.save(path)
+    elif folder is not None and files:
         for file, content in files.items():
             target = Path(folder.name) / file
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
         path = os.path.join(folder.name, path)
-    page = Page(_lookfrom.Page(path, words(options), port), folder)
+    page = Page(_lookfrom.Page(path, words(given), port), folder)
     if browser or (browser is None and not _is_in_jupyter()):
         webbrowser.open(page.url)
     return page
