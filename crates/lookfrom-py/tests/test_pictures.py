@@ -559,6 +559,7 @@ def test_a_copy_changes_by_itself() -> None:
 
 def test_a_session_can_be_put_on_a_turntable() -> None:
     session = lookfrom.Session(BALL)
+    session.set(lookfrom=(1, 1, 4))
     session.set(turn=30)
     assert (session.render().linear == lookfrom.render(BALL, turn=30).linear).all()
 

@@ -143,9 +143,13 @@ class Session:
         late = {name: value for name, value in given.items() if name in _OF_PICTURE}
         early = {name: value for name, value in given.items() if name not in _OF_PICTURE}
         read, before, edits = _merged(self._options, early), self._changes, self._edits
-        if not _OF_VIEW.isdisjoint(given):
+        is_framed, is_turned = not _OF_VIEW.isdisjoint(given), given.get("turn") is not None
+        if is_framed:
             read, before, late = _merged(_merged(read, before), late), {}, {}
-        if not _OF_VIEW.isdisjoint(given) or given.get("turn") is not None:
+        elif is_turned:
+            # The camera is that of the turntable.
+            before = {name: value for name, value in before.items() if name not in _OF_CAMERA}
+        if is_framed or is_turned:
             edits = {part: edit for part, edit in edits.items() if part != _CAMERA}
         changed = dict(given)
         if given.get("time") is not None or given.get("noise") is not None:
@@ -160,19 +164,12 @@ class Session:
             # No words open such a session again.
             del everything["environment"]
         all_words = words(everything)
-        if (
-            has_array
-            or is_of_before
-            or taken_back
-            or self._native.change(words(changed), all_words) is not None
-        ):
+        is_read = has_array or is_of_before or bool(taken_back)
+        if is_read or self._native.change(words(changed), all_words) is not None:
             read, before = _merged(read, taken_back), _merged(before, taken_back)
             known = self.warnings
             self._native = self._opened(read, before, late, edits=edits)
             self._warn(known)
-        elif given.get("turn") is not None:
-            # The camera is that of the turntable.
-            before = {name: value for name, value in before.items() if name not in _OF_CAMERA}
         self._options, self._changes, self._edits = read, _merged(before, late), edits
         if not _OF_SIZE.isdisjoint(self._changes):
             # As they are now: one side alone keeps the aspect ratio that there was, and a crop its part of the picture.
