@@ -71,13 +71,13 @@ pub enum Light {
         /// Its position.
         position: DVec3,
         /// The axis, away from the light, unit length.
-        axis: Vec3,
+        axis: DVec3,
         /// W/sr on the axis.
         intensity: EmissionSpectrum,
         /// Cosine of the angle beyond which it is dark.
-        cos_outer: f32,
+        cos_outer: f64,
         /// Cosine of the angle up to which it has full intensity.
-        cos_inner: f32,
+        cos_inner: f64,
         /// The fading between both angles.
         edge: Edge,
         /// Attenuation with distance.
@@ -221,7 +221,7 @@ impl Light {
             }
             Self::Spot { position, axis, intensity, cos_outer, cos_inner, edge, falloff } => {
                 let (wi, distance) = toward(from, *position)?;
-                let cone = in_cone(*edge, [*cos_outer, *cos_inner], axis.dot(-wi));
+                let cone = in_cone(*edge, [*cos_outer, *cos_inner], cos_to_axis(from, *position, *axis));
                 if cone <= 0.0 {
                     return None;
                 }
@@ -278,15 +278,16 @@ impl Light {
             }
             Self::Projection(light) => {
                 let rim = cone::angle(light.cos_corner()) + SLACK;
-                at_point(&light.position, Cone { axis: light.axis, cos: 1.0 }, rim.min(WIDEST_RIM))
+                let axis = light.axis.as_vec3();
+                at_point(&light.position, Cone { axis, cos: 1.0 }, rim.min(WIDEST_RIM))
             }
             Self::Spot { position, axis, cos_outer, cos_inner, .. } => {
-                let [outer, inner] = [cos_outer, cos_inner].map(|cos| cone::angle(*cos));
+                let [outer, inner] = [cos_outer, cos_inner].map(|cos| cone::angle(*cos as f32));
                 // The importance takes the cosine of the angle to the cone for the fall-off; it must not reach 0 within
                 // it.
                 let rim = (outer - inner + SLACK).min(WIDEST_RIM - 0.25);
                 let cos = libm::cosf((outer + SLACK - rim).clamp(0.0, std::f32::consts::PI));
-                at_point(position, Cone { axis: *axis, cos }, rim)
+                at_point(position, Cone { axis: axis.as_vec3(), cos }, rim)
             }
             Self::Area(light) => {
                 let extent = light.emitter_bounds();
@@ -330,21 +331,28 @@ pub(crate) fn fade<R: Real>(falloff: Falloff, distance: R::Double) -> R {
     })
 }
 
+/// The cosine between the way to a point from a light at `position` and its axis; in double precision, since the cosines of a laser's
+/// cone differ from 1 by less than the rounding of an f32.
+fn cos_to_axis(from: DVec3, position: DVec3, axis: DVec3) -> f64 {
+    (from - position).normalize().dot(axis)
+}
+
 /// The factor of a spot light by the cosine of the angle to its axis: 0 outside of its cone, 1 within the inner one.
-fn in_cone(edge: Edge, [cos_outer, cos_inner]: [f32; 2], cos: f32) -> f32 {
-    match edge {
+fn in_cone(edge: Edge, [cos_outer, cos_inner]: [f64; 2], cos: f64) -> f32 {
+    let factor = match edge {
         Edge::Smooth => smooth_step(cos_outer, cos_inner, cos),
         Edge::Linear if cos >= cos_inner => 1.0,
         Edge::Linear if cos <= cos_outer => 0.0,
         Edge::Linear => {
-            let [outer, inner, angle] = [cos_outer, cos_inner, cos].map(cone::angle);
+            let [outer, inner, angle] = [cos_outer, cos_inner, cos].map(libm::acos);
             (outer - angle) / (outer - inner)
         }
-    }
+    };
+    factor as f32
 }
 
 /// 0 up to `low`, 1 from `high`, a cubic between.
-fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
+fn smooth_step(low: f64, high: f64, x: f64) -> f64 {
     if x >= high {
         return 1.0;
     }

@@ -62,7 +62,7 @@ pub use traced::{Rays, Traced};
 
 /// The version of the code that computes samples: raised by every change of the bits of any sample, so that films of
 /// different versions are not merged. `tests/command/pinned.txt` holds both together.
-pub const SAMPLING_VERSION: u32 = 28;
+pub const SAMPLING_VERSION: u32 = 29;
 
 /// The most samples that make a batch together: half as many again as a tile of the driver has pixels, so that any fewer pixels
 /// make batches of at least three quarters of those of a whole tile.

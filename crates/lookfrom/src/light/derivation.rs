@@ -11,7 +11,7 @@ use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Edge, Falloff};
 use serde::Serialize;
 
-use super::{IncompletePdf, Light, LightSample, LightSampleContext, fade, in_cone, toward};
+use super::{IncompletePdf, Light, LightSample, LightSampleContext, cos_to_axis, fade, in_cone, toward};
 use crate::core::spectrum::Spectrum;
 use crate::shading::texture::{SpectralMode, Textures};
 
@@ -57,16 +57,16 @@ impl Light {
                 Derivation::new(format!("L = I · fall-off(d); fall-off = {}", law_of(*falloff)), numbers)
             }),
             Self::Spot { position, axis, intensity, cos_outer, cos_inner, edge, falloff } => {
-                toward(from, *position).map(|(wi, distance)| {
-                    let cos = axis.dot(-wi);
+                toward(from, *position).map(|(_, distance)| {
+                    let cos = cos_to_axis(from, *position, *axis);
                     let [law, faded] = fall_off(*falloff, distance);
                     let numbers = vec![
                         ("I", lanes(intensity.even(textures, mode), mode)),
                         law,
                         faded,
-                        ("axis", vector(*axis)),
-                        ("cos to the axis", vec![f64::from(cos)]),
-                        ("cos outer, inner", vec![f64::from(*cos_outer), f64::from(*cos_inner)]),
+                        ("axis", axis.to_array().to_vec()),
+                        ("cos to the axis", vec![cos]),
+                        ("cos outer, inner", vec![*cos_outer, *cos_inner]),
                         ("S", vec![f64::from(in_cone(*edge, [*cos_outer, *cos_inner], cos))]),
                     ];
                     let of_cone = match edge {

@@ -1,11 +1,11 @@
 //! Projection and goniometric lights.
 
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3};
 use lookfrom_scene::image::Image;
 use lookfrom_scene::light::{Edge, Projected};
 use lookfrom_scene::texture::{TexelFilter, Wrap};
 
-use super::{EmissionSpectrum, LightSample, in_cone, toward};
+use super::{EmissionSpectrum, LightSample, cos_to_axis, in_cone, toward};
 use crate::core::spectrum::Spectrum;
 use crate::core::warp;
 use crate::shading::texture::{self, SpectralMode, SpectrumType, Textures};
@@ -24,9 +24,9 @@ pub struct Projection {
     /// The quantity of the picture.
     pub quantity: Projected,
     /// Cosines of the angles of a cone beyond which it is dark, and of one with full intensity.
-    pub cone: Option<[f32; 2]>,
+    pub cone: Option<[f64; 2]>,
     /// The axis, unit length.
-    pub axis: Vec3,
+    pub axis: DVec3,
     /// W/sr of a white texel on the axis.
     pub scale: f32,
     /// Half the size of the picture at a distance of 1.
@@ -53,17 +53,17 @@ impl Projection {
         let st = [0.5 + 0.5 * s, 0.5 - 0.5 * t];
         let rgb = texture::look_up(textures.image(self.image), st, [Wrap::Clamp; 2], self.filter);
         let white = texture::spectrum_of(rgb, SpectrumType::Illuminant, mode);
-        let li = white * (self.scale * self.by_angle(-wi) / (distance * distance) as f32);
+        let by_angle = self.by_angle(cos_to_axis(from, self.position, self.axis));
+        let li = white * (self.scale * by_angle / (distance * distance) as f32);
         (!li.is_black()).then_some(LightSample::of_point(wi, li, self.position))
     }
 
-    /// The factor of the intensity in a unit direction from the light, by its angle to the axis.
-    pub(crate) fn by_angle(&self, direction: Vec3) -> f32 {
-        let cos = self.axis.dot(direction);
+    /// The factor of the intensity by the cosine of the angle to the axis.
+    pub(crate) fn by_angle(&self, cos: f64) -> f32 {
         let in_cone = self.cone.map_or(1.0, |cosines| in_cone(Edge::Linear, cosines, cos));
         match self.quantity {
             Projected::Intensity => in_cone,
-            Projected::Irradiance => in_cone / (cos * cos * cos),
+            Projected::Irradiance => in_cone / (cos * cos * cos) as f32,
         }
     }
 

@@ -318,8 +318,13 @@ fn placed(power: Power) -> Vec<(LightKind, Power)> {
 
 /// Luminance that arrives at a distance of 1 from the light's position, in a direction from it.
 fn intensity(world: &World, light: usize, direction: Vec3) -> f64 {
-    let point = DVec3::new(1.0, 2.0, 3.0) + direction.as_dvec3().normalize();
-    let at = LightSampleContext { point, n: -direction, time: 0.0 };
+    exact_intensity(world, light, direction.as_dvec3().normalize())
+}
+
+/// The same in a direction of unit length.
+fn exact_intensity(world: &World, light: usize, direction: DVec3) -> f64 {
+    let point = DVec3::new(1.0, 2.0, 3.0) + direction;
+    let at = LightSampleContext { point, n: -direction.as_vec3(), time: 0.0 };
     let sample = world.lights[light].sample(
         &world.textures,
         &at,
@@ -481,6 +486,52 @@ fn curves_have_luminance_1_unless_they_are_absolute() {
             let Light::Environment(sky) = light else { panic!("a sky") };
             let rgb = sky.radiance(&world.textures, DVec3::ZERO, Vec3::Y, &SpectralMode::Rgb).rgb();
             assert!((luminance(rgb) / expected - 1.0).abs() < 2e-3, "{curve}: {rgb:?}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn narrow_beams_have_their_power() {
+    let white = Image::from_linear("", 1, 1, vec![[1.0; 3]]);
+    let here = EYE + DVec3::new(1.0, 2.0, 3.0);
+    let (direction, intensity, falloff) = (DVec3::Y, Color::gray(1.0), Falloff::Quadratic);
+    // A pointer of one milliradian, and far less.
+    for angle in [1.0_f64, 0.03, 1e-3, 1e-4] {
+        let spot = |inner_angle, edge| LightKind::Spot {
+            position: here,
+            direction,
+            intensity,
+            cone_angle: angle,
+            inner_angle,
+            edge,
+            falloff,
+        };
+        let cone = LightKind::Projection {
+            image: ImageId(0),
+            filter: TexelFilter::Nearest,
+            quantity: Projected::Intensity,
+            intensity: 1.0,
+            cone: Some([angle, 0.5 * angle]),
+            fov: 3.0 * angle as f32,
+            world_from_light: DMat4::from_translation(here) * DMat4::from_rotation_x(-0.5 * PI64),
+        };
+        let kinds = [
+            spot(0.5 * angle, Edge::Smooth),
+            spot(angle, Edge::Smooth),
+            spot(0.5 * angle, Edge::Linear),
+            cone,
+        ];
+        let world = world_of(kinds.map(|kind| (kind, total(30.0))).into(), vec![white.clone()], vec![]);
+        for light in 0..world.lights.len() {
+            let rings = 2000;
+            let width = 1.2 * angle.to_radians() / f64::from(rings);
+            let in_ring = |ring: u32| {
+                let (sin, cos) = libm::sincos((f64::from(ring) + 0.5) * width);
+                2.0 * PI64 * sin * width * exact_intensity(&world, light, DVec3::new(sin, cos, 0.0))
+            };
+            let power: f64 = (0..rings).map(in_ring).sum();
+            let name = &world.names.lights[light];
+            assert!((power / 30.0 - 1.0).abs() < 0.01, "{name}, {angle}°: {power}");
         }
     }
 }

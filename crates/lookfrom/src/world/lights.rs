@@ -129,21 +129,19 @@ impl<'a> Lights<'a> {
                 ("distant light", Light::Distant { toward, irradiance }, brightness)
             }
             LightKind::Spot { position, direction, intensity, cone_angle, inner_angle, edge, falloff } => {
-                let cos_outer = libm::cos(cone_angle.to_radians()) as f32;
-                let cos_inner = libm::cos(inner_angle.to_radians()) as f32;
+                let angles = [cone_angle, inner_angle].map(|angle| angle.to_radians());
+                let [cos_outer, cos_inner] = angles.map(libm::cos);
                 let per_unit = 2.0
                     * PI
                     * match edge {
-                        Edge::Smooth => (1.0 - cos_inner) + 0.5 * (cos_inner - cos_outer),
-                        Edge::Linear => {
-                            linear_cone([cone_angle, inner_angle].map(|angle| angle.to_radians()))
-                        }
+                        Edge::Smooth => smooth_cone(angles),
+                        Edge::Linear => linear_cone(angles),
                     };
                 let intensity = whitted(self.emission_spectrum(*intensity, power, per_unit));
                 let brightness = self.brightness_of(&intensity);
                 let light = Light::Spot {
                     position: *position - origin,
-                    axis: direction.normalize().as_vec3(),
+                    axis: direction.normalize(),
                     intensity,
                     cos_outer,
                     cos_inner,
@@ -156,7 +154,7 @@ impl<'a> Lights<'a> {
                 let light = Projection {
                     filter: *filter,
                     quantity: *quantity,
-                    cone: cone.map(|angles| angles.map(|angle| libm::cos(angle.to_radians()) as f32)),
+                    cone: cone.map(|angles| angles.map(|angle| libm::cos(angle.to_radians()))),
                     ..self.projection(image.index(), *fov, world_from_light, origin)
                 };
                 let white = self.emission_spectrum(Color::gray(*intensity), power, self.power_of(&light));
@@ -205,7 +203,7 @@ impl<'a> Lights<'a> {
             filter: TexelFilter::Nearest,
             quantity: Projected::Intensity,
             cone: None,
-            axis: (light_from_render.inverse() * Vec3::Z).normalize(),
+            axis: world_from_light.z_axis.truncate().normalize(),
             scale: 1.0,
             half_size: if aspect > 1.0 { [half * aspect, half] } else { [half, half / aspect] },
         }
@@ -224,9 +222,10 @@ impl<'a> Lights<'a> {
         for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
             let (x, y) = (place(column, width, half_x), place(row, height, half_y));
             let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
-            let toward = (of_render * Vec3::new(x, y, 1.0)).normalize();
+            let toward = (of_render * Vec3::new(x, y, 1.0)).as_dvec3().normalize();
             let texel = image.texel((row / parts * image.width + column / parts) as usize);
-            sum += f64::from(math::luminance(texel) * cos * cos * cos * light.by_angle(toward));
+            sum +=
+                f64::from(math::luminance(texel) * cos * cos * cos * light.by_angle(light.axis.dot(toward)));
         }
         4.0 * half_x * half_y * (sum / (f64::from(width) * f64::from(height))) as f32
     }
@@ -301,10 +300,17 @@ impl<'a> Lights<'a> {
     }
 }
 
+/// The integral of [`Edge::Smooth`] over the solid angle of a cone, divided by 2π; its half-angles in radians.
+fn smooth_cone([outer, inner]: [f64; 2]) -> f32 {
+    // 1 − cos, without cancellation.
+    let [outer, inner] = [outer, inner].map(|angle| 2.0 * libm::sin(0.5 * angle) * libm::sin(0.5 * angle));
+    (0.5 * (outer + inner)) as f32
+}
+
 /// The integral of [`Edge::Linear`] over the solid angle of a cone, divided by 2π; its half-angles in radians.
 fn linear_cone([outer, inner]: [f64; 2]) -> f32 {
     if outer == inner {
-        return (1.0 - libm::cos(inner)) as f32;
+        return smooth_cone([outer, inner]);
     }
     (1.0 - (libm::sin(outer) - libm::sin(inner)) / (outer - inner)) as f32
 }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::core::warp;
 use crate::light::picture::{Goniometric, Projection};
-use crate::light::{in_cone, toward};
+use crate::light::{cos_to_axis, in_cone, toward};
 use crate::shading::texture::{SpectralMode, Textures};
 
 /// The direction from a light in its space.
@@ -56,12 +56,11 @@ impl Projection {
             ("d", vec![distance]),
         ];
         let (mut factors, mut laws) = (String::new(), String::new());
-        let direction = toward(from, self.position).map_or(Vec3::ZERO, |(wi, _)| -wi);
-        let cos = self.axis.dot(direction);
+        let cos = cos_to_axis(from, self.position, self.axis);
         if let Some([outer, inner]) = self.cone {
             factors.push_str(" · S");
             laws.push_str(&format!("; {LINEAR_EDGE}"));
-            numbers.push(("cos outer, inner", vec![f64::from(outer), f64::from(inner)]));
+            numbers.push(("cos outer, inner", vec![outer, inner]));
             numbers.push(("S", vec![f64::from(in_cone(Edge::Linear, [outer, inner], cos))]));
         }
         if self.quantity == Projected::Irradiance {
@@ -69,8 +68,8 @@ impl Projection {
         }
         if !factors.is_empty() {
             laws.push_str("; cos = axis · (−wi)");
-            numbers.push(("axis", vector(self.axis)));
-            numbers.push(("cos to the axis", vec![f64::from(cos)]));
+            numbers.push(("axis", self.axis.to_array().to_vec()));
+            numbers.push(("cos to the axis", vec![cos]));
         }
         let texel = of_texel(self.filter);
         vec![
