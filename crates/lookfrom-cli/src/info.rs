@@ -105,7 +105,7 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     line("camera", camera_in_words(session.camera()));
     if let Some(lens) = &session.renderer().view().camera().lens_system {
         let [focal_length, f_number] = [lens.focal_length(), lens.f_number()].map(digits);
-        line("lens", format!("focal length {focal_length}, f/{f_number}"));
+        line("lens", format!("focal length {focal_length}, working f/{f_number}"));
     }
     if !info.contents.variables.is_empty() {
         let entry = |(name, value): &(String, String)| format!("{name} = {value}");

@@ -43,14 +43,14 @@ impl LensSystem {
     }
 }
 
-/// A surface of a lens system: a spherical one that refracts, or the aperture stop.
+/// A surface of a lens system: a spherical or flat one that refracts, or the aperture stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensSurface {
-    /// Radius of curvature, positive where the centre lies toward the film; 0 is the aperture stop, a plane.
+    /// Radius of curvature, positive where the centre lies toward the film; infinite of a flat surface; 0 is the aperture stop, a plane.
     pub curvature_radius: f64,
     /// Distance to the next surface along the axis, of the last one to the film: ≥ 0.
     pub thickness: f64,
-    /// Index of refraction between this surface and the next one: > 0, or 0, which means 1.
+    /// Index of refraction between this surface and the next one, or the film: > 0; of the aperture stop that of the surface before it.
     pub index: f64,
     /// Diameter of the part that light passes: > 0.
     pub diameter: f64,
@@ -61,11 +61,11 @@ impl LensSurface {
     pub fn is_stop(&self) -> bool {
         self.curvature_radius == 0.0
     }
+}
 
-    /// The index of refraction behind it.
-    pub fn index_behind(&self) -> f64 {
-        if self.index == 0.0 { 1.0 } else { self.index }
-    }
+/// The diameter of the aperture stop of a table, in millimetres: the smallest one of several; `None` where there is none.
+pub fn stop_diameter(surfaces: &[LensSurface]) -> Option<f64> {
+    surfaces.iter().filter(|surface| surface.is_stop()).map(|stop| stop.diameter).reduce(f64::min)
 }
 
 /// The shape of an aperture stop. All but the circle have the light of the circle of its diameter.
@@ -78,7 +78,7 @@ pub enum ApertureShape {
     Gaussian,
     /// A square of half the diameter.
     Square,
-    /// A regular pentagon with a corner on top.
+    /// A regular pentagon with a corner at the bottom, as in pbrt.
     Pentagon,
     /// A star of five points.
     Star,

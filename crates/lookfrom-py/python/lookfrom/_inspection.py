@@ -517,8 +517,8 @@ class LensSurface:
     """A surface of a lens system, and the ray there.
 
     vertex: z of its vertex.
-    curvature_radius: Radius of curvature, positive where the centre lies toward the film; null for the
-        aperture stop.
+    curvature_radius: Radius of curvature, positive where the centre lies toward the film; null for planes and
+        the aperture stop.
     aperture_radius: Radius of the part that light passes.
     index_ratio: Index of refraction on the scene's side over that on the film's side; null for the aperture
         stop.
@@ -543,7 +543,7 @@ class LensSystem:
 
     name: The lens file.
     focal_length: Effective focal length.
-    f_number: That of a thin lens which would light the middle of the film as much.
+    f_number: The working f-number: that of a thin lens which would light the middle of the film as much.
     focus_distance: Distance of the plane of focus from the film.
     film: The point of the film.
     direction: The direction from there to the rear surface, of unit length.

@@ -1,5 +1,8 @@
 //! Reader for lens files, as pbrt has them: four numbers for each surface, from the front to the film (radius of curvature, thickness,
 //! index of refraction behind it, diameter), in millimetres, and comments after `#`.
+//!
+//! A plane, whose radius of curvature is written as 0 or `inf`, refracts where the index changes. A plane of the radius 0 where it does not
+//! change is the aperture stop, whose index may be left out (0).
 
 use std::path::Path;
 
@@ -17,12 +20,22 @@ const LONGEST: usize = 1 << 20;
 /// The largest length in millimetres.
 const LARGEST: f64 = 1e9;
 
-/// Reads a lens file, which may be compressed.
+/// Reads a lens file, which may be compressed. A film that is not in air is a notice, since a table that lacks its last row, or is in the
+/// other order, has one.
 ///
 /// # Errors
 /// `Io` if it cannot be read; as [`parse`].
-pub fn read(path: &Path, context: &LoadContext<'_>) -> Result<Vec<LensSurface>> {
-    parse(&packed::read(path, context)?, &Location::file(path))
+pub fn read(path: &Path, context: &mut LoadContext<'_>) -> Result<Vec<LensSurface>> {
+    let file = Location::file(path);
+    let surfaces = parse(&packed::read(path, context)?, &file)?;
+    if let Some(rear) = surfaces.last().filter(|rear| rear.index != 1.0) {
+        let message = format!(
+            "the film is in a medium of the index {}, as the last row says, which has 1 where it is in air",
+            rear.index
+        );
+        context.notice(&file, message);
+    }
+    Ok(surfaces)
 }
 
 /// The surfaces of a lens file.
@@ -46,7 +59,12 @@ pub fn parse(bytes: &[u8], file: &Location) -> Result<Vec<LensSurface>> {
             let message = format!("more than {MOST_SURFACES} surfaces");
             return Err(Error::new(ErrorKind::Limit, &file.at(line, 0), message));
         }
-        let number = word.parse().ok().filter(|number: &f64| number.abs() <= LARGEST);
+        // A plane has an infinite radius.
+        let is_radius = numbers.len() % 4 == 0;
+        let number = word
+            .parse()
+            .ok()
+            .filter(|number: &f64| number.abs() <= LARGEST || is_radius && number.is_infinite());
         let number = number.ok_or_else(|| {
             Error::syntax(
                 &file.at(line, 0),
@@ -63,18 +81,23 @@ pub fn parse(bytes: &[u8], file: &Location) -> Result<Vec<LensSurface>> {
         );
         return Err(Error::syntax(file, message));
     }
-    let surfaces: Vec<LensSurface> = rows.iter().map(|row| surface(row, file)).collect::<Result<_>>()?;
+    let mut surfaces: Vec<LensSurface> = Vec::with_capacity(rows.len());
+    for row in rows {
+        let before = surfaces.last().map_or(1.0, |surface| surface.index);
+        surfaces.push(surface(row, before, file)?);
+    }
     if surfaces.iter().all(LensSurface::is_stop) {
         return Err(Error::invalid(
             file,
-            "no surface refracts: all have a radius of curvature of 0, as a stop has",
+            "no surface refracts: all are planes where the index of refraction does not change, as a stop is",
         ));
     }
     Ok(surfaces)
 }
 
-fn surface(row: &[(u32, f64); 4], file: &Location) -> Result<LensSurface> {
-    let [(_, curvature_radius), (_, thickness), (_, index), (_, diameter)] = *row;
+/// The surface of a row, behind a medium whose index of refraction is `before`.
+fn surface(row: &[(u32, f64); 4], before: f64, file: &Location) -> Result<LensSurface> {
+    let [(_, written_radius), (_, thickness), (_, written_index), (_, diameter)] = *row;
     let bad = |place: usize, what: &str, expected: &str| {
         let (line, number) = row[place];
         Err(Error::invalid(
@@ -85,12 +108,20 @@ fn surface(row: &[(u32, f64); 4], file: &Location) -> Result<LensSurface> {
     if thickness < 0.0 {
         return bad(1, "the thickness", "a number of at least 0");
     }
-    if index < 0.0 {
+    if written_index < 0.0 {
         return bad(2, "the index of refraction", "a number greater than 0, or 0 for that of air");
     }
     if diameter <= 0.0 {
         return bad(3, "the diameter", "a number greater than 0");
     }
+    let index = match (written_radius, written_index) {
+        // A hole changes no medium.
+        (0.0, 0.0) => before,
+        (_, 0.0) => 1.0,
+        (_, index) => index,
+    };
+    let is_flat = written_radius == 0.0 && index != before;
+    let curvature_radius = if is_flat { f64::INFINITY } else { written_radius };
     Ok(LensSurface { curvature_radius, thickness, index, diameter })
 }
 
@@ -110,9 +141,21 @@ mod tests {
             diameter,
         };
         let expected =
-            [surface(50.0, 0.5, 1.5, 25.0), surface(0.0, 1.0, 0.0, 20.0), surface(-50.0, 50.0, 1.0, 25.0)];
+            [surface(50.0, 0.5, 1.5, 25.0), surface(0.0, 1.0, 1.5, 20.0), surface(-50.0, 50.0, 1.0, 25.0)];
         assert_eq!(lens, expected);
-        assert!(lens[1].is_stop() && lens[1].index_behind() == 1.0);
+        assert!(lens[1].is_stop());
+    }
+
+    #[test]
+    fn planes_refract_where_the_index_changes() {
+        let of = |bytes: &[u8]| {
+            let lens = parse(bytes, &Location::default()).expect("a lens");
+            lens.iter().map(|surface| (surface.curvature_radius, surface.index)).collect::<Vec<_>>()
+        };
+        let flat = f64::INFINITY;
+        assert_eq!(of(b"25 5 1.5 20\n0 50 1 20"), [(25.0, 1.5), (flat, 1.0)]);
+        assert_eq!(of(b"0 5 1.5 20\n0 1 0 9\n-25 50 0 20"), [(flat, 1.5), (0.0, 1.5), (-25.0, 1.0)]);
+        assert_eq!(of(b"Infinity 5 1.5 20\n-25 1 1 20\n0 50 1 9"), [(flat, 1.5), (-25.0, 1.0), (0.0, 1.0)]);
     }
 
     #[test]
@@ -125,7 +168,7 @@ mod tests {
             (b"# nothing", "0 numbers"),
             (b"1 2 3", "3 numbers"),
             (b"1 1 1 1\n50 a 1 1", "a.dat:2: `a` is no number"),
-            (b"inf 1 1 1", "`inf` is no number"),
+            (b"50 inf 1 1", "`inf` is no number"),
             (b"nan 1 1 1", "`nan` is no number"),
             (b"1e300 1 1 1", "`1e300` is no number"),
             (b"\xff\xfe\x00", "is no number"),

@@ -17,7 +17,7 @@ impl Reader<'_, '_> {
             return Err(p.refuse("lensfile", "the name of a lens file"));
         }
         p.find("lensfile", &[ParameterType::String])?;
-        let stop = f64::from(p.positive("aperturediameter", 1.0)?);
+        let diameter = f64::from(p.positive("aperturediameter", 1.0)?);
         let focus_distance = f64::from(p.positive("focusdistance", 10.0)?);
         let path = self.resolve(&name);
         let surfaces = match lens::read(&path, self.context).map_err(|error| p.place.blame(error)) {
@@ -28,20 +28,27 @@ impl Reader<'_, '_> {
             }
             read => read?,
         };
-        let widest = surfaces.iter().filter(|surface| surface.is_stop()).map(|surface| surface.diameter);
-        let widest = widest.fold(f64::INFINITY, f64::min);
-        if stop > widest && widest.is_finite() {
-            let message = format!(
-                "\"aperturediameter\" is {stop}, more than that of the lens file: its {widest} is used instead"
-            );
-            self.context.warn(&p.place.location(), message);
+        let mut shape = self.aperture_shape(p)?;
+        let widest = lens::stop_diameter(&surfaces);
+        match widest {
+            Some(widest) if diameter > widest => {
+                let message = format!(
+                    "\"aperturediameter\" is {diameter}, more than that of the lens file: its {widest} is used instead"
+                );
+                self.context.warn(&p.place.location(), message);
+            }
+            None if shape != ApertureShape::Circle => {
+                let message = "\"aperture\" has no effect: the lens file has no aperture stop";
+                self.context.warn(&p.place.location(), message);
+                shape = ApertureShape::Circle;
+            }
+            _ => {}
         }
-        let shape = self.aperture_shape(p)?;
         Ok(Projection::LensSystem(Arc::new(LensSystem {
             // Without its folders, as in our own scenes.
             name: path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             surfaces,
-            stop_diameter: Some(stop),
+            stop_diameter: widest.map(|widest| diameter.min(widest)),
             shape,
             focus_distance,
             film_diagonal: self.film_diagonal,

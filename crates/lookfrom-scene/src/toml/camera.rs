@@ -65,6 +65,7 @@ impl Reader<'_, '_> {
             true => table.maybe("stop", Value::positive),
             false => table.maybe("aperture", Value::positive).map(|radius| 2.0 * radius / millimetre),
         };
+        let stop_diameter = self.stop_diameter(table, &surfaces, stop_diameter)?;
         let system = LensSystem {
             name,
             surfaces,
@@ -77,6 +78,34 @@ impl Reader<'_, '_> {
                 .or("lens_convention", LensConvention::AsPinhole, |value| value.choice(CONVENTIONS)),
         };
         Ok(Camera { projection: Projection::LensSystem(Arc::new(system)), lens: None, ..camera })
+    }
+
+    /// The diameter of the aperture stop, which may be as wide as in the lens file.
+    fn stop_diameter(
+        &mut self,
+        table: &Table<'_>,
+        surfaces: &[LensSurface],
+        diameter: Option<f64>,
+    ) -> Result<Option<f64>> {
+        let Some(value) = ["stop", "aperture", "aperture_shape"].iter().find_map(|key| table.find(key))
+        else {
+            return Ok(None);
+        };
+        let Some(widest) = lens::stop_diameter(surfaces) else {
+            let message = format!("`{}` has no meaning: the lens file has no aperture stop", value.key());
+            return Err(value.error(message).hint(
+                "a stop is a row with a radius of curvature and an index of 0, as in `0 4.5 0 17.1`: radius, thickness, index, diameter",
+            ));
+        };
+        // Not for what a radius in units of the world is rounded to.
+        if let Some(diameter) = diameter.filter(|&diameter| diameter > widest * (1.0 + 1e-9)) {
+            let message = format!(
+                "the aperture stop of the lens file is {widest} mm wide, which is used instead of the {diameter} mm of `{}`",
+                value.key()
+            );
+            self.context.warn(&value.at(), message);
+        }
+        Ok(diameter.map(|diameter| diameter.min(widest)))
     }
 
     /// The name of a lens file, and its surfaces.

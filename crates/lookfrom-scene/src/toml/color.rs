@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
             if luminance(&self.scene.curves[curve.index()]) < DARKEST {
                 return Err(value
                     .error(format!("`{}` emits no visible light", value.key()))
-                    .hint("give it values above 0 between 400 and 700 nm"));
+                    .hint("give it values above 0 at whole nanometres between 400 and 700"));
             }
             return Ok((Color::Curve(curve), table.or("scale", 1.0, primary)));
         }

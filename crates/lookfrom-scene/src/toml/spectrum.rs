@@ -65,7 +65,13 @@ impl Reader<'_, '_> {
 
     /// An index of refraction: a number, a curve, or the name of a glass.
     pub(super) fn ior(&mut self, value: Value<'_>) -> Result<Ior> {
+        let expected = "a number greater than 0, the name of a glass such as \"BK7\", or a curve";
         if value.is_table() {
+            let table = value.table("a colour by wavelength")?;
+            if !KEYS.iter().any(|key| table.has(key)) {
+                let hint = "of Cauchy's or Sellmeier's formula give values: `{ curve = [[400, 1.531], [550, 1.519], [700, 1.513]] }`";
+                return Err(value.wrong(expected).hint(hint));
+            }
             let id = self.curve(value, &[])?;
             return self.optical(value, id).map(Ior::Curve);
         }
@@ -75,7 +81,6 @@ impl Reader<'_, '_> {
             let name = value.choice(&glasses)?;
             return Ok(Ior::Curve(self.known_curve(name)));
         }
-        let expected = "a number greater than 0, the name of a glass such as \"BK7\", or a curve";
         value.single_where(expected, |eta| eta > 0.0).map(Ior::Value)
     }
 

@@ -131,6 +131,13 @@ fn realistic_cameras_have_lens_systems() {
     );
     let (_, warnings) = realistic("\"float aperturediameter\" 13", lens).expect("one");
     assert_eq!(warnings, 1, "it is wider than its lens file allows");
+    let without_stop = "30 4 1.5 20\n-70 0 1 20\n";
+    let (system, warnings) = realistic("\"float aperturediameter\" 3", without_stop).expect("one");
+    assert_eq!((system.stop_diameter, warnings), (None, 0), "most scenes say a diameter");
+    let (system, warnings) = realistic("\"string aperture\" \"star\"", without_stop).expect("one");
+    assert_eq!((system.shape, warnings), (ApertureShape::Circle, 1), "nothing has a shape");
+    let (system, warnings) = realistic("", "30 4 1.5 20\n").expect("one");
+    assert_eq!((system.surfaces.len(), warnings), (1, 1), "the film is in glass");
 
     let of =
         |parameters: &str, lens: &str| realistic(parameters, lens).expect_err("no lens system").to_string();

@@ -19,6 +19,7 @@ fn files(texts: &[(&str, &str)]) -> Memory {
     }
     files.0.insert("wide.png".into(), image::encode_png(2, 1, &[128; 6]).expect("a picture"));
     files.0.insert("dot.png".into(), image::encode_png(1, 1, &[255, 0, 0]).expect("a picture"));
+    files.0.insert("simple.dat".into(), b"50 5 1.5 20\n-50 0 1 20".to_vec());
     files
 }
 
@@ -410,4 +411,26 @@ fn what_stands_still_by_expressions_keeps_its_own_motion() {
     ));
     assert!(scene.camera.expect("a camera").motion.is_some());
     assert_eq!(scene.instances.iter().filter(|instance| instance.motion.is_some()).count(), 2);
+}
+
+#[test]
+fn stops_are_at_most_as_wide_as_in_the_lens_file() {
+    let of = |keys: &str| {
+        let text = format!("[camera]\nlookfrom = [0, 0, 5]\nlookat = [0, 0, 0]\nlens = \"lens.dat\"\n{keys}");
+        let files = files(&[("a.toml", &text), ("lens.dat", "50 2 1.5 20\n0 3 0 17.1\n-50 0 1 20")]);
+        let mut context = LoadContext::new(&files);
+        let scene = load::scene(Path::new("a.toml"), &mut context).expect("a good scene");
+        let camera = scene.camera.expect("a camera");
+        let Projection::LensSystem(system) = &camera.projection else { panic!("no lens system") };
+        (system.stop_diameter, context.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+    };
+    assert_eq!(of(""), (None, vec![]));
+    assert_eq!(of("stop = 4"), (Some(4.0), vec![]));
+    assert_eq!(of("aperture = 0.00855"), (Some(17.1), vec![]));
+    let (diameter, warnings) = of("aperture = 0.01");
+    assert_eq!((diameter, warnings.len()), (Some(17.1), 1));
+    assert!(
+        warnings[0].contains("a.toml:5:12: the aperture stop of the lens file is 17.1 mm wide"),
+        "{warnings:?}"
+    );
 }

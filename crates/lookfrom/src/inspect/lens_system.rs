@@ -18,7 +18,7 @@ pub(super) fn report(renderer: &Renderer, id: SampleId, weight: f32) -> Option<L
         let crossing = crossings.get(place);
         LensSurfaceReport {
             vertex: section.vertex,
-            curvature_radius: section.index_ratio.map(|_| 1.0 / section.curvature),
+            curvature_radius: (section.curvature != 0.0).then(|| 1.0 / section.curvature),
             aperture_radius: section.radius,
             index_ratio: section.index_ratio,
             point: crossing.and_then(|crossing| finite(crossing.point)),

@@ -97,7 +97,7 @@ pub struct Crossing {
 pub struct Section {
     /// z of its vertex.
     pub vertex: f64,
-    /// 1 / radius of curvature, positive where the centre lies toward the film; 0 for the stop and planes.
+    /// 1 / radius of curvature, positive where the centre lies toward the film; 0 for planes and the stop.
     pub curvature: f64,
     /// Radius of its aperture.
     pub radius: f64,
@@ -133,7 +133,7 @@ impl LensSystem {
             if !surfaces.is_empty() {
                 vertex += surface.thickness * written.millimetre;
             }
-            let before = place.checked_sub(1).map_or(1.0, |place| written.surfaces[place].index_behind());
+            let before = place.checked_sub(1).map_or(1.0, |place| written.surfaces[place].index);
             let own = surface.diameter;
             let diameter =
                 if surface.is_stop() { own.min(written.stop_diameter.unwrap_or(own)) } else { own };
@@ -145,7 +145,7 @@ impl LensSystem {
                 } else {
                     1.0 / (surface.curvature_radius * written.millimetre)
                 },
-                ratio: (!surface.is_stop()).then(|| surface.index_behind() / before),
+                ratio: (!surface.is_stop()).then(|| surface.index / before),
                 radius_squared: radius * radius,
             });
         }
@@ -287,10 +287,10 @@ impl LensSystem {
         self.thick.focal_length
     }
 
-    /// The f-number: that of a thin lens that would light the middle of the film as much.
+    /// The working f-number, at the distance that is in focus: that of a thin lens that would light the middle of the film as much.
     pub fn f_number(&self) -> f64 {
-        // E = π L sin² of the cone's half angle, and sin = 1 / 2N.
-        0.5 * (std::f64::consts::PI / self.irradiance).sqrt()
+        // E = π L sin² of the cone's half angle, and n sin = 1 / 2N.
+        0.5 * (std::f64::consts::PI / self.irradiance).sqrt() / self.thick.film_index
     }
 
     /// Half the diagonal of the film, in units of the world.

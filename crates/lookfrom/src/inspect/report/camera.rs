@@ -46,7 +46,7 @@ pub struct LensSystemReport {
     pub name: String,
     /// Effective focal length.
     pub focal_length: f64,
-    /// That of a thin lens which would light the middle of the film as much.
+    /// The working f-number: that of a thin lens which would light the middle of the film as much.
     pub f_number: f64,
     /// Distance of the plane of focus from the film.
     pub focus_distance: f64,
@@ -68,7 +68,7 @@ pub struct LensSystemReport {
 pub struct LensSurfaceReport {
     /// z of its vertex.
     pub vertex: f64,
-    /// Radius of curvature, positive where the centre lies toward the film; null for the aperture stop.
+    /// Radius of curvature, positive where the centre lies toward the film; null for planes and the aperture stop.
     pub curvature_radius: Option<f64>,
     /// Radius of the part that light passes.
     pub aperture_radius: f64,

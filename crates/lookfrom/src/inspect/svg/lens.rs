@@ -67,7 +67,7 @@ impl<'a> LensPanel<'a> {
         let _ = writeln!(
             out,
             "</g>\n<rect width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"#b0b0b0\"/>\n\
-             <text x=\"8\" y=\"18\" fill=\"#555555\">{}: focal length {:.4}, f/{:.2}{}</text>\n</g>",
+             <text x=\"8\" y=\"18\" fill=\"#555555\">{}: focal length {:.4}, working f/{:.2}{}</text>\n</g>",
             self.size.x,
             self.size.y,
             SvgView::Lens.title(),

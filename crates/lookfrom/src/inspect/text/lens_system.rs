@@ -9,14 +9,15 @@ pub(super) fn write_lens_system(f: &mut String, report: &LensSystemReport) -> fm
     writeln!(f, "Through the lens system {:?}, from the film to the scene", report.name)?;
     let [focal_length, f_number, focus] =
         [report.focal_length, report.f_number, report.focus_distance].map(short);
-    writeln!(f, "  focal length {focal_length}, f/{f_number}, focused at {focus} from the film")?;
+    writeln!(f, "  focal length {focal_length}, working f/{f_number}, focused at {focus} from the film")?;
     writeln!(f, "  in lens space: x to the viewer's right, y up, z to the scene, the film in z = 0")?;
     writeln!(f, "  film       point {}   direction {}", vector(&report.film), vector(&report.direction))?;
     let mut is_reached = true;
     for (place, surface) in report.surfaces.iter().enumerate() {
         let kind = match (surface.curvature_radius, surface.index_ratio) {
             (Some(radius), Some(ratio)) => format!("radius {}, index ratio {}", short(radius), short(ratio)),
-            _ => "the aperture stop".to_owned(),
+            (None, Some(ratio)) => format!("flat, index ratio {}", short(ratio)),
+            (_, None) => "the aperture stop".to_owned(),
         };
         let aperture = short(surface.aperture_radius);
         writeln!(

@@ -85,19 +85,60 @@ fn focal_lengths_are_those_of_the_lens_makers_equation() {
             "{} {expected}",
             system.focal_length()
         );
-        // Rays near the axis from the middle of the film meet on the axis in the plane of focus.
-        let (ray, _) = system.toward([0.0; 2], [1e-4 * system.rear_radius, 0.0]);
-        let ray: LensRay<f64> = system.crossed(ray);
-        let at_focus = ray.p.x + ray.d.x / ray.d.z * (lens.focus_distance - ray.p.z);
-        assert!(at_focus.abs() < 1e-5 * ray.p.x.abs(), "{at_focus} {}", ray.p.x);
-        // And those from elsewhere where a pinhole would show the plane.
-        let film = 1e-4 * system.film_radius;
+        assert_focused(&system, lens.focus_distance);
+    }
+}
+
+/// Rays near the axis from the middle of the film meet on the axis in the plane of focus, and those from elsewhere where a pinhole would
+/// show the plane.
+fn assert_focused(system: &LensSystem, focus_distance: f64) {
+    let at_focus = |film: f64| {
         let (ray, _) = system.toward([film, 0.0], [1e-4 * system.rear_radius, 0.0]);
         let ray: LensRay<f64> = system.crossed(ray);
-        let at_focus = ray.p.x + ray.d.x / ray.d.z * (lens.focus_distance - ray.p.z);
-        let pinhole = -film * lens.focus_distance / system.pinhole_distance();
-        assert!((at_focus / pinhole - 1.0).abs() < 1e-5, "{at_focus} {pinhole}");
+        (ray.p.x + ray.d.x / ray.d.z * (focus_distance - ray.p.z), ray.p.x)
+    };
+    let (middle, on_front) = at_focus(0.0);
+    assert!(middle.abs() < 1e-5 * on_front.abs(), "{middle} {on_front}");
+    let film = 1e-4 * system.film_radius;
+    let (elsewhere, _) = at_focus(film);
+    let pinhole = -film * focus_distance / system.pinhole_distance();
+    assert!((elsewhere / pinhole - 1.0).abs() < 1e-5, "{elsewhere} {pinhole}");
+}
+
+#[test]
+fn flat_surfaces_refract() {
+    for (table, focal_length) in [
+        ("25 5 1.5 20\n0 0 1 20", 50.0),
+        ("inf 5 1.5 20\n-25 0 1 20", 50.0),
+        // A window and a stop change nothing.
+        ("0 5 1.5 20\n0 5 1 20\n25 5 1.5 20\n0 1 1 20\n0 0 0 10", 50.0),
+        // A stop inside of the glass: 1/f = 0.5 (2 / 40 − 0.5 · 6 / (1.5 · 40²)).
+        ("40 2 1.5 20\n0 4 0 10\n-40 0 1 20", 1.0 / (0.5 * (0.05 - 0.00125))),
+    ] {
+        let lens = written(table);
+        let system = system(&lens);
+        let found = 1e3 * system.focal_length();
+        assert!((found / focal_length - 1.0).abs() < 1e-9, "{table:?} {found}");
+        assert_focused(&system, lens.focus_distance);
     }
+}
+
+#[test]
+fn films_may_be_in_a_medium() {
+    // The reduced eye: one surface, and a retina in water.
+    let eye = written("5.55 0 1.333 6");
+    let system = system(&eye);
+    assert!((1e3 * system.focal_length() - 5.55 / 0.333).abs() < 1e-9, "{}", system.focal_length());
+    assert_focused(&system, eye.focus_distance);
+    // n sin θ' of the film's side is that of a cone in air, in the limit of small pupils.
+    let small =
+        Written { surfaces: parse(b"5.55 0 1.333 0.01", &Location::default()).expect("an eye"), ..eye };
+    let [f_number, expected] = [self::system(&small).f_number(), system.focal_length() / 1e-5];
+    assert!((f_number / expected - 1.0).abs() < 0.02, "{f_number} {expected}");
+    let near = Written { focus_distance: 0.09, ..small };
+    assert_focused(&self::system(&near), near.focus_distance);
+    let too_near = Written { focus_distance: 0.07, ..near };
+    assert!(LensSystem::new(&too_near, &Location::default()).is_err());
 }
 
 /// The ray behind a system by centres of spheres and angles of refraction; `None` where it is blocked.

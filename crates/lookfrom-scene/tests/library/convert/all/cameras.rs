@@ -17,7 +17,12 @@ pub(super) fn cameras() -> Vec<(String, Scene)> {
     let system = |shape, convention| {
         Projection::LensSystem(Arc::new(LensSystem {
             name: "lens".to_owned(),
-            surfaces: vec![surface(35.98738, 1.54), surface(0.0, 0.0), surface(-24.7, 1.0)],
+            surfaces: vec![
+                surface(35.98738, 1.54),
+                surface(0.0, 1.54),
+                surface(f64::INFINITY, 1.6),
+                surface(-24.7, 1.0),
+            ],
             stop_diameter: Some(5.7),
             shape,
             focus_distance: 1.0 / 3.0,
