@@ -91,6 +91,11 @@ fn write(arguments: &FarmArguments, matches: &ArgMatches) -> Result<(), Failure>
 fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> {
     let scene = &arguments.scene;
     let (loaded, inputs) = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?;
+    if !arguments.overrides.cryptomatte.is_empty() || !loaded.image.cryptomattes.is_empty() {
+        say(
+            "warning: what is merged has no Cryptomattes: render these on one machine, which needs few samples",
+        );
+    }
     let series = arguments.series();
     let of_all = options_of_all(arguments, &series, &loaded)?;
     check_parts(loaded, &of_all, arguments.parts)?;

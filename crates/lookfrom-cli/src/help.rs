@@ -85,7 +85,7 @@ const SHORT: &[&str] = &[
 const BORROWERS: &[(&str, &[&str])] = &[
     ("inspect", &["layers", "light_path", "cryptomatte", "denoise", "exposure", "tonemap", "crop"]),
     ("view", &["layers", "light_path", "cryptomatte"]),
-    ("bench", &["denoise", "exposure", "tonemap"]),
+    ("bench", &["cryptomatte", "denoise", "exposure", "tonemap"]),
     ("farm", &[]),
     ("convert", &["turn"]),
 ];

@@ -162,6 +162,12 @@ fn cryptomattes_have_the_layout_that_compositors_read() {
     assert_eq!(of_mattes("film.exr"), found);
     assert_eq!(of_mattes("developed.exr"), [""; 0]);
 
+    // What a farm merges has none, and its later parts trace none.
+    let told = stage.done("farm slurm scene.toml --parts 2 --cryptomatte object -o job").stderr;
+    assert!(told.contains("what is merged has no Cryptomattes"), "{told}");
+    stage.done(&format!("render scene.toml -q -o part.exr --film --part 2/2 {mattes}"));
+    assert_eq!(of_mattes("part.exr"), [""; 0]);
+
     // A film that goes on has the mattes of all of its samples.
     stage.done("render scene.toml -q -o half.exr --film --cryptomatte object --samples 2");
     stage.done("resume half.exr -q --samples 4");

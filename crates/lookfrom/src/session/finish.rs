@@ -87,7 +87,8 @@ impl Session {
         let started = Stopwatch::start();
         let mut developed = self.develop(&rendered.film, &self.development());
         let has_layers = self.has_room_for_layers();
-        if has_layers {
+        // Those of later samples alone are nobody's picture.
+        if has_layers && rendered.film.ledger().is_from_start(rendered.film.area()) {
             developed.cryptomattes = self.renderer.cryptomattes(rendered.samples);
         }
         Finished { rendered, developed, has_layers, developing: started.elapsed() }
