@@ -144,6 +144,13 @@ pub struct Instance {
     pub motion: Option<Arc<Motion>>,
 }
 
+impl Instance {
+    /// One without a name and motion, with the materials of the object.
+    pub fn new(at: Location, object: ObjectId, world_from_object: DMat4) -> Self {
+        Self { name: None, at, object, world_from_object, material: None, motion: None }
+    }
+}
+
 /// An axis-aligned box; empty when `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {

@@ -201,7 +201,7 @@ fn move_shapes(scene: &mut Scene, poses: &[Pose]) {
         let shape = Shape { world_from_object: DMat4::IDENTITY, ..shape };
         let name = shape.name.clone().unwrap_or_else(|| format!("moving shape {}", object.0 + 1));
         scene.objects.push(Object { name, at: at.clone(), shapes: vec![shape] });
-        scene.instances.push(Instance { name: None, at, object, world_from_object, material: None, motion });
+        scene.instances.push(Instance { motion, ..Instance::new(at, object, world_from_object) });
     }
     scene.shapes = standing;
 }

@@ -330,7 +330,7 @@ export interface InputFile {
 export interface LensSurface {
     /** Radius of the part that light passes. */
     aperture_radius: number;
-    /** Radius of curvature, positive where the centre lies toward the film; null for the aperture stop. */
+    /** Radius of curvature, positive where the centre lies toward the film; null for planes and the aperture stop. */
     curvature_radius: number | null;
     /** The direction behind it, of unit length; null where there is none. */
     direction: Vector | null;
@@ -348,7 +348,7 @@ export interface LensSurface {
 export interface LensSystem {
     /** The direction from there to the rear surface, of unit length. */
     direction: Vector;
-    /** That of a thin lens which would light the middle of the film as much. */
+    /** The working f-number: that of a thin lens which would light the middle of the film as much. */
     f_number: number;
     /** The point of the film. */
     film: Vector;

@@ -379,14 +379,7 @@ impl Builder<'_, '_, '_> {
     ) {
         let is_empty = self.model.objects[object.index()].shapes.is_empty();
         if !is_empty && is_invertible(&world_from_object) {
-            self.model.instances.push(Instance {
-                name,
-                at,
-                object,
-                world_from_object,
-                material: None,
-                motion: None,
-            });
+            self.model.instances.push(Instance { name, ..Instance::new(at, object, world_from_object) });
         }
     }
 

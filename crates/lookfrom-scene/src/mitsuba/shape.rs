@@ -107,14 +107,7 @@ impl Reader<'_, '_> {
         let object = self.group(&group)?;
         let at = plugin.at.clone();
         let name = plugin.id.clone().map(Arc::new);
-        self.scene.instances.push(Instance {
-            name,
-            at,
-            object,
-            world_from_object,
-            material: None,
-            motion: None,
-        });
+        self.scene.instances.push(Instance { name, ..Instance::new(at, object, world_from_object) });
         Ok(())
     }
 

@@ -427,26 +427,12 @@ impl Reader<'_, '_> {
             let outer = motion.clone().unwrap_or_else(|| Motion::standing(start));
             let motion = Some(Arc::new(outer.of(inner)));
             let world_from_object = motion.as_ref().map_or(start, |motion| motion.at_opening());
-            let instance = Instance {
-                name: None,
-                at: at.clone(),
-                object: *part,
-                world_from_object,
-                material: None,
-                motion,
-            };
+            let instance = Instance { motion, ..Instance::new(at.clone(), *part, world_from_object) };
             self.scene.instances.push(instance);
         }
         let motion = motion.map(Arc::new);
         let world_from_object = motion.as_ref().map_or(start, |motion| motion.at_opening());
-        self.scene.instances.push(Instance {
-            name: None,
-            at,
-            object,
-            world_from_object,
-            material: None,
-            motion,
-        });
+        self.scene.instances.push(Instance { motion, ..Instance::new(at, object, world_from_object) });
     }
 
     /// The opening and the closing of the shutter as fractions of the transform times.

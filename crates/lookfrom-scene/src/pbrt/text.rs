@@ -92,6 +92,11 @@ impl Place {
         if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
             return error;
         }
+        self.locate(error)
+    }
+
+    /// Relocates to here the error of a file that what is written here is the reason of.
+    pub(super) fn locate(&self, error: Error) -> Error {
         let message = format!("{}: {}", error.at, error.message);
         Error { hint: error.hint, ..self.error(error.kind, message) }
     }

@@ -56,6 +56,11 @@ impl<'a> Value<'a> {
         if error.at.line > 0 || !matches!(error.kind, ErrorKind::Io | ErrorKind::Unsupported) {
             return error;
         }
+        self.locate(error)
+    }
+
+    /// Assigns to this value an error of a file that this value is the reason of.
+    pub(super) fn locate(self, error: Error) -> Error {
         Error { message: format!("{}: {}", error.at, error.message), at: self.at(), ..error }
     }
 

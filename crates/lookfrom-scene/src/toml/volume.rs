@@ -14,7 +14,9 @@ use super::value::Value;
 use crate::error::{Location, Result};
 use crate::grid::{Grid, Placed};
 use crate::medium::{Density, Temperature};
-use crate::{npy, vdb};
+use crate::npy;
+use crate::vdb::VdbFile;
+use crate::volume::GridClass;
 
 /// The keys of numbers that are an array of NumPy in a box.
 pub(super) const ARRAY: &[&str] = &["npy", "min", "max"];
@@ -131,7 +133,13 @@ impl Reader<'_, '_> {
         table.allow(&[FILE, more]);
         let path = self.resolve(file, "the name of a NanoVDB or OpenVDB file")?;
         let name = table.or("grid", value.key(), |value| value.text("the name of a grid"));
-        let volume = vdb::read(&path, name, self.context).map_err(|error| file.blame(error))?;
+        let bytes = self.context.read(&path).map_err(|error| file.blame(error))?;
+        let at = Location::file(&path);
+        let content = VdbFile::new(&bytes, &at).map_err(|error| file.blame(error))?;
+        let volume = content.volume(name, GridClass::Fog, self.context).map_err(|error| file.blame(error))?;
+        // The name of the grid is written, or else that of the file with other grids.
+        let named = table.find("grid").unwrap_or(file);
+        let volume = volume.ok_or_else(|| named.locate(content.without(name)))?;
         Ok(Volume {
             bounds: volume.bounds.map(IVec3::as_vec3),
             world_from_medium: volume.world_from_index,

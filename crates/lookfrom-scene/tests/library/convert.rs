@@ -167,14 +167,7 @@ fn what_is_not_used_is_not_written() {
     scene.materials.push(Material::new("unused", Location::default(), kind));
     let object = |name: &str, shapes| Object { name: name.to_owned(), at: Location::default(), shapes };
     scene.objects = vec![object("empty", Vec::new()), object("unused", scene.shapes.clone())];
-    let instance = |object| Instance {
-        name: None,
-        at: Location::default(),
-        object: ObjectId(object),
-        world_from_object: DMat4::IDENTITY,
-        material: None,
-        motion: None,
-    };
+    let instance = |object| Instance::new(Location::default(), ObjectId(object), DMat4::IDENTITY);
     scene.instances = vec![instance(0)];
     let text = written(&scene).expect("a document").text;
     assert!(!text.contains("unused") && !text.contains("empty") && !text.contains("instance"), "{text}");

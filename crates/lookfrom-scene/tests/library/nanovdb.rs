@@ -278,7 +278,8 @@ fn media_of_pbrt_are_read() {
     let error = of(&[cold, hot.clone()]).0.expect_err("a sheared temperature");
     assert!(error.message.contains("a grid whose axes are those of the densities"), "{error}");
     let error = of(&[hot]).0.expect_err("no density");
-    assert_eq!(error.message, "no grid is called \"density\"; found \"temperature\"");
+    assert_eq!(error.message, "dir/a.nvdb: no grid is called \"density\"; found \"temperature\"");
+    assert!(error.at.to_string().starts_with("dir/a.pbrt:1:"), "{error}");
 
     let files = Memory([(PathBuf::from("dir/a.pbrt"), text.as_bytes().to_vec())].into());
     let error = load::scene(Path::new("dir/a.pbrt"), &mut LoadContext::new(&files)).expect_err("no file");
@@ -346,6 +347,11 @@ fn densities_of_emission_have_a_place_of_their_own() {
             assert!(away < 1e-5, "{density} {emission}: {corners:?}");
         }
     }
+    let error = of(grid, "{ file = \"a.nvdb\", grid = \"flame\" }").expect_err("no such grid");
+    assert!(error.at.to_string().starts_with("a.toml:6:"), "{error}");
+    let message = "a.nvdb: no grid is called \"flame\"; found \"density\", \"flames\", \"turned\"";
+    assert_eq!(error.message, message);
+    assert!(error.to_string().contains("did you mean \"flames\"?"), "{error}");
     let error = of(grid, "{ file = \"a.nvdb\", grid = \"turned\" }").expect_err("turned");
     assert_eq!((error.at.line, &*error.message), (6, "its axes are not those of `density`"));
 }

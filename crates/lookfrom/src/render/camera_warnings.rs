@@ -119,11 +119,35 @@ fn sees_one_of(renderer: &Renderer, places: &[DVec3]) -> bool {
     let is_in_picture =
         |image: &[f64; 2]| (0..2).all(|axis| (0.0..f64::from(camera.size[axis])).contains(&image[axis]));
     let mut hits = Vec::new();
-    let images = places.iter().filter_map(|place| camera.image_of(view_from_world.transform_point3(*place)));
+    let images =
+        places.iter().filter_map(|place| image_of(renderer, view_from_world.transform_point3(*place)));
     images.filter(is_in_picture).any(|image| {
         first_hit(renderer, image, &mut hits, |surface| is_passed_by_camera_rays(renderer.world(), surface))
             .is_some()
     })
+}
+
+/// The point of the image at which a point of view space is seen, also through a lens system that distorts.
+fn image_of(renderer: &Renderer, point: DVec3) -> Option<[f64; 2]> {
+    /// Distortion is far smaller than the picture: each step leaves a part of the way.
+    const STEPS: u32 = 8;
+    let camera = renderer.view().camera();
+    let through_pinhole = camera.image_of(point)?;
+    if camera.lens_system.is_none() {
+        return Some(through_pinhole);
+    }
+    let mut image = through_pinhole;
+    let view_from_world = camera.world_from_view().inverse();
+    for _ in 0..STEPS {
+        // Where the ray is at the depth of the point.
+        let ray = camera.ray(image, [0.5; 2]);
+        let start = renderer.ray_start + ray.a_from_eye + renderer.world.origin();
+        let (start, way) =
+            (view_from_world.transform_point3(start), view_from_world.transform_vector3(ray.direction));
+        let [x, y] = camera.image_of(start + way * ((point.z - start.z) / way.z))?;
+        image = [image[0] + through_pinhole[0] - x, image[1] + through_pinhole[1] - y];
+    }
+    Some(image)
 }
 
 fn is_passed_by_camera_rays(world: &World, surface: &SurfaceInteraction) -> bool {

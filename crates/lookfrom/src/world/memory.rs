@@ -95,14 +95,7 @@ mod tests {
         let memory = |shape: &Shape, count: usize| {
             let object = Object { name: String::new(), at: Location::default(), shapes: vec![shape.clone()] };
             let (at, world_from_object) = (Location::default(), DMat4::IDENTITY);
-            let instance = Instance {
-                name: None,
-                at,
-                object: ObjectId(0),
-                world_from_object,
-                material: None,
-                motion: None,
-            };
+            let instance = Instance::new(at, ObjectId(0), world_from_object);
             let instances = vec![instance; count];
             World::memory(&Scene { objects: vec![object], instances, ..Scene::default() })
         };
@@ -114,14 +107,7 @@ mod tests {
     fn a_million_instances_take_600_megabytes() {
         let at = Location::default();
         let object = Object { name: String::new(), at: at.clone(), shapes: Vec::new() };
-        let instance = Instance {
-            name: None,
-            at,
-            object: ObjectId(0),
-            world_from_object: DMat4::IDENTITY,
-            material: None,
-            motion: None,
-        };
+        let instance = Instance::new(at, ObjectId(0), DMat4::IDENTITY);
         let scene = Scene { objects: vec![object], instances: vec![instance; 1000], ..Scene::default() };
         assert_eq!(scene.bytes() + World::memory(&scene), 600 * 1000);
         // Of them after compilation, with the kernel's 176 and its tree's 100:

@@ -247,14 +247,7 @@ fn brushed(mesh: &Mesh, place: DMat4, as_instance: bool, reverse: bool) -> Scene
     shape.reverse_orientation = reverse;
     if as_instance {
         scene.objects.push(Object { name: String::new(), at: nowhere(), shapes: vec![shape] });
-        scene.instances.push(Instance {
-            name: None,
-            at: nowhere(),
-            object: ObjectId(0),
-            material: None,
-            world_from_object: place,
-            motion: None,
-        });
+        scene.instances.push(Instance::new(nowhere(), ObjectId(0), place));
     } else {
         shape.world_from_object = place;
         scene.shapes.push(shape);
@@ -348,14 +341,7 @@ fn further_coordinates_and_opacities_come_with_the_surface() {
         let place = DMat4::from_translation(DVec3::Y);
         if as_instance {
             scene.objects.push(Object { name: String::new(), at: nowhere(), shapes: vec![shape] });
-            scene.instances.push(Instance {
-                name: None,
-                at: nowhere(),
-                object: ObjectId(0),
-                material: None,
-                world_from_object: place,
-                motion: None,
-            });
+            scene.instances.push(Instance::new(nowhere(), ObjectId(0), place));
             scene.shapes.push(first);
         } else {
             shape.world_from_object = place;

@@ -560,14 +560,7 @@ fn ids_without_a_target_are_refused_where_a_scene_is_compiled_and_take_no_place(
     assert!(wrong.message.contains("there is no material 77"), "{wrong}");
 
     scene.shape(Geometry::Mesh(MeshId(77)), none);
-    scene.instances.push(Instance {
-        name: None,
-        object: ObjectId(77),
-        material: None,
-        world_from_object: DMat4::IDENTITY,
-        motion: None,
-        at: Location::default(),
-    });
+    scene.instances.push(Instance::new(Location::default(), ObjectId(77), DMat4::IDENTITY));
     assert_eq!(scene.bounds(), unpainted.bounds());
     let triangle =
         Mesh { positions: vec![Vec3::ZERO, Vec3::X], triangles: vec![[0, 1, 2]], ..Mesh::default() };

@@ -3,8 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
 use lookfrom::render::Renderer;
-use lookfrom_scene::{LoadContext, Memory, image, load};
+use lookfrom_scene::camera::{Camera, View};
+use lookfrom_scene::shape::{Geometry, Shape, Sphere};
+use lookfrom_scene::{LoadContext, Location, Memory, image, load};
+
+use crate::support::own_scene;
 
 /// The warnings of reading and compiling the first of some files.
 fn warnings_of(files: &[(&str, String)]) -> Vec<String> {
@@ -94,12 +99,8 @@ fn all_parts_of_a_model_are_one_body() {
     let scene = load::scene(Path::new("a.obj"), &mut context).unwrap();
     let warnings = |lookfrom: [f64; 3]| {
         let mut scene = scene.clone();
-        let view = lookfrom_scene::camera::View::Look {
-            lookfrom: lookfrom.into(),
-            lookat: glam::DVec3::new(0.0, 0.1, -3.0),
-            up: glam::DVec3::Y,
-        };
-        scene.camera = Some(lookfrom_scene::camera::Camera { view, ..Default::default() });
+        let view = View::Look { lookfrom: lookfrom.into(), lookat: DVec3::new(0.0, 0.1, -3.0), up: DVec3::Y };
+        scene.camera = Some(Camera { view, ..Default::default() });
         // The lamp that the studio hangs up at the eye is none of a room.
         lookfrom_scene::studio::add_studio_and_camera(&mut scene, None);
         let mut warnings = Vec::new();
@@ -222,4 +223,25 @@ fn absorption_without_an_inside_is_told_of() {
     none(&material(&format!("{thin}solid = true")));
     one(&material("absorption = 2"), &["`absorption` has no effect", "`transmission`"]);
     none(&material("absorption = 2\ntransmission = 0.5\ndiffuse = 0"));
+}
+
+#[test]
+fn small_things_are_seen_through_a_lens_that_distorts() {
+    let told = |x: f64| {
+        let mut scene = own_scene("../docs/guide/scenes/camera-lens-system.toml");
+        let view = View::Look { lookfrom: DVec3::ZERO, lookat: DVec3::NEG_Z, up: DVec3::Y };
+        scene.camera = scene.camera.map(|camera| Camera { view, ..camera });
+        let ball = Geometry::Sphere(Sphere { center: DVec3::new(x, 0.2, -30.0), radius: 1e-2 });
+        scene.shapes = vec![Shape::new(Location::default(), ball, scene.shapes[0].material)];
+        (scene.instances, scene.objects) = (Vec::new(), Vec::new());
+        (scene.image.width, scene.image.height) = (201, 201);
+        let mut warnings = Vec::new();
+        Renderer::of_scene(scene, &mut warnings).unwrap();
+        warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    // At the middle of the picture, near its edge, and beyond.
+    none(&told(0.01));
+    none(&told(7.6));
+    none(&told(-7.6));
+    one(&told(12.0), &["sees nothing"]);
 }

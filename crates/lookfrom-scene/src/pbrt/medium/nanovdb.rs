@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
         let file = VdbFile::new(&bytes, &at).map_err(|error| p.place.blame(error))?;
         let density =
             file.volume(name, GridClass::Fog, self.context).map_err(|error| p.place.blame(error))?;
-        let density = density.ok_or_else(|| file.without(name))?;
+        let density = density.ok_or_else(|| p.place.locate(file.without(name)))?;
         let mut bounds = density.bounds.map(IVec3::as_vec3);
         let mut temperature = None;
         if let Some((hot, [low, high])) = self.temperatures(p, &file, &density)? {
