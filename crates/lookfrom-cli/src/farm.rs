@@ -17,7 +17,7 @@ use clap::ArgMatches;
 use lookfrom::session::{Exposure, Options, Series, check_parts};
 use lookfrom_scene::plural::counted;
 use lookfrom_scene::scene::SourceFormat;
-use lookfrom_scene::{Disk, Inputs, Scene};
+use lookfrom_scene::{Disk, Inputs, Location, Scene, Warning};
 
 use crate::args::{Common, FarmArguments, Scheduler};
 use crate::exit::{self, DONE, Failure, say};
@@ -92,9 +92,9 @@ fn job(arguments: &FarmArguments, matches: &ArgMatches) -> Result<Job, Failure> 
     let scene = &arguments.scene;
     let (loaded, inputs) = files::read(scene, &arguments.overrides.variables, &arguments.memory.budget())?;
     if !arguments.overrides.cryptomatte.is_empty() || !loaded.image.cryptomattes.is_empty() {
-        say(
-            "warning: what is merged has no Cryptomattes: render these on one machine, which needs few samples",
-        );
+        let message =
+            "what is merged has no Cryptomattes: render these on one machine, which needs few samples";
+        exit::say_warnings(&[Warning::new(&Location::file(scene), message)]);
     }
     let series = arguments.series();
     let of_all = options_of_all(arguments, &series, &loaded)?;

@@ -135,12 +135,12 @@ pub struct Names {
     pub instances: Vec<Option<Arc<String>>>,
 }
 
-/// What a shape is called: every shape has a label, which tells it from others.
+/// The label of a shape, for reports and masks: every shape has one, which tells it from others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShapeLabel {
     /// Its name in the scene; of a shape without one, a name by its material and kind.
     pub name: String,
-    /// Where a shape without a name is written.
+    /// The location of a shape without a name.
     pub at: Option<Location>,
 }
 

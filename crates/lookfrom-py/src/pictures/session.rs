@@ -33,7 +33,7 @@ pub(crate) struct Session {
     files: Overlay,
     /// The arguments of `lookfrom render` that open the same session.
     typed: Mutex<Vec<String>>,
-    /// What the reader of the environment map doubted.
+    /// Warnings of the reader of the environment map.
     of_environment: Vec<Warning>,
     inner: Mutex<session::Session>,
 }

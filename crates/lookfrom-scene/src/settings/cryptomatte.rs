@@ -1,6 +1,6 @@
 //! Cryptomattes: layers of an EXR that tell which part of each pixel every object or material covers.
 
-/// What the mattes of a Cryptomatte are of (Friedman & Jones 2015).
+/// The kind of things that a Cryptomatte has mattes of (Friedman & Jones 2015).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CryptomatteKind {
     /// Shapes, and whole instances.

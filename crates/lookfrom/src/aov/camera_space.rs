@@ -19,26 +19,17 @@ pub(crate) struct CameraSpace {
     view_from_world: [DVec3; 4],
     /// The origin of render space.
     origin: DVec3,
-    /// The medium that the camera is in, if light is scattered in media.
+    /// The bodies and the medium that the camera is in, if light is scattered in media.
     pub(super) media: Option<InteriorStack>,
 }
 
 impl CameraSpace {
-    /// The space of a camera, by its view space and the origin of render space.
-    pub(crate) fn new(world_from_view: DMat4, origin: DVec3) -> Self {
+    /// The space of a camera, by its view space and the origin of render space, and the bodies and the medium that it is in, of a picture
+    /// with media that scatter or emit light.
+    pub(crate) fn new(world_from_view: DMat4, origin: DVec3, media: Option<InteriorStack>) -> Self {
         let view_from_world = world_from_view.inverse();
         let [x, y, z, w] = std::array::from_fn(|column| view_from_world.col(column).truncate());
-        Self { view_from_world: [x, y, z, w], origin, media: None }
-    }
-
-    /// The space of a camera in a medium, of a picture with media that scatter or emit light.
-    pub(crate) fn in_media(self, interior: InteriorStack) -> Self {
-        Self { media: Some(interior), ..self }
-    }
-
-    /// The bodies and the medium that the camera is in, if light is scattered in media.
-    pub(crate) fn media(&self) -> Option<InteriorStack> {
-        self.media
+        Self { view_from_world: [x, y, z, w], origin, media }
     }
 
     /// The AOVs of a medium, as it covers a way. Its shading normal faces the camera: so it differs from what surrounds it, which is white

@@ -1,4 +1,4 @@
-//! What covers a camera ray: media, and surfaces that it passes by an alpha between 0 and 1, each by its part.
+//! Coverage of a camera ray: by media, and surfaces that it passes by an alpha between 0 and 1, each by its part.
 
 use glam::Vec3;
 use lookfrom_bvh::{Hit, Ray};

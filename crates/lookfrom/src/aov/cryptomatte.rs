@@ -87,7 +87,7 @@ impl Cryptomatte {
         Self { kind, names: names.filter(|(id, _)| seen.contains(id)).collect(), pixels }
     }
 
-    /// What its names are of.
+    /// Its kind: the names are of objects or of materials.
     pub fn kind(&self) -> CryptomatteKind {
         self.kind
     }

@@ -5,15 +5,17 @@ use glam::{DMat4, DVec3};
 use super::{Batch, Renderer, SampleId};
 use crate::aov::{CameraSpace, RayHit};
 use crate::film::FilmTile;
+use crate::shading::interior_stack::InteriorStack;
 
 impl Renderer {
     /// The space of AOVs.
     pub(super) fn camera_space(&self) -> CameraSpace {
-        let space = CameraSpace::new(self.view.camera.world_from_view(), self.world.origin);
-        match self.integrator.flies() && self.world.has_luminous_media() {
-            true => space.in_media(self.interior),
-            false => space,
-        }
+        CameraSpace::new(self.view.camera.world_from_view(), self.world.origin, self.luminous_media())
+    }
+
+    /// The bodies and the medium that the camera is in, if light is scattered or emitted in media.
+    pub(super) fn luminous_media(&self) -> Option<InteriorStack> {
+        (self.integrator.flies() && self.world.has_luminous_media()).then_some(self.interior)
     }
 
     /// Adds the AOVs of a sample of each pixel to a tile or to its sums, where they are wanted.

@@ -9,6 +9,7 @@ use crate::aov::{Cover, Cryptomatte, CryptomatteId, PixelMatte, RayHit};
 use crate::core::parallel;
 use crate::film;
 use crate::shading::interaction::SurfaceInteraction;
+use crate::shading::interior_stack::InteriorStack;
 use crate::world::World;
 
 /// The most samples of a pixel whose rays are traced for mattes: coverage is about as exact as 8 bits.
@@ -25,13 +26,14 @@ impl Renderer {
         }
         let area = film::area_of(self.image());
         let all: Vec<Ids> = kinds.iter().map(|&kind| Ids::new(&self.world, kind)).collect();
+        let media = self.luminous_media();
         let samples = if self.surface.is_some() { 0 } else { samples.min(MOST_MATTE_SAMPLES) };
         let rows = parallel::collect(*height as usize, |y| {
             let mut row = vec![vec![PixelMatte::default(); *width as usize]; kinds.len()];
             let mut rays = PixelRays::default();
             for pixel in (0..*width).map(|x| [x, y as u32]).filter(|[x, y]| area.contains(*x, *y)) {
                 rays.trace(self, pixel, samples);
-                for (row, matte) in row.iter_mut().zip(rays.mattes(self, &all)) {
+                for (row, matte) in row.iter_mut().zip(rays.mattes(&self.world, media, &all)) {
                     row[pixel[0] as usize] = matte;
                 }
             }
@@ -71,16 +73,20 @@ impl PixelRays {
     }
 
     /// The pixel of each Cryptomatte.
-    fn mattes(&mut self, renderer: &Renderer, ids: &[Ids]) -> impl Iterator<Item = PixelMatte> {
+    fn mattes(
+        &mut self,
+        world: &World,
+        media: Option<InteriorStack>,
+        ids: &[Ids],
+    ) -> impl Iterator<Item = PixelMatte> {
         let Self { start, hits, weighted, .. } = self;
         weighted.resize_with(ids.len(), Vec::new);
         weighted.iter_mut().for_each(Vec::clear);
-        let media = renderer.camera_space().media();
         let mut all = 0.0;
         for (slot, (&ray, &hit)) in start.rays.iter().zip(hits.iter()).enumerate() {
             let weight = start.weights[slot];
             all += f64::from(weight);
-            renderer.world.covers(media, RayHit { ray, hit }, start.times.of(slot), |part, cover| {
+            world.covers(media, RayHit { ray, hit }, start.times.of(slot), |part, cover| {
                 if let Cover::Surface { surface, hit, .. } = cover {
                     for (weighted, ids) in weighted.iter_mut().zip(ids) {
                         weighted.push((ids.of(surface, hit), weight * part));

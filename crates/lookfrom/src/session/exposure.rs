@@ -59,7 +59,7 @@ impl Developed {
     }
 }
 
-/// What people are told of an exposure in stops that was chosen.
+/// The notice of an exposure that was chosen, in stops.
 pub(super) fn notice(stops: f32, path: &Path) -> Warning {
     let message = format!("the exposure is {stops}, chosen by what is seen");
     Warning::notice(&Location::file(path), message).remedy(Remedy::Exposure(stops))

@@ -15,7 +15,7 @@ fn renderer(mut scene: Scene) -> Renderer {
     Compiled::new(scene).renderer()
 }
 
-/// What covers a pixel, by name.
+/// The coverage of a pixel, by name.
 fn coverage(scene: &Scene, kind: CryptomatteKind, pixel: usize) -> BTreeMap<String, f32> {
     let mattes = renderer(scene.clone()).cryptomattes(64);
     let matte = mattes.iter().find(|matte| matte.kind() == kind).expect("it is asked for");

@@ -60,13 +60,9 @@ impl Writer<'_> {
             }
             fields.put("light_paths", paths);
         }
-        match cryptomattes[..] {
-            [] => {}
-            [kind] => fields.put("cryptomatte", word_of(CryptomatteKind::WORDS, &kind)),
-            _ => {
-                let words = cryptomattes.iter().map(|kind| word_of(CryptomatteKind::WORDS, kind));
-                fields.put("cryptomatte", Item::list(words));
-            }
+        if !cryptomattes.is_empty() {
+            let words = cryptomattes.iter().map(|kind| word_of(CryptomatteKind::WORDS, kind));
+            fields.put("cryptomatte", Item::list(words));
         }
         if let Some(SpectralFilm { buckets, range, bands }) = spectral_film {
             fields.put_unless("spectral_buckets", *buckets, 0);
