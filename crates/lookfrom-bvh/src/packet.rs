@@ -18,10 +18,11 @@ use crate::coherence::Coherence;
 use crate::collector::PacketCollector;
 use crate::error_bounds::LARGEST_FILTERED;
 use crate::exact::ExactRay;
-use crate::item::Leaf;
+use crate::item::{Leaf, ProceduralItem};
 use crate::lanes::{LANES, least, least_of_each};
 use crate::node::{Child, Content, WIDTH};
 use crate::packet_bounds::{PacketBounds, seem_alike};
+use crate::procedural::ProceduralHit;
 use crate::ray::{Hit, NONE, Ray};
 use crate::ray8::{GROUPS, NO_BLOCK, RAYS, Ray8, Slabs8};
 use crate::settings::Settings;
@@ -114,7 +115,7 @@ pub(crate) fn trace_packet<'a, S: Simd, C: PacketCollector, V: Visibility<'a>>(
 fn is_tiny<C: PacketCollector>(bvh: &Bvh) -> bool {
     let Statistics { triangles, spheres, procedurals, instances, .. } = bvh.statistics;
     let most = if C::ANY_HIT { 72 } else { 48 };
-    4 * triangles + 3 * spheres <= 4 * most && procedurals + instances == 0
+    4 * triangles + 3 * spheres + 4 * procedurals <= 4 * most && instances == 0
 }
 
 /// Whether the bounds of a full packet are not worth their cost: rays of several origins in a tree of very few leaves.
@@ -244,7 +245,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         meeting
     }
 
-    /// Tests the rays that hit the box of a leaf without triangles: spheres in lanes, other shapes ray by ray. Returns
+    /// Tests the rays that hit the box of a leaf without triangles: spheres and procedural shapes in lanes, others ray by ray. Returns
     /// false if none does.
     #[inline(never)]
     fn other_leaf(&mut self, simd: S, number: usize, stack: &mut TraversalStack<'_>) -> bool {
@@ -255,9 +256,17 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 let (leaf, bounds) = (&bvh.leaves[number], &bvh.leaf_bounds[number]);
                 let meeting = self.meet(simd, bounds);
                 self.coherence.count(&meeting);
-                if let Leaf::Spheres { block } = *leaf {
-                    self.spheres(simd, &bvh.spheres[block as usize], &meeting);
-                    return meeting != [0; GROUPS];
+                match *leaf {
+                    Leaf::Spheres { block } => {
+                        self.spheres(simd, &bvh.spheres[block as usize], &meeting);
+                        return meeting != [0; GROUPS];
+                    }
+                    Leaf::Procedurals { first, count } => {
+                        let items = first as usize..(first + count) as usize;
+                        self.procedurals(&bvh.procedurals[items], &meeting);
+                        return meeting != [0; GROUPS];
+                    }
+                    Leaf::Capsules { .. } | Leaf::Instances { .. } => {}
                 }
                 for index in 0..GROUPS {
                     for lane in LaneMask(meeting[index]) {
@@ -271,6 +280,57 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 meeting != [0; GROUPS]
             },
         )
+    }
+
+    /// Tests procedural shapes against the rays that hit the box around them, eight side by side.
+    #[inline(never)]
+    fn procedurals(&mut self, items: &[ProceduralItem], meeting: &[u32; GROUPS]) {
+        let bvh = self.bvh();
+        for item in items {
+            let ProceduralItem { geometry, primitive, .. } = *item;
+            let Some(shapes) = bvh.shapes_of(item) else { continue };
+            for (index, &meeting) in meeting.iter().enumerate() {
+                let wanted = self.wanted(index, meeting, item);
+                if wanted == 0 {
+                    continue;
+                }
+                let asked = self.asked(index);
+                let found = shapes.intersect_eight(primitive, &asked, wanted);
+                for lane in LaneMask(wanted) {
+                    let Some(ProceduralHit { t, u, v }) = found[lane] else { continue };
+                    let place = index * LANES + lane;
+                    if t > asked[lane].t_min {
+                        let mut state = self.state(place);
+                        state.collector.commit(Hit { t, u, v, primitive, geometry, instance: NONE });
+                        self.update(place, &state.collector);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The rays of a group that are under way and see a shape, of those that meet its box.
+    #[inline(always)]
+    fn wanted(&self, index: usize, meeting: u32, item: &ProceduralItem) -> u32 {
+        let mut wanted = 0;
+        for lane in LaneMask(meeting) {
+            let is_seen = !V::SELECTS
+                || V::of(self.settings, index * LANES + lane).shows(item.geometry, item.primitive);
+            let is_under_way = self.groups[index].end[lane] > f32::NEG_INFINITY;
+            wanted |= u32::from(is_seen && is_under_way) << lane;
+        }
+        wanted
+    }
+
+    /// The rays of a group, up to where they have met what is nearest so far. Where there are fewer, the last is repeated.
+    #[inline(always)]
+    fn asked(&self, index: usize) -> [Ray; LANES] {
+        let last = self.rays.len() - 1;
+        std::array::from_fn(|lane| {
+            // One step beyond the end: a hit at the same t may win the tie.
+            let t_max = self.groups[index].end[lane].next_up();
+            Ray { t_max, ..self.rays[(index * LANES + lane).min(last)] }
+        })
     }
 
     /// The current state of a ray.

@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use crate::aabb::Aabb;
 use crate::capsule::Capsule;
 use crate::ray::Ray;
+use lookfrom_simd::LaneMask;
 
 /// Many shapes of one kind, numbered from 0.
 ///
@@ -55,6 +56,16 @@ pub trait Procedural: Send + Sync + Debug {
     /// The nearest hit with `ray.t_min < t < ray.t_max`; others are ignored. In an instance the ray is in the
     /// object's space, rounded to f32, with the same `t`.
     fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit>;
+
+    /// [`Self::intersect`], with the same bits, for those of eight rays of which bit i of `wanted` is set; what is found for others is
+    /// ignored. Unless overridden, one ray after the other.
+    fn intersect_eight(&self, primitive: u32, rays: &[Ray; 8], wanted: u32) -> [Option<ProceduralHit>; 8] {
+        let mut found = [None; 8];
+        for lane in LaneMask(wanted) {
+            found[lane] = self.intersect(primitive, &rays[lane]);
+        }
+        found
+    }
 }
 
 /// A hit of a ray with a [`Procedural`].

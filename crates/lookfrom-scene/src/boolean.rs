@@ -15,6 +15,7 @@ use crate::duplicates::turned;
 use crate::error::Result;
 use crate::model::weld::Weld;
 use crate::shape::Mesh;
+use crate::solid::Operation;
 
 /// Numbers of a vertex: its position, normal, texture coordinates and colour.
 const STRIDE: usize = 3 + 3 + 2 + 3;
@@ -24,14 +25,6 @@ pub(crate) const BYTES_PER_TRIANGLE: u64 = 600;
 
 /// The most triangles of a surface that crosses itself: it is taken apart with rational numbers, which are slow.
 const MOST_CROSSING: usize = 50_000;
-
-/// A set operation on two solids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Operation {
-    Union,
-    Intersection,
-    Difference,
-}
 
 /// Why a mesh bounds no solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,11 +48,11 @@ pub(crate) struct OperandSurface<'a> {
     pub(crate) matrix: DMat4,
 }
 
-/// A closed solid, possibly empty.
+/// A solid that closed meshes bound, possibly empty.
 #[derive(Clone)]
-pub(crate) struct Solid(Manifold);
+pub(crate) struct MeshSolid(Manifold);
 
-impl Solid {
+impl MeshSolid {
     /// The solid that surfaces bound together, whichever side their front is on. What crosses itself (if it may), as the
     /// triangles of a letter may by a hair, is the union of what it surrounds. Vertices at the same place, as `f32`, are one: there
     /// faces of different operands that are meant to be flush are.

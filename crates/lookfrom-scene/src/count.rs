@@ -78,6 +78,7 @@ impl Counts {
                 Geometry::PartialDisk { .. } => ("partial disk", 0, 0),
                 Geometry::Cylinder { .. } => ("cylinder", 0, 0),
                 Geometry::Torus { .. } => ("torus", 0, 0),
+                Geometry::SolidSurface { .. } => ("surface of a solid", 0, 0),
                 Geometry::Bilinear(_) => ("bilinear mesh", 0, 0),
                 Geometry::Curves(_) => ("curves", 0, 0),
                 Geometry::Mesh(id) => ("mesh", scene.meshes[id.index()].triangles.len(), 0),

@@ -59,6 +59,7 @@ pub mod scene;
 pub mod settings;
 pub mod shape;
 mod shutter;
+pub mod solid;
 mod source;
 pub mod spectrum;
 pub mod stamps;

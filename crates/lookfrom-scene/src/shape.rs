@@ -9,6 +9,7 @@ use crate::light::Power;
 use crate::material::{Color, Scalar};
 use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
+use crate::solid::Solid;
 
 /// A shape in the world (or in an object).
 #[derive(Clone, Debug)]
@@ -139,6 +140,14 @@ pub enum Geometry {
         radius: f64,
         /// Radius of the tube, positive.
         tube: f64,
+    },
+    /// What is left of the surface of a body in a solid, which other shapes complete. It faces outward and emits no light; uv as that of the
+    /// body's shape by itself, of a cylinder with v from 0 to 1 on its side and on each of its ends.
+    SolidSurface {
+        /// The solid, in the shape's space.
+        solid: Arc<Solid>,
+        /// The number of the body.
+        body: u32,
     },
     /// Bilinear patches.
     Bilinear(Arc<Patches>),
@@ -364,6 +373,7 @@ impl Geometry {
                 let corner = DVec3::new(radius + tube, radius + tube, *tube);
                 Bounds { min: -corner, max: corner }.transformed(matrix)
             }
+            Self::SolidSurface { solid, body } => solid.bounds_of_surface(*body, matrix),
             Self::Bilinear(patches) => patches
                 .positions
                 .iter()

@@ -14,6 +14,7 @@ use crate::light::Light;
 use crate::motion::Motion;
 use crate::scene::{Instance, Object, ObjectId, Scene};
 use crate::shape::{Geometry, MeshPose, Shape};
+use crate::solid::Solid;
 
 /// Parts of a frame between two times at which a scene is read.
 const PARTS_OF_A_FRAME: f64 = 2.0;
@@ -65,7 +66,8 @@ pub(crate) fn open(
         context.warn(&at, "not blurred: a light that is no shape stays as it is when the shutter opens");
     }
     if later.iter().any(|pose| !pose.is_of(scene)) {
-        let message = "not blurred: while the shutter is open the number of its shapes or vertices changes";
+        let message =
+            "not blurred: while the shutter is open the number of its shapes or vertices changes, or a solid";
         context.warn(&Location::file(path), message);
         return Ok(());
     }
@@ -104,9 +106,14 @@ impl Pose {
 
     fn of(scene: &Scene) -> Self {
         let shape = |shape: &Shape| {
-            let is_single =
-                matches!(shape.geometry, Geometry::Sphere(_) | Geometry::Disk { .. } | Geometry::Quad { .. });
-            (shape.world_from_object, is_single.then(|| shape.geometry.clone()))
+            let is_compared = matches!(
+                shape.geometry,
+                Geometry::Sphere(_)
+                    | Geometry::Disk { .. }
+                    | Geometry::Quad { .. }
+                    | Geometry::SolidSurface { .. }
+            );
+            (shape.world_from_object, is_compared.then(|| shape.geometry.clone()))
         };
         Self {
             camera: scene.camera.as_ref().and_then(frame_of_camera),
@@ -116,10 +123,12 @@ impl Pose {
         }
     }
 
-    /// Whether there are as many parts as in a scene.
+    /// Whether there are as many parts as in a scene, and the same solids.
     fn is_of(&self, scene: &Scene) -> bool {
         let vertices = self.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.normals.len()));
+        let solids = scene.shapes.iter().map(|shape| solid_of(Some(&shape.geometry)));
         self.shapes.len() == scene.shapes.len()
+            && self.shapes.iter().map(|(_, geometry)| solid_of(geometry.as_ref())).eq(solids)
             && self.instances.len() == scene.instances.len()
             && vertices.eq(scene.meshes.iter().map(|mesh| (mesh.positions.len(), mesh.normals.len())))
     }
@@ -132,6 +141,14 @@ impl Pose {
             [Some(now), Some(before)] if now != before => *map * now * before.inverse(),
             _ => *map,
         }
+    }
+}
+
+/// The solid of which a geometry is a surface.
+fn solid_of(geometry: Option<&Geometry>) -> Option<&Solid> {
+    match geometry {
+        Some(Geometry::SolidSurface { solid, .. }) => Some(solid),
+        _ => None,
     }
 }
 

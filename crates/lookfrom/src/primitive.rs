@@ -26,8 +26,8 @@ pub use disk::{Disk, Disks};
 pub(crate) use mesh::lanes::points_on_meshes;
 pub use mesh::{Mesh, Pose, VertexData};
 pub use patch::Patches;
-pub use quadric::{Quadric, QuadricKind, Quadrics, Torus};
-pub(crate) use quadric::{QuadricFrames, gather_frames};
+pub use quadric::{Clip, Quadric, QuadricKind, Quadrics, Torus};
+pub(crate) use quadric::{QuadricFrames, gather_frames, points_on_quadrics};
 pub(crate) use sphere::points_on_spheres;
 pub use sphere::{SphereBinding, Spheres};
 

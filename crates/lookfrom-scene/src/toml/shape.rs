@@ -154,7 +154,7 @@ impl Reader<'_, '_> {
         let world_from_object = transform::world_from_object(table);
         let mut parts = match (kind, table.find("file")) {
             ("mesh", Some(file)) => self.model_parts(table, file, &world_from_object)?,
-            ("solid", _) => self.solid(table)?,
+            ("solid", _) => self.solid(table, &attributes)?,
             _ => {
                 let (geometry, own) = self.geometry(kind, table)?;
                 if !(world_from_object * own).is_finite() {
@@ -219,14 +219,7 @@ impl Reader<'_, '_> {
                 self.mesh(table, composite::plane(point, normal, size))?
             }
             "box" => {
-                let min = table.need("min", "[-1, -1, -1]", DVec3::NEG_ONE, Value::vector);
-                let max = table.need("max", "[1, 1, 1]", DVec3::ONE, Value::vector);
-                table.sound(&["min", "max"])?;
-                if min.cmpge(max).any() {
-                    return Err(table
-                        .error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis"))
-                        .hint("a box without thickness is a quad"));
-                }
+                let [min, max] = cuboid(table)?;
                 self.mesh(table, composite::cuboid(min, max))?
             }
             "triangle" => {
@@ -258,6 +251,19 @@ impl Reader<'_, '_> {
 /// A point or vector that is finite as `f32`.
 pub(super) fn point(value: Value<'_>) -> Result<Vec3> {
     value.singles("three numbers, [x, y, z]").map(Vec3::from_array)
+}
+
+/// The two corners of a box.
+pub(super) fn cuboid(table: &Table<'_>) -> Result<[DVec3; 2]> {
+    let min = table.need("min", "[-1, -1, -1]", DVec3::NEG_ONE, Value::vector);
+    let max = table.need("max", "[1, 1, 1]", DVec3::ONE, Value::vector);
+    table.sound(&["min", "max"])?;
+    if min.cmpge(max).any() {
+        return Err(table
+            .error_at("max", format!("`max` {max} is not beyond `min` {min} along every axis"))
+            .hint("a box without thickness is a quad"));
+    }
+    Ok([min, max])
 }
 
 /// A quad, of a shape or a light.

@@ -23,6 +23,7 @@ pub(super) type Groups = &'static [&'static [&'static str]];
 
 /// A table whose keys are looked up by name. Errors are recorded and values are replaced by placeholders, so that one run
 /// finds all errors; the result is valid only if none was recorded.
+#[derive(Clone)]
 pub(super) struct Table<'a> {
     document: &'a Document,
     offset: usize,

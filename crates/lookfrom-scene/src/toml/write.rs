@@ -20,6 +20,7 @@ mod reach;
 mod roughness;
 mod settings;
 mod shape;
+mod solid;
 mod text;
 mod texture;
 
@@ -211,7 +212,8 @@ impl<'a> Writer<'a> {
 
     /// The tables of shapes: each in the array of its kind, if their order is that in which these are read, else in one array of all.
     fn shapes(&mut self, shapes: &[Shape]) -> Result<Vec<(&'static str, Fields)>> {
-        let mut tables = shapes.iter().map(|shape| self.shape(shape)).collect::<Result<Vec<_>>>()?;
+        let mut tables =
+            shapes.chunk_by(solid::is_continued).map(|run| self.shape(run)).collect::<Result<Vec<_>>>()?;
         let place = |kind: &str| KEYS.iter().position(|(known, _)| *known == kind);
         if !tables.is_sorted_by_key(|(kind, _)| place(kind)) {
             for (kind, fields) in &mut tables {

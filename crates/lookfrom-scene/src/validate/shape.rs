@@ -6,6 +6,7 @@ use super::Part;
 use crate::error::{Location, Result};
 use crate::scene::Scene;
 use crate::shape::{Emission, Geometry, Mesh, Patches, Profile, Shape, Sphere, Strand};
+use crate::solid::{self, Body, Form};
 
 pub(super) fn check(scene: &Scene) -> Result<()> {
     let nowhere = Location::default();
@@ -49,6 +50,9 @@ fn check_shape(part: &Part<'_>, shape: &Shape) -> Result<()> {
         part.power(&power)?;
     }
     part.matrix("world_from_object", &shape.world_from_object)?;
+    if shape.emission.is_some() && matches!(shape.geometry, Geometry::SolidSurface { .. }) {
+        return Err(part.fault("the surface of a solid emits no light; expected a mesh"));
+    }
     check_geometry(part, &shape.geometry)
 }
 
@@ -89,8 +93,45 @@ fn check_geometry(part: &Part<'_>, geometry: &Geometry) -> Result<()> {
             part.positive("radius", *radius)?;
             part.positive("tube", *tube)
         }
+        Geometry::SolidSurface { solid, body } => {
+            if !solid.is_sound() {
+                let most = solid::MOST_BODIES;
+                return Err(
+                    part.fault(format!("its solid does not combine at most {most} bodies, each once"))
+                );
+            }
+            let count = solid.bodies().len();
+            if *body as usize >= count {
+                return Err(part.fault(format!("there is no body {body}; the solid has {count}, from 0")));
+            }
+            solid.bodies().iter().try_for_each(|body| check_body(part, body))
+        }
         Geometry::Bilinear(patches) => check_patches(part, patches),
         Geometry::Curves(strands) => check_strands(part, strands),
+    }
+}
+
+fn check_body(part: &Part<'_>, body: &Body) -> Result<()> {
+    part.matrix("solid_from_body", body.solid_from_body())?;
+    match *body.form() {
+        Form::Ball { center, radius } => {
+            part.finite("center", &center.to_array())?;
+            part.positive("radius", radius)
+        }
+        Form::Cylinder { radius, z } => {
+            part.positive("radius", radius)?;
+            part.number("z", z[1], "more than the minimum", z[0] < z[1])?;
+            part.finite("z", &z)
+        }
+        Form::Cuboid { min, max } => {
+            part.finite("min", &min.to_array())?;
+            part.finite("max", &max.to_array())?;
+            part.number("max", max.max_element(), "beyond `min` along every axis", min.cmplt(max).all())
+        }
+        Form::Torus { radius, tube } => {
+            part.positive("radius", radius)?;
+            part.positive("tube", tube)
+        }
     }
 }
 

@@ -70,7 +70,17 @@ fn is_closed(scene: &Scene) {
     assert_eq!(edges.values().filter(|&&count| count != 0).count(), 0);
 }
 
+/// A solid that is a mesh.
 fn solid(operation: &str, of: &str) -> String {
+    solid_in_pieces(operation, of, 96)
+}
+
+fn solid_in_pieces(operation: &str, of: &str, segments: u32) -> String {
+    format!("{}segments = {segments}\n", exact_solid(operation, of))
+}
+
+/// A solid that may be exact.
+fn exact_solid(operation: &str, of: &str) -> String {
     format!("[[solid]]\noperation = \"{operation}\"\nof = [{of}]\n")
 }
 
@@ -121,7 +131,7 @@ fn curved_shapes_are_fine_enough() {
         assert!((1.0 - 2.6 * lacking..1.0 - 0.9 * lacking).contains(&ratio), "{shape}: {ratio}");
         is_closed(&scene);
     }
-    let rough = read(&format!("{}segments = 8\n", solid("union", "{ type = \"sphere\" }")));
+    let rough = read(&solid_in_pieces("union", "{ type = \"sphere\" }", 8));
     assert_eq!(triangles(&rough).len(), 8 * 2 * 3);
 }
 
@@ -220,13 +230,61 @@ fn results_are_the_same_every_time() {
 
 #[test]
 fn memory_is_counted_and_only_results_stay() {
-    let text = solid("union", "{ type = \"sphere\" }, { type = \"torus\", radius = 1, tube = 0.3 }");
-    assert_eq!(read(&text).meshes.len(), 2);
-    let fine = format!("{text}segments = 4096\n");
+    let of = "{ type = \"sphere\" }, { type = \"torus\", radius = 1, tube = 0.3 }";
+    assert_eq!(read(&solid("union", of)).meshes.len(), 2);
+    let fine = solid_in_pieces("union", of, 4096);
     let budget = Budget::new(64 << 20);
     let error = load_with(&fine, &budget).expect_err("too little memory");
     assert!(error.to_string().contains("the solid takes"), "{error}");
     assert_eq!(budget.left(), budget.limit());
+}
+
+#[test]
+fn solids_of_bodies_are_exact_where_none_of_their_surfaces_are_flush() {
+    let materials = "[materials.glow]\nemission = [1, 1, 1]\n";
+    let ball = "{ type = \"sphere\", radius = 1.2 }";
+    let block = &cuboid([-1.0; 3], [1.0; 3]);
+    let rod = "{ type = \"cylinder\", from = [0, -2, 0], to = [0, 2, 0], radius = 0.3 }";
+    let many: Vec<String> =
+        (0..70).map(|k| format!("{{ type = \"sphere\", center = [{k}, 0, 0], radius = 0.8 }}")).collect();
+    for (is_exact, of, more) in [
+        (true, vec![ball, rod], ""),
+        (true, vec![block, ball, "{ type = \"torus\", radius = 1, tube = 0.25, rotate = [10, 20, 30] }"], ""),
+        (
+            true,
+            vec!["{ type = \"solid\", operation = \"union\", of = [{ type = \"sphere\" }] }", rod],
+            "scale = [1, 2, 3]",
+        ),
+        // Only boxes: a mesh is as exact.
+        (false, vec![block, &cuboid([-0.5; 3], [2.0; 3])], ""),
+        // An end of the cylinder lies in a side of the box, and a sphere is there twice.
+        (false, vec![block, "{ type = \"cylinder\", from = [0, 0, 0], to = [0, 1, 0], radius = 0.3 }"], ""),
+        (false, vec![ball, rod, ball], ""),
+        (false, vec![ball, rod], "segments = 32"),
+        (false, vec![ball, "{ type = \"torus\", radius = 1, tube = 0.25, segments = 32 }"], ""),
+        (false, vec![ball, "{ type = \"cone\", from = [0, 0, 0], to = [0, 2, 0], radius = 0.4 }"], ""),
+        (false, vec![ball, rod], "emission = [1, 1, 1]"),
+        (false, vec![ball, rod], "material = \"glow\""),
+        (false, vec![ball, "{ type = \"sphere\", center = [0, 1, 0], material = \"glow\" }"], ""),
+        (false, many.iter().map(String::as_str).collect(), ""),
+    ] {
+        let text = format!("{}{more}\n{materials}", exact_solid("difference", &of.join(", ")));
+        let scene = read(&text);
+        let is_surface = |shape: &Shape| matches!(shape.geometry, Geometry::SolidSurface { .. });
+        assert!(scene.shapes.iter().all(|shape| is_surface(shape) == is_exact), "{text}");
+        assert_eq!(scene.meshes.is_empty(), is_exact, "{text}");
+    }
+}
+
+#[test]
+fn nothing_is_left_of_exact_solids_either() {
+    let apart = "{ type = \"sphere\" }, { type = \"sphere\", center = [5, 0, 0] }";
+    let covered = "{ type = \"sphere\" }, { type = \"sphere\", radius = 2 }";
+    for (operation, of) in [("intersection", apart), ("difference", covered)] {
+        let (scene, warnings) = load_with(&exact_solid(operation, of), &Budget::default()).expect("a scene");
+        assert!(warnings[0].message.contains("nothing is left"), "{warnings:?}");
+        assert!(scene.shapes.is_empty());
+    }
 }
 
 proptest! {

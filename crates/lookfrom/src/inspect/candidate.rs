@@ -220,7 +220,8 @@ fn candidate(
             ("disk", disks.bindings[index].shape, Test::Disk(numbers), outcome)
         }
         Primitives::Quadrics(quadrics) => {
-            let reason = quadric::test(&quadrics.quadrics[index], &ray, &mut numbers);
+            let reason =
+                quadric::test(&quadrics.quadrics[index], quadrics.clips.get(index), &ray, &mut numbers);
             let outcome = procedural(&**quadrics, primitive, &ray, reason.as_deref());
             let is_torus = matches!(quadrics.quadrics[index].kind, QuadricKind::Torus(_));
             let kind = if is_torus { "torus" } else { "quadric" };

@@ -23,7 +23,7 @@ use crate::integrator::{
 use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 use emit::PathHit;
 use shaded::Shaded;
 use step::{BareEight, BareKernel, Wanted, shade_one};
@@ -123,17 +123,17 @@ fn step_all<P: Probe>(tree: Option<&RayTree>, batch: &HitBatch<'_>, output: &mut
             if !hit.is_hit() {
                 output.add_surroundings_behind_medium(world, path, even_sky);
             } else if let Some(bare) = world.bare_surface(hit).filter(|_| in_lanes) {
-                let kind = 2 * bare.material as usize + usize::from(bare.is_sphere);
+                let kind = ShapeClass::ALL.len() * bare.material as usize + bare.shape as usize;
                 bins.push(kind, index, bare.material, |eight| {
-                    shade_bare_hits(tree, batch, (eight, bare.is_sphere), shaded, output);
+                    shade_bare_hits(tree, batch, (eight, bare.shape), shaded, output);
                 });
             } else {
                 step(tree, world, &streams.of(path), (path, hit), shaded, output);
             }
         }
-        for (mask, are_on_spheres) in [(Bins::EVEN, false), (Bins::ODD, true)] {
-            bins.flush(mask, |eight| {
-                shade_bare_hits(tree, batch, (eight, are_on_spheres), shaded, output);
+        for shape in ShapeClass::ALL {
+            bins.flush(Bins::EACH_THIRD << shape as usize, |eight| {
+                shade_bare_hits(tree, batch, (eight, shape), shaded, output);
             });
         }
     }
@@ -145,12 +145,12 @@ fn step_all<P: Probe>(tree: Option<&RayTree>, batch: &HitBatch<'_>, output: &mut
 fn shade_bare_hits<P: Probe>(
     tree: Option<&RayTree>,
     batch: &HitBatch<'_>,
-    (eight, are_on_spheres): (&Eight<'_>, bool),
+    (eight, shape): (&Eight<'_>, ShapeClass),
     shaded: &mut Shaded,
     output: &mut StepOutput<'_, P>,
 ) {
     let (world, count) = (batch.world, eight.paths.len());
-    let eight = &BareEight::of(batch, eight, are_on_spheres);
+    let eight = &BareEight::of(batch, eight, shape);
     let wanted = wanted(tree, output);
     let Queues { modes, times, first_surfaces, .. } = &mut output.queues;
     let mut target = eight.aov_target(world, count, first_surfaces);

@@ -1,23 +1,30 @@
-//! Quadrics: ellipsoids, elliptic cylinders and disks, and parts of them; and tori, which are of the fourth degree. They are spheres,
-//! cylinders, disks and tori around the z axis of their object space, under any affine map.
+//! Quadrics: ellipsoids, elliptic cylinders and disks, and parts of them; rectangles; and tori, which are of the fourth degree. They are
+//! spheres, cylinders, disks and tori around the z axis of their object space, under any affine map.
 //!
 //! A ray is transformed to object space in f64 and intersected there. The intersection is refined onto the surface and
 //! transformed back, with a bound of all errors on the way: [`Point::transformed`], and for surfaces that curve towards
 //! a leaving ray also the effect of rounding its origin to f32, which moves it sideways.
 //!
-//! Conventions of u, v and their derivatives: Pharr, Jakob, Humphreys, Physically Based Rendering. The intersection
-//! after Haines et al. (2019), "Precision Improvements for Ray/Sphere Intersection".
+//! Conventions of u, v and their derivatives: Pharr, Jakob, Humphreys, Physically Based Rendering.
 
+mod clip;
 mod frame;
+mod lanes;
+mod many;
+mod meeting;
 mod torus;
 
 use std::f64::consts::PI;
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
-use lookfrom_bvh::{Aabb, Affine, Capsule, Point, Procedural, ProceduralHit, Ray};
+use lookfrom_bvh::{Affine, Capsule, Point, Ray};
 use lookfrom_simd::Float;
 
+pub use clip::Clip;
 pub(crate) use frame::{QuadricFrames, gather_frames};
+pub(crate) use lanes::points_on_quadrics;
+pub use many::Quadrics;
+use meeting::{Meetings, Rays};
 pub use torus::Torus;
 
 use super::{MaterialBinding, SurfacePoint, capsule};
@@ -62,6 +69,11 @@ pub enum QuadricKind {
         /// In ascending order.
         z: [f64; 2],
     },
+    /// A rectangle in the plane z = 0, from the origin along x and y, with uv from one corner to the opposite one. It is always whole.
+    Rectangle {
+        /// Along x and y, positive.
+        size: [f64; 2],
+    },
     /// A torus around the z axis.
     Torus(Torus),
 }
@@ -78,17 +90,12 @@ pub struct Quadric {
     render_from_object: Affine,
     /// Inverse of the linear part.
     object_from_render: Affine,
+    /// Of a sphere: the polar angles of its heights from the +z axis, in radians.
+    theta: [f64; 2],
+    /// The cosine and the sine of `phi_max`.
+    sweep_end: [f64; 2],
     /// Both.
     frame: QuadricFrames<f32>,
-}
-
-/// Quadrics of many shapes: long and thin ones, or others.
-#[derive(Clone, Debug, Default)]
-pub struct Quadrics {
-    /// The quadrics.
-    pub quadrics: Vec<Quadric>,
-    /// The attributes of each.
-    pub bindings: Vec<MaterialBinding>,
 }
 
 impl Quadric {
@@ -101,14 +108,21 @@ impl Quadric {
                 QuadricKind::Sphere { radius, z: ascending(z).map(|z| z.max(-radius).min(radius)) }
             }
             QuadricKind::Cylinder { radius, z } => QuadricKind::Cylinder { radius, z: ascending(z) },
-            QuadricKind::Disk { .. } | QuadricKind::Torus(_) => kind,
+            QuadricKind::Disk { .. } | QuadricKind::Rectangle { .. } | QuadricKind::Torus(_) => kind,
         };
         let render_from_object = math::affine(matrix);
         let inverse = render_from_object.inverse()?;
         let object_from_render = Affine { translation: [0.0; 3], ..inverse };
         let phi_max = if phi_max >= 360.0 { 2.0 * PI } else { phi_max.max(0.0).to_radians() };
         let frame = QuadricFrames::new(&render_from_object, &object_from_render, reverse);
-        Some(Self { kind, phi_max, reverse, render_from_object, object_from_render, frame })
+        let theta = match kind {
+            QuadricKind::Sphere { radius, z } => z.map(|z| polar(z, radius)),
+            _ => [0.0; 2],
+        };
+        let (sin, cos) = libm::sincos(phi_max);
+        // Multiples of a right angle exactly.
+        let sweep_end = [cos, sin].map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
+        Some(Self { kind, phi_max, reverse, render_from_object, object_from_render, theta, sweep_end, frame })
     }
 
     /// Whether it is a whole sphere (an ellipsoid, after its transform).
@@ -173,7 +187,7 @@ impl Quadric {
         let [x, y, z] = self.render_from_object.matrix.map(DVec3::from_array);
         let square = x.length_squared();
         let even = [y.length_squared() - square, z.length_squared() - square, x.dot(y), y.dot(z), z.dot(x)];
-        let is_flat = matches!(self.kind, QuadricKind::Disk { .. });
+        let is_flat = matches!(self.kind, QuadricKind::Disk { .. } | QuadricKind::Rectangle { .. });
         (is_flat || even.iter().all(|off| off.abs() <= 1e-9 * square)).then(|| self.area_scale(DVec3::X))
     }
 
@@ -185,19 +199,24 @@ impl Quadric {
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 0.5 * self.phi_max * (radius - inner_radius) * (radius + inner_radius)
             }
+            QuadricKind::Rectangle { size: [x, y] } => x * y,
             QuadricKind::Torus(torus) => self.phi_max * torus.area_by_angle(),
         }
     }
 
     /// Area in render space.
     pub fn area(&self) -> f64 {
+        let of_even_scale = self.even_area_scale().map(|scale| self.object_area() * scale);
+        of_even_scale.unwrap_or_else(|| self.area_of_part(|_| true))
+    }
+
+    /// Area in render space of the part of which `keeps` is true in object space, by numerical integration.
+    fn area_of_part(&self, keeps: impl Fn(DVec3) -> bool) -> f64 {
         // The mean of the factor by which the map changes area, over points uniform in object space.
-        let mean = || {
-            let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
-            let place = |k: u32| self.sample_in_object([cell(k % CELLS), cell(k / CELLS)]);
-            (0..CELLS * CELLS).map(|k| self.area_scale(place(k))).sum::<f64>() / f64::from(CELLS * CELLS)
-        };
-        self.object_area() * self.even_area_scale().unwrap_or_else(mean)
+        let cell = |i: u32| (i as f32 + 0.5) / CELLS as f32;
+        let points = (0..CELLS * CELLS).map(|k| self.sample_in_object([cell(k % CELLS), cell(k / CELLS)]));
+        let scales = points.map(|place| if keeps(place) { self.area_scale(place) } else { 0.0 });
+        self.object_area() * (scales.sum::<f64>() / f64::from(CELLS * CELLS))
     }
 
     /// A point of the surface, in object space, uniform over the area there; `u` in [0, 1)².
@@ -222,6 +241,7 @@ impl Quadric {
                 let ring = (inner + u0 * (radius * radius - inner)).sqrt();
                 DVec3::new(ring * cos, ring * sin, height)
             }
+            QuadricKind::Rectangle { size: [x, y] } => DVec3::new(u0 * x, u1 * y, 0.0),
             QuadricKind::Torus(torus) => {
                 let [ring, z] = torus.sample(u0);
                 DVec3::new(ring * cos, ring * sin, z)
@@ -235,6 +255,8 @@ impl Quadric {
             QuadricKind::Sphere { radius, z } | QuadricKind::Cylinder { radius, z } => (radius, z),
             QuadricKind::Disk { height, radius, .. } => (radius, [height, height]),
             QuadricKind::Torus(Torus { radius, .. }) => (radius, [0.0, 0.0]),
+            // The corners are on a circle around the origin, or within.
+            QuadricKind::Rectangle { size: [x, y] } => ((x * x + y * y).sqrt(), [0.0, 0.0]),
         };
         let rows = self.render_from_object.matrix.map(DVec3::from_array);
         let translation = DVec3::from_array(self.render_from_object.translation);
@@ -282,6 +304,7 @@ impl Quadric {
                 DVec3::new(stretch * p.x, stretch * p.y, p.z)
             }
             QuadricKind::Disk { height, .. } => DVec3::new(p.x, p.y, height),
+            QuadricKind::Rectangle { .. } => DVec3::new(p.x, p.y, 0.0),
             QuadricKind::Torus(torus) => torus.refined(p),
         }
     }
@@ -291,46 +314,29 @@ impl Quadric {
         match self.kind {
             QuadricKind::Sphere { .. } => p.normalize(),
             QuadricKind::Cylinder { .. } => DVec3::new(p.x, p.y, 0.0).normalize(),
-            QuadricKind::Disk { .. } => DVec3::Z,
+            QuadricKind::Disk { .. } | QuadricKind::Rectangle { .. } => DVec3::Z,
             QuadricKind::Torus(torus) => torus.outward(p),
         }
     }
 
-    /// Whether a point of the whole surface is in the quadric's part of it.
-    fn contains(&self, p: DVec3) -> bool {
-        let there = match self.kind {
-            QuadricKind::Sphere { radius, z: [low, high] } => {
-                // A whole sphere has no edge for rounding to fall beyond.
-                (low <= -radius || p.z >= low) && (high >= radius || p.z <= high)
-            }
-            QuadricKind::Cylinder { z: [low, high], .. } => (low..=high).contains(&p.z),
-            QuadricKind::Disk { radius, inner_radius, .. } => {
-                let square = p.truncate().length_squared();
-                square <= radius * radius && square >= inner_radius * inner_radius
-            }
-            QuadricKind::Torus(_) => true,
-        };
-        there && (self.is_whole_turn() || angle(p) <= self.phi_max)
+    /// The first intersection of a ray in render space with its part of the surface, of which `clip` may leave a part.
+    fn first_meeting(&self, ray: &Ray, clip: Option<&Clip>) -> Option<f32> {
+        let Ray { origin, direction, t_min, t_max } = *ray;
+        let rays = Rays { origin: origin.into(), direction: direction.into(), t_min, t_max };
+        let Meetings { t, exist, are_unclear } = self.first_meetings(clip, &rays);
+        if are_unclear { self.unclear_meeting(ray, clip) } else { exist.then_some(t) }
     }
 
-    /// The first intersection in object space of a ray with its part of the surface.
-    fn first_meeting(&self, ray: &Ray, origin: DVec3, direction: DVec3) -> Option<f32> {
-        let is_in_range = |&t: &f64| {
+    /// The first intersection with a torus, between the extremes of its equation.
+    fn unclear_meeting(&self, ray: &Ray, clip: Option<&Clip>) -> Option<f32> {
+        let QuadricKind::Torus(torus) = self.kind else { return None };
+        let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
+        let [origin, direction] = [self.point_in_object(origin), self.vector_in_object(direction)];
+        let t = torus.first_accepted([origin, direction], ray.t_min.into(), |&t| {
             let rounded = t as f32;
-            rounded > ray.t_min && rounded < ray.t_max
-        };
-        let is_part = |t: f64| self.contains(self.refined(origin + t * direction));
-        let across = DVec3::new(1.0, 1.0, 0.0);
-        let first =
-            |meetings: Option<[f64; 2]>| meetings?.into_iter().find(|t| is_in_range(t) && is_part(*t));
-        let t = match self.kind {
-            QuadricKind::Sphere { radius, .. } => first(roots(origin, direction, radius)),
-            QuadricKind::Cylinder { radius, .. } => first(roots(origin * across, direction * across, radius)),
-            QuadricKind::Disk { height, .. } => first(Some([(height - origin.z) / direction.z, f64::NAN])),
-            QuadricKind::Torus(torus) => {
-                torus.first_meeting([origin, direction], ray.t_min.into(), is_in_range)
-            }
-        };
+            let is_in_range = rounded > ray.t_min && rounded < ray.t_max;
+            is_in_range && clip.is_none_or(|clip| clip.keeps(0.0_f32, (origin + t * direction).into()))
+        });
         t.map(|t| t as f32)
     }
 
@@ -351,16 +357,21 @@ impl Quadric {
 
     /// The texture coordinates of a point of the surface, in object space.
     pub(crate) fn uv(&self, p: DVec3) -> Vec2 {
-        let u = if self.phi_max > 0.0 { angle(p) / self.phi_max } else { 0.0 };
+        let u = match self.kind {
+            QuadricKind::Rectangle { size: [x, _] } => p.x / x,
+            _ if self.phi_max > 0.0 => angle(p) / self.phi_max,
+            _ => 0.0,
+        };
         let v = match self.kind {
-            QuadricKind::Sphere { radius, z } => {
-                let [from, to] = z.map(|z| polar(z, radius));
+            QuadricKind::Sphere { radius, .. } => {
+                let [from, to] = self.theta;
                 (polar(p.z, radius) - from) / (to - from)
             }
             QuadricKind::Cylinder { z: [low, high], .. } => (p.z - low) / (high - low),
             QuadricKind::Disk { radius, inner_radius, .. } => {
                 (radius - p.truncate().length()) / (radius - inner_radius)
             }
+            QuadricKind::Rectangle { size: [_, y] } => p.y / y,
             QuadricKind::Torus(torus) => torus.angle(p) / (2.0 * PI),
         };
         Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE)
@@ -369,8 +380,8 @@ impl Quadric {
     /// The derivatives of a point of the surface by its texture coordinates, in object space.
     fn derivatives(&self, p: DVec3) -> [DVec3; 2] {
         match self.kind {
-            QuadricKind::Sphere { radius, z } => {
-                let [from, to] = z.map(|z| polar(z, radius));
+            QuadricKind::Sphere { radius, .. } => {
+                let [from, to] = self.theta;
                 sphere_derivatives(p.into(), radius, [to - from, self.phi_max]).map(DVec3::from)
             }
             QuadricKind::Cylinder { z: [low, high], .. } => {
@@ -384,6 +395,7 @@ impl Quadric {
                 let dpdv = (inner_radius - radius) * DVec3::new(x, y, 0.0);
                 [turning(turned, self.phi_max), dpdv]
             }
+            QuadricKind::Rectangle { size: [x, y] } => [x * DVec3::X, y * DVec3::Y],
             QuadricKind::Torus(torus) => [turning(p, self.phi_max), torus.along_tube(p)],
         }
     }
@@ -402,44 +414,14 @@ impl Quadric {
                 let own = 4.0 * UNIT * height.abs();
                 self.frame.place(p.into(), outward(), error(0.0, 0.0, own), f64::INFINITY)
             }
+            QuadricKind::Rectangle { .. } => {
+                self.frame.place(p.into(), outward(), error(0.0, 0.0, 0.0), f64::INFINITY)
+            }
             QuadricKind::Torus(torus) => {
                 let own = 32.0 * UNIT * torus.size();
                 self.frame.place(p.into(), outward(), error(own, own, own), torus.radius_of_curvature(p))
             }
         }
-    }
-}
-
-impl Quadrics {
-    /// The point of a quadric nearest to one that is on it up to errors. Texture coordinates are 0 where they are not wanted.
-    pub(super) fn point(&self, index: usize, near: DVec3, wants_uv: bool) -> SurfacePoint {
-        let quadric = &self.quadrics[index];
-        quadric.point_of(quadric.point_in_object(near), self.bindings[index], wants_uv)
-    }
-}
-
-impl Procedural for Quadrics {
-    fn count(&self) -> u32 {
-        self.quadrics.len() as u32
-    }
-
-    fn bounds(&self, primitive: u32) -> Aabb {
-        let [min, max] = self.quadrics[primitive as usize].bounds();
-        Aabb {
-            min: min.to_array().map(|x| (x as f32).next_down()),
-            max: max.to_array().map(|x| (x as f32).next_up()),
-        }
-    }
-
-    fn capsule(&self, primitive: u32) -> Option<Capsule> {
-        self.quadrics[primitive as usize].capsule()
-    }
-
-    fn intersect(&self, primitive: u32, ray: &Ray) -> Option<ProceduralHit> {
-        let quadric = &self.quadrics[primitive as usize];
-        let [origin, direction] = [ray.origin, ray.direction].map(|v| Vec3::from_array(v).as_dvec3());
-        let (origin, direction) = (quadric.point_in_object(origin), quadric.vector_in_object(direction));
-        quadric.first_meeting(ray, origin, direction).map(|t| ProceduralHit { t, u: 0.0, v: 0.0 })
     }
 }
 
@@ -475,24 +457,6 @@ fn polar(z: f64, radius: f64) -> f64 {
 fn angle(p: DVec3) -> f64 {
     let angle = libm::atan2(p.y, p.x);
     if angle < 0.0 { angle + 2.0 * PI } else { angle }
-}
-
-/// The intersections of a line with the sphere around the origin, the smaller t first; `f` is a point of the line.
-fn roots(f: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
-    let a = d.length_squared();
-    let b = f.dot(d);
-    // The discriminant from the line's point nearest to the centre: no cancellation for small or far spheres.
-    let nearest = (f - (b / a) * d).length();
-    let discriminant = a * ((radius - nearest) * (radius + nearest));
-    if !(discriminant >= 0.0) {
-        return None;
-    }
-    // Both roots without cancellation.
-    let length = f.length();
-    let c = (length - radius) * (length + radius);
-    let q = -(b + discriminant.sqrt().copysign(b));
-    let [t1, t2] = if q == 0.0 { [0.0; 2] } else { [q / a, c / q] };
-    Some(if t1 <= t2 { [t1, t2] } else { [t2, t1] })
 }
 
 #[cfg(test)]

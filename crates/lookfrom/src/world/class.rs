@@ -4,7 +4,7 @@ use lookfrom_bvh::{Hit, NONE, Sphere};
 
 use super::World;
 use crate::core::points::StoredPlacement;
-use crate::primitive::{MaterialBinding, Mesh, Primitives, SphereBinding};
+use crate::primitive::{MaterialBinding, Mesh, Primitives, Quadric, SphereBinding};
 use crate::shading::bsdf::BsdfClass;
 use crate::shading::material::{Material, MaterialKind};
 
@@ -24,18 +24,18 @@ pub(crate) struct SurfaceClass {
     hits: Option<HitClass>,
     /// The surface, if it is bare.
     bare: Option<BareSurface>,
-    /// True for spheres, false for triangles that are an interface of media and nothing else; `None` for all other surfaces.
-    interface: Option<bool>,
+    /// The kind of shape, where the surface is an interface of media and nothing else.
+    interface: Option<ShapeClass>,
 }
 
-/// A bare surface: a triangle or sphere outside of instances that is nothing but its material. It emits no light, has no alpha,
+/// A bare surface: one outside of instances that is nothing but its material. It emits no light, has no alpha,
 /// media or vertex data of its own, and is seen from both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BareSurface {
     /// Index into the world's materials.
     pub(crate) material: u32,
-    /// Whether it is a sphere.
-    pub(crate) is_sphere: bool,
+    /// The kind of shape that it is of.
+    pub(crate) shape: ShapeClass,
 }
 
 /// The class of a hit that is shaded in lanes from the hit on.
@@ -109,17 +109,16 @@ impl World {
     fn surface_class(&self, binding: &MaterialBinding, shape: ShapeClass) -> SurfaceClass {
         let &MaterialBinding { material, alpha, light, single_sided, .. } = binding;
         let Material { kind, .. } = &self.materials[material as usize];
-        let (is_sphere, is_other) = (shape == ShapeClass::Sphere, shape == ShapeClass::Other);
         let is_whole = light.is_none() && !(self.has_open_fronts && single_sided);
         let bsdf = self.materials[material as usize].class();
         let has_class = is_whole && Material::has_class(&self.materials, material);
-        let is_bare = !is_other && binding.is_bare() && !matches!(kind, MaterialKind::Unlit { .. });
+        let is_bare = binding.is_bare() && !matches!(kind, MaterialKind::Unlit { .. });
         let is_alone = MaterialBinding { medium_interface: None, ..*binding }.is_bare();
-        let is_interface = !is_other && is_alone && matches!(kind, MaterialKind::Interface);
+        let is_interface = is_alone && matches!(kind, MaterialKind::Interface);
         SurfaceClass {
             hits: has_class.then_some(HitClass { bsdf, material, shape, alpha }),
-            bare: is_bare.then_some(BareSurface { material, is_sphere }),
-            interface: is_interface.then_some(is_sphere),
+            bare: is_bare.then_some(BareSurface { material, shape }),
+            interface: is_interface.then_some(shape),
         }
     }
 
@@ -132,10 +131,9 @@ impl World {
         self.classes[hit.geometry as usize].of(hit.primitive).bare
     }
 
-    /// Whether a hit is on a triangle or sphere outside of instances that is an interface of media, without alpha or vertex data; then
-    /// also whether it is a sphere.
+    /// The kind of shape of a hit outside of instances, if it is on an interface of media without alpha or vertex data.
     #[inline(always)]
-    pub(crate) fn interface(&self, hit: &Hit) -> Option<bool> {
+    pub(crate) fn interface(&self, hit: &Hit) -> Option<ShapeClass> {
         if !self.has_media || !hit.is_hit() || hit.instance != NONE {
             return None;
         }
@@ -163,6 +161,17 @@ impl World {
     pub(crate) fn mesh(&self, hit: &Hit) -> Option<(&Mesh, Option<StoredPlacement<'_>>)> {
         let placement = (hit.instance != NONE).then(|| self.standing_placement(hit.instance));
         if let Primitives::Mesh(mesh) = self.primitives_of(hit) { Some((mesh, placement)) } else { None }
+    }
+
+    /// The quadric of a hit outside of instances; `None` for other geometries.
+    #[inline(always)]
+    pub(crate) fn quadric(&self, hit: &Hit) -> Option<&Quadric> {
+        match &self.primitives[hit.geometry as usize] {
+            Primitives::Quadrics(quadrics) if hit.instance == NONE => {
+                Some(&quadrics.quadrics[hit.primitive as usize])
+            }
+            _ => None,
+        }
     }
 
     /// The sphere of a hit outside of instances; `None` for other geometries.

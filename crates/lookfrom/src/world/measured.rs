@@ -73,7 +73,9 @@ impl MeasuredSurface {
             Primitives::Quadrics(quadrics) => {
                 let quadric = &quadrics.quadrics[primitive as usize];
                 let in_object = quadric.sample_in_object([u0, u1]);
-                let weight = quadric.object_area() * quadric.area_scale(in_object) / area;
+                let is_left = quadrics.keeps(primitive as usize, in_object);
+                let whole = if is_left { quadric.object_area() } else { 0.0 };
+                let weight = whole * quadric.area_scale(in_object) / area;
                 (quadric.point(in_object, quadrics.bindings[primitive as usize]), weight)
             }
             Primitives::Patches(patches) => {
@@ -139,9 +141,9 @@ impl World {
                     }
                 }
                 Primitives::Quadrics(quadrics) => {
-                    for (index, quadric) in quadrics.quadrics.iter().enumerate() {
-                        if is_named(&quadrics.bindings[index]) {
-                            add(index, quadric.area());
+                    for (index, binding) in quadrics.bindings.iter().enumerate() {
+                        if is_named(binding) {
+                            add(index, quadrics.area(index));
                         }
                     }
                 }

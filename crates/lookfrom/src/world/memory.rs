@@ -11,6 +11,8 @@ use super::World;
 const TRIANGLE: u64 = 165;
 /// Bytes of a sphere of many, or of a bilinear patch.
 const PRIMITIVE: u64 = 160;
+/// Bytes of the surface of a body in a solid, which may have six sides and other bodies.
+const SOLID_SURFACE: u64 = 8192;
 /// Bytes of a curve: its pieces' part of the tree, and what building the tree takes.
 const CURVE: u64 = 700;
 /// Bytes of a shape, apart from its primitives, with its name and its binding to a material.
@@ -71,6 +73,7 @@ fn of_shape(shape: &Shape, scene: &Scene) -> u64 {
         Geometry::Spheres(spheres) => (spheres.len(), PRIMITIVE),
         Geometry::Bilinear(patches) => (patches.patches.len(), PRIMITIVE),
         Geometry::Curves(strands) => (strands.len(), CURVE),
+        Geometry::SolidSurface { .. } => (1, SOLID_SURFACE),
         _ => (1, PRIMITIVE),
     };
     let light = if shape.emission.is_some() { LIGHT } else { 0 };

@@ -5,6 +5,7 @@
 
 mod displacement;
 mod labels;
+mod solid;
 mod vertices;
 
 use std::f32::consts::PI;
@@ -40,6 +41,8 @@ pub(super) struct Group {
     /// Quadrics with capsules.
     thin_quadrics: Quadrics,
     quadrics: Quadrics,
+    /// What is left of quadrics in solids.
+    solid_surfaces: Quadrics,
 }
 
 impl Group {
@@ -52,7 +55,7 @@ impl Group {
         if !self.disks.disks.is_empty() {
             primitives.push(Primitives::Disks(self.disks));
         }
-        for quadrics in [self.thin_quadrics, self.quadrics] {
+        for quadrics in [self.thin_quadrics, self.quadrics, self.solid_surfaces] {
             if !quadrics.quadrics.is_empty() {
                 primitives.push(Primitives::Quadrics(Arc::new(quadrics)));
             }
@@ -211,6 +214,7 @@ impl Compiler<'_> {
             &Geometry::Torus { radius, tube } => {
                 self.quadric(placing, QuadricKind::Torus(Torus { radius, tube }), 360.0, group)
             }
+            Geometry::SolidSurface { solid, body } => self.solid_surface(placing, solid, *body, group),
             Geometry::Bilinear(patches) => self.patches(placing, patches, group),
             Geometry::Curves(strands) => self.curves(placing, strands, group),
             Geometry::Mesh(id) => {

@@ -50,6 +50,7 @@ mod session;
 mod shapes;
 mod sides;
 mod smooth_meshes;
+mod solids;
 mod spectral_film;
 mod subsurface;
 mod support;

@@ -418,6 +418,7 @@ impl<'a> Places<'a> {
                 self.double.extend([height, radius, inner_radius, phi_max]);
             }
             Geometry::Torus { radius, tube } => self.double.extend([radius, tube]),
+            Geometry::SolidSurface { body, .. } => self.whole.push(body),
             Geometry::Spheres(spheres) => {
                 // Of millions of spheres that are shared: a copy of the first few.
                 *spheres = spheres.iter().take(4).copied().collect();

@@ -20,33 +20,34 @@ use crate::toml::word_of;
 const MOST_INLINE: usize = 16;
 
 impl Writer<'_> {
-    /// The kind of a shape and its table.
-    pub(super) fn shape(&mut self, shape: &Shape) -> Result<(&'static str, Fields)> {
+    /// The kind of a shape and its table, or those of all surfaces of a solid.
+    pub(super) fn shape(&mut self, surfaces: &[Shape]) -> Result<(&'static str, Fields)> {
+        let shape = &surfaces[0];
         let Shape {
-            name,
+            name: _,
             at: _,
             geometry,
-            material,
-            emission,
-            alpha,
             sides,
             reverse_orientation,
             single_sided,
             world_from_object,
+            material: _,
+            emission: _,
+            alpha: _,
         } = shape;
         let mut fields = Fields::default();
-        if let Some(name) = name {
-            fields.put("name", spoken("shape", name));
-        }
-        let (kind, is_placed) = self.geometry(&mut fields, geometry, world_from_object)?;
-        fields.put("material", self.materials.of(material.index()));
-        if let Some(Emission { radiance, power, two_sided }) = emission {
-            self.put_light(&mut fields, ["emission", "power"], *radiance, power)?;
-            fields.put_unless("two_sided", *two_sided, false);
-        }
-        if let Some(alpha) = alpha {
-            fields.put("alpha", self.scalar(*alpha));
-        }
+        let (kind, is_placed) = match geometry {
+            Geometry::SolidSurface { solid, .. } => {
+                self.put_solid(&mut fields, solid, surfaces)?;
+                ("solid", false)
+            }
+            _ => {
+                put_name(&mut fields, shape);
+                let placed = self.geometry(&mut fields, geometry, world_from_object)?;
+                self.put_look(&mut fields, shape)?;
+                placed
+            }
+        };
         if let Some(sides) = sides {
             let mut table = Fields::default();
             for (key, medium) in [("inside", sides.inside), ("outside", sides.outside)] {
@@ -64,8 +65,21 @@ impl Writer<'_> {
         Ok((kind, fields))
     }
 
+    /// Puts the material, emission and alpha of a shape.
+    pub(super) fn put_look(&mut self, fields: &mut Fields, shape: &Shape) -> Result<()> {
+        fields.put("material", self.materials.of(shape.material.index()));
+        if let Some(Emission { radiance, power, two_sided }) = &shape.emission {
+            self.put_light(fields, ["emission", "power"], *radiance, power)?;
+            fields.put_unless("two_sided", *two_sided, false);
+        }
+        if let Some(alpha) = shape.alpha {
+            fields.put("alpha", self.scalar(alpha));
+        }
+        Ok(())
+    }
+
     /// Puts a geometry; whether its keys give the place of the shape, too.
-    fn geometry(
+    pub(super) fn geometry(
         &mut self,
         fields: &mut Fields,
         geometry: &Geometry,
@@ -148,6 +162,7 @@ impl Writer<'_> {
                 fields.put("tube", *tube);
                 ("torus", placed.is_some())
             }
+            Geometry::SolidSurface { .. } => return Err(cannot("a surface of a solid without the solid")),
             Geometry::Bilinear(patches) => {
                 self.patches(fields, patches);
                 ("patch", false)
@@ -294,5 +309,12 @@ impl Writer<'_> {
         if let Some(height) = displacement {
             fields.put("displacement", self.scalar(height));
         }
+    }
+}
+
+/// Puts the name of a shape, if it has one.
+pub(super) fn put_name(fields: &mut Fields, shape: &Shape) {
+    if let Some(name) = &shape.name {
+        fields.put("name", spoken("shape", name));
     }
 }

@@ -5,7 +5,7 @@ use lookfrom_bvh::reference::{Quadratic, sphere as quadratic};
 
 use super::reference::roots;
 use super::{TestNumbers, TestRay, torus};
-use crate::primitive::{Quadric, QuadricKind};
+use crate::primitive::{Clip, Quadric, QuadricKind};
 
 /// Names of a ray in the space of a quadric.
 const IN_QUADRIC: [&str; 2] = ["a in the quadric", "d in the quadric"];
@@ -14,8 +14,32 @@ const IN_QUADRIC: [&str; 2] = ["a in the quadric", "d in the quadric"];
 const TO_QUADRIC: [&str; 4] =
     ["quadric at", "to the quadric, row 1", "to the quadric, row 2", "to the quadric, row 3"];
 
-/// Adds the inputs and numbers of the test of a quadric; returns the reason why it is missed, if it is.
-pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) -> Option<String> {
+const ALONG_PLANE: &str = "d_z = 0: the ray runs along the plane";
+
+/// A quadric, or the part of it that a solid leaves.
+#[derive(Clone, Copy)]
+struct Surface<'a> {
+    quadric: &'a Quadric,
+    clip: Option<&'a Clip>,
+}
+
+impl Surface<'_> {
+    /// Why a point of the quadric is no hit.
+    fn miss(&self, at: DVec3) -> String {
+        match self.clip.and_then(|clip| clip.cut(at)) {
+            Some(cut) => format!("cut away, since it is {cut}"),
+            None => "it is not hit".to_owned(),
+        }
+    }
+}
+
+/// Adds the inputs and numbers of the test of a quadric, of which `clip` may leave a part; returns the reason why it is missed, if it is.
+pub(super) fn test(
+    quadric: &Quadric,
+    clip: Option<&Clip>,
+    ray: &TestRay,
+    numbers: &mut TestNumbers,
+) -> Option<String> {
     let (rows, at) = quadric.object_space();
     numbers.space(TO_QUADRIC, rows, at);
     let ray = TestRay {
@@ -25,24 +49,33 @@ pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) 
     };
     ray.add_to(numbers, IN_QUADRIC);
     let in_plane = DVec3::new(1.0, 1.0, 0.0);
+    let surface = Surface { quadric, clip };
     let reason = match quadric.kind {
         QuadricKind::Sphere { radius, z } => {
             numbers.input("R", [radius]);
             numbers.input("z from, to", z);
-            curved(&ray, DVec3::ONE, (radius, z, quadric.phi_max), numbers)
+            curved(&ray, DVec3::ONE, (radius, z, surface), numbers)
         }
         QuadricKind::Cylinder { radius, z } => {
             numbers.input("R", [radius]);
             numbers.input("z from, to", z);
-            curved(&ray, in_plane, (radius, z, quadric.phi_max), numbers)
+            curved(&ray, in_plane, (radius, z, surface), numbers)
         }
         QuadricKind::Disk { height, radius, inner_radius } => {
             numbers.input("z", [height]);
             numbers.input("R", [radius]);
             numbers.input("R of the hole", [inner_radius]);
-            flat(&ray, (height, radius, inner_radius, quadric.phi_max), numbers)
+            flat(&ray, (height, radius, inner_radius, surface), numbers)
         }
-        QuadricKind::Torus(torus) => return Some(torus::test(&torus, &ray, numbers)),
+        QuadricKind::Rectangle { size } => {
+            numbers.input("size", size);
+            return Some(rectangle(&ray, size, surface, numbers));
+        }
+        QuadricKind::Torus(torus) => {
+            return Some(torus::test(&torus, &ray, numbers, |t| {
+                surface.miss(ray.origin + t * ray.direction)
+            }));
+        }
     };
     numbers.input("φ up to", [quadric.phi_max]);
     reason
@@ -52,7 +85,7 @@ pub(super) fn test(quadric: &Quadric, ray: &TestRay, numbers: &mut TestNumbers) 
 fn curved(
     ray: &TestRay,
     axes: DVec3,
-    (radius, [low, high], phi_max): (f64, [f64; 2], f64),
+    (radius, [low, high], surface): (f64, [f64; 2], Surface<'_>),
     numbers: &mut TestNumbers,
 ) -> Option<String> {
     let [a, d] = [ray.origin, ray.direction].map(|v| (v * axes).to_array());
@@ -69,15 +102,16 @@ fn curved(
         place(ray, t32, t64, [z, phi], numbers);
     }
     let why = |(name, t): (&str, f64)| {
-        let [z, phi] = place_of(ray.origin + t * ray.direction);
-        let outside = if phi > phi_max {
-            "φ is not of its part"
+        let at = ray.origin + t * ray.direction;
+        let [z, phi] = place_of(at);
+        let outside = if phi > surface.quadric.phi_max {
+            "φ is not of its part".to_owned()
         } else if !(low..=high).contains(&z) {
-            "z is not of its part"
+            "z is not of its part".to_owned()
         } else {
-            "it is not hit"
+            surface.miss(at)
         };
-        format!("{name}: {}", ray.range(t).unwrap_or(outside))
+        format!("{name}: {}", ray.range(t).unwrap_or(&outside))
     };
     let both = [("t₁", double.t1), ("t₂", double.t2)].map(why);
     Some(both.join("; "))
@@ -86,7 +120,7 @@ fn curved(
 /// The plane of a disk.
 fn flat(
     ray: &TestRay,
-    (height, outer, inner, phi_max): (f64, f64, f64, f64),
+    (height, outer, inner, surface): (f64, f64, f64, Surface<'_>),
     numbers: &mut TestNumbers,
 ) -> Option<String> {
     let (a, d) = (ray.origin, ray.direction);
@@ -100,17 +134,44 @@ fn flat(
     place(ray, single, t, ["z at t", "φ at t"], numbers);
     let from_axis = radius(at.x, at.y);
     let outside = if d.z == 0.0 {
-        "d_z = 0: the ray runs along the plane"
+        ALONG_PLANE.to_owned()
     } else if from_axis > outer {
-        "√(x² + y²) > R"
+        "√(x² + y²) > R".to_owned()
     } else if from_axis < inner {
-        "√(x² + y²) < R of the hole"
-    } else if place_of(at)[1] > phi_max {
-        "φ is not of its part"
+        "√(x² + y²) < R of the hole".to_owned()
+    } else if place_of(at)[1] > surface.quadric.phi_max {
+        "φ is not of its part".to_owned()
     } else {
-        "it is not hit"
+        surface.miss(at)
     };
-    Some(ray.range(t).unwrap_or(outside).to_owned())
+    Some(ray.range(t).unwrap_or(&outside).to_owned())
+}
+
+/// The plane of a rectangle, and x and y there. Returns the reason why it is missed.
+fn rectangle(
+    ray: &TestRay,
+    [width, height]: [f64; 2],
+    surface: Surface<'_>,
+    numbers: &mut TestNumbers,
+) -> String {
+    let (a, d) = (ray.origin, ray.direction);
+    let t = -a.z / d.z;
+    let single = -(a.z as f32) / d.z as f32;
+    numbers.number("t = −a_z/d_z", single, t);
+    let at = a + t * d;
+    let at32 = a.as_vec3() + single * d.as_vec3();
+    numbers.number("x at t", at32.x, at.x);
+    numbers.number("y at t", at32.y, at.y);
+    let outside = if d.z == 0.0 {
+        ALONG_PLANE.to_owned()
+    } else if !(0.0..=width).contains(&at.x) {
+        "x is not of its side".to_owned()
+    } else if !(0.0..=height).contains(&at.y) {
+        "y is not of its side".to_owned()
+    } else {
+        surface.miss(at)
+    };
+    ray.range(t).unwrap_or(&outside).to_owned()
 }
 
 /// z and φ of a point, φ from 0 to 2π.

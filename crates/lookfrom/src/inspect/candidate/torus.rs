@@ -27,7 +27,13 @@ fn quartic<T: Real>([a, d]: [[T; 3]; 2], [radius, tube]: [T; 2]) -> [T; 5] {
 }
 
 /// Adds the inputs and numbers of the test of a torus; returns the reason why it is missed, if it is.
-pub(super) fn test(torus: &Torus, ray: &TestRay, numbers: &mut TestNumbers) -> String {
+/// `miss` says why a root within the ray is no hit.
+pub(super) fn test(
+    torus: &Torus,
+    ray: &TestRay,
+    numbers: &mut TestNumbers,
+    miss: impl Fn(f64) -> String,
+) -> String {
     let Torus { radius, tube } = *torus;
     numbers.input("R", [radius]);
     numbers.input("r of the tube", [tube]);
@@ -43,7 +49,7 @@ pub(super) fn test(torus: &Torus, ray: &TestRay, numbers: &mut TestNumbers) -> S
     let outcomes: Vec<String> = meetings
         .map(|(name, t)| {
             numbers.number(name, newton(single, t as f32), t);
-            format!("{name}: {}", ray.range(t).unwrap_or("it is not hit"))
+            format!("{name}: {}", ray.range(t).map_or_else(|| miss(t), str::to_owned))
         })
         .collect();
     if outcomes.is_empty() { "no real root on the surface".to_owned() } else { outcomes.join("; ") }

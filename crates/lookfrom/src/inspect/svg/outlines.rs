@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use crate::primitive::{Primitives, Quadric, QuadricKind, Torus};
+use crate::primitive::{Primitives, Quadric, QuadricKind, Quadrics, Torus};
 use crate::world::World;
 
 /// Maximum number of outlines of all shapes.
@@ -80,7 +80,7 @@ fn add(primitives: &Primitives, to_world: &DMat4, most: usize, viewer: DVec4, ou
                 outlines.push(polygon(corners.collect()));
             }
             Primitives::Quadrics(quadrics) => {
-                outlines.extend(quadric(&quadrics.quadrics[index]).into_iter().map(line));
+                outlines.extend(quadric(quadrics, index).into_iter().map(line));
             }
             Primitives::Patches(patches) => {
                 let [p00, p10, p01, p11] = patches.corners(index);
@@ -115,19 +115,34 @@ fn silhouette(center: DVec3, radius: f64, viewer: DVec4) -> Option<Vec<DVec3>> {
     Some(circle(TAU).map(|[cos, sin]| middle + across * (cos * x + sin * y)).collect())
 }
 
-/// Circles at the ends of a quadric, and lines along it.
-fn quadric(quadric: &Quadric) -> Vec<Vec<DVec3>> {
+/// Circles at the ends of a quadric, and lines along it, as far as a solid leaves them.
+fn quadric(quadrics: &Quadrics, index: usize) -> Vec<Vec<DVec3>> {
+    let quadric = &quadrics.quadrics[index];
+    let lines = lines_of(quadric);
+    let is_left = |a: &DVec3, b: &DVec3| quadrics.keeps(index, a.midpoint(*b));
+    let pieces = lines.iter().flat_map(|line| line.chunk_by(is_left)).filter(|piece| piece.len() > 1);
+    pieces.map(|piece| piece.iter().map(|point| quadric.point_in_render(*point)).collect()).collect()
+}
+
+/// Circles at the ends of a quadric, and lines along it, in its object space.
+fn lines_of(quadric: &Quadric) -> Vec<Vec<DVec3>> {
     let turn = |radius: f64, z: f64| -> Vec<DVec3> {
-        circle(quadric.phi_max)
-            .map(|[x, y]| quadric.point_in_render(DVec3::new(radius * x, radius * y, z)))
-            .collect()
+        circle(quadric.phi_max).map(|[x, y]| DVec3::new(radius * x, radius * y, z)).collect()
     };
     let (heights, radius_at): (Vec<f64>, Box<dyn Fn(f64) -> f64>) = match quadric.kind {
         QuadricKind::Disk { height, radius, inner_radius } => {
             return vec![turn(radius, height), turn(inner_radius, height)];
         }
         QuadricKind::Cylinder { radius, z } => (z.to_vec(), Box::new(move |_| radius)),
-        QuadricKind::Torus(torus) => return rings(quadric, torus),
+        QuadricKind::Rectangle { size: [x, y] } => {
+            let corners = [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]];
+            let side = |ends: &[[f64; 2]]| -> Vec<DVec3> {
+                let [from, to] = [ends[0], ends[1]].map(|[x, y]| DVec3::new(x, y, 0.0));
+                (0..=CIRCLE).map(|step| from.lerp(to, step as f64 / CIRCLE as f64)).collect()
+            };
+            return corners.windows(2).map(side).collect();
+        }
+        QuadricKind::Torus(torus) => return rings(torus),
         QuadricKind::Sphere { radius, z: [low, high] } => (
             (0..=8).map(|step| low + (high - low) * f64::from(step) / 8.0).collect(),
             Box::new(move |z| (radius * radius - z * z).max(0.0).sqrt()),
@@ -138,18 +153,18 @@ fn quadric(quadric: &Quadric) -> Vec<Vec<DVec3>> {
         let (sin, cos) = libm::sincos(quadric.phi_max * f64::from(quarter) / 4.0);
         let at = |&z: &f64| {
             let radius = radius_at(z);
-            quadric.point_in_render(DVec3::new(radius * cos, radius * sin, z))
+            DVec3::new(radius * cos, radius * sin, z)
         };
         lines.push(heights.iter().map(at).collect());
     }
     lines
 }
 
-/// Circles around the axis of a torus, and around its tube.
-fn rings(quadric: &Quadric, Torus { radius, tube }: Torus) -> Vec<Vec<DVec3>> {
+/// Circles around the axis of a torus, and around its tube, in its object space.
+fn rings(Torus { radius, tube }: Torus) -> Vec<Vec<DVec3>> {
     let place = |[cos, sin]: [f64; 2], [x, z]: [f64; 2]| {
         let ring = radius + tube * x;
-        quadric.point_in_render(DVec3::new(ring * cos, ring * sin, tube * z))
+        DVec3::new(ring * cos, ring * sin, tube * z)
     };
     let around_axis = circle(TAU)
         .step_by(CIRCLE / 4)

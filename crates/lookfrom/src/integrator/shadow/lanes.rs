@@ -11,13 +11,13 @@ use crate::integrator::SpectralModes;
 use crate::integrator::wavefront::{BareHits, Surfaces};
 use crate::shading::material::MaterialKind;
 use crate::shading::texture::{SpectralMode, TexturePoint};
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// The rays of a round that pass such surfaces, by their places in it.
 #[derive(Default)]
 pub(super) struct Crossings {
-    on_triangles: Vec<u32>,
-    on_spheres: Vec<u32>,
+    /// By kind of shape.
+    on_shapes: [Vec<u32>; ShapeClass::ALL.len()],
     /// The light that passed, as a factor, by places: for a probe.
     pub(super) passed: Option<Vec<Spectrum>>,
 }
@@ -36,8 +36,7 @@ impl Crossings {
         if material.whitted.transmission.varies() || matches!(material.kind, MaterialKind::Interface) {
             return false;
         }
-        let places = if bare.is_sphere { &mut self.on_spheres } else { &mut self.on_triangles };
-        places.push(place);
+        self.on_shapes[bare.shape as usize].push(place);
         true
     }
 
@@ -56,11 +55,10 @@ impl Crossings {
         if let Some(passed) = &mut self.passed {
             passed.resize(rays.len(), Spectrum::BLACK);
         }
-        for (places, are_on_spheres) in [(&mut self.on_triangles, false), (&mut self.on_spheres, true)] {
+        for (places, shape) in self.on_shapes.iter_mut().zip(ShapeClass::ALL) {
             if !places.is_empty() {
                 let passed = self.passed.as_deref_mut();
-                let kernel =
-                    GoOn { world, places, are_on_spheres, rays, hits, modes, lights, chosen, passed };
+                let kernel = GoOn { world, places, shape, rays, hits, modes, lights, chosen, passed };
                 are_all_lit &= shade_together(kernel);
                 places.clear();
             }
@@ -72,7 +70,7 @@ impl Crossings {
 struct GoOn<'a> {
     world: &'a World,
     places: &'a [u32],
-    are_on_spheres: bool,
+    shape: ShapeClass,
     rays: &'a mut [Ray],
     hits: &'a [Hit],
     modes: &'a SpectralModes,
@@ -86,13 +84,13 @@ impl Kernel for GoOn<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
-        let Self { world, places, are_on_spheres, rays, hits, modes, lights, chosen, mut passed } = self;
+        let Self { world, places, shape, rays, hits, modes, lights, chosen, mut passed } = self;
         let mut are_all_lit = true;
         for places in places.chunks(LANES) {
             let mut memory = None;
             let eight = filled(places, &mut memory);
             let hits = by_lane!(lane => &hits[eight[lane] as usize]);
-            let bare = BareHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, are_on_spheres };
+            let bare = BareHits { rays: by_lane!(lane => &rays[eight[lane] as usize]), hits, shape };
             let surfaces = Surfaces::of_eight(simd, world, &bare, false);
             let [_, directions] = gather_rays(simd, &bare.rays);
             let origins = scatter(surfaces.exits().toward(directions));

@@ -4,14 +4,13 @@ use lookfrom_bvh::{Hit, Ray};
 
 use crate::core::lanes::LANES;
 use crate::primitive::{Mesh, Primitives};
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// Eight hits on bare surfaces of one kind of shape.
 pub(in crate::integrator) struct BareHits<'a> {
     pub(in crate::integrator) rays: [&'a Ray; LANES],
     pub(in crate::integrator) hits: [&'a Hit; LANES],
-    /// Whether they are on spheres, not on triangles.
-    pub(in crate::integrator) are_on_spheres: bool,
+    pub(in crate::integrator) shape: ShapeClass,
 }
 
 impl BareHits<'_> {

@@ -47,11 +47,10 @@ impl Bin {
 
 impl Bins {
     /// Number of bins: kinds share them where there are more.
-    pub(in crate::integrator) const COUNT: usize = 64;
+    pub(in crate::integrator) const COUNT: usize = 63;
 
-    /// All bins with an even number, and all with an odd one.
-    pub(in crate::integrator) const EVEN: u64 = 0x5555_5555_5555_5555;
-    pub(in crate::integrator) const ODD: u64 = !Self::EVEN;
+    /// All bins with a number that is divisible by 3.
+    pub(in crate::integrator) const EACH_THIRD: u64 = 0x1249_2492_4924_9249;
 
     /// Adds a path of a kind, and calls `shade` for eight where they fill the lanes.
     #[inline(always)]

@@ -3,23 +3,23 @@
 use lookfrom_bvh::{Hit, Ray};
 use lookfrom_simd::{Kernel, Mask as _, Simd, prelude::*};
 
-use super::bare_hits::{self, BareHits};
+use super::bare_hits::BareHits;
 use super::surfaces::Surfaces;
 use crate::core::lanes::{LANES, are_shaded_together, by_lane, gather_rays, scatter, shade_together};
 use crate::primitive::MaterialBinding;
 use crate::shading::interior_stack::InteriorStack;
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// Rays that go straight on through interfaces, by their places in a list.
 #[derive(Debug, Default)]
 pub(in crate::integrator) struct Interfaces {
-    on_triangles: Vec<u32>,
-    on_spheres: Vec<u32>,
+    /// By kind of shape.
+    on_shapes: [Vec<u32>; ShapeClass::ALL.len()],
 }
 
 /// The kind of shape that an interface is.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::integrator) struct InterfaceKind(bool);
+pub(in crate::integrator) struct InterfaceKind(ShapeClass);
 
 /// A ray behind an interface.
 pub(in crate::integrator) struct Behind {
@@ -37,9 +37,8 @@ impl Interfaces {
 
     /// Adds the ray at a place, which has hit an interface of a kind.
     #[inline]
-    pub(in crate::integrator) fn push(&mut self, InterfaceKind(is_sphere): InterfaceKind, place: usize) {
-        let places = if is_sphere { &mut self.on_spheres } else { &mut self.on_triangles };
-        places.push(place as u32);
+    pub(in crate::integrator) fn push(&mut self, InterfaceKind(shape): InterfaceKind, place: usize) {
+        self.on_shapes[shape as usize].push(place as u32);
     }
 
     /// Brings all rays behind their interfaces, and forgets them. `of` tells of a place the ray, its hit, and the media that it is in.
@@ -49,12 +48,12 @@ impl Interfaces {
         of: impl Fn(u32) -> (&'a Ray, &'a Hit, InteriorStack),
     ) -> Vec<Behind> {
         let mut behind = Vec::new();
-        for (places, are_on_spheres) in [(&mut self.on_triangles, false), (&mut self.on_spheres, true)] {
+        for (places, shape) in self.on_shapes.iter_mut().zip(ShapeClass::ALL) {
             for chunk in places.chunks(LANES) {
                 // Unused lanes repeat the last ray.
                 let eight = by_lane!(lane => of(chunk[lane.min(chunk.len() - 1)]));
                 let (rays, hits) = (by_lane!(lane => eight[lane].0), by_lane!(lane => eight[lane].1));
-                let bare = BareHits { rays, hits, are_on_spheres };
+                let bare = BareHits { rays, hits, shape };
                 let Crossed { origins, front, outside } = Cross { world, bare }.cross();
                 for (lane, &place) in chunk.iter().enumerate() {
                     let (_, hit, before) = eight[lane];
@@ -77,16 +76,10 @@ fn interior_behind(
     hit: &Hit,
     (front, is_outside): (bool, bool),
 ) -> InteriorStack {
-    let Some(MaterialBinding { material, medium_interface, .. }) = binding(world, hit) else { return before };
+    let MaterialBinding { material, medium_interface, .. } =
+        world.primitives[hit.geometry as usize].binding(hit.primitive as usize);
     let interface = medium_interface.map(|index| world.medium_interfaces[index as usize]);
     before.beside(&world.materials, (*material, interface), || is_outside, (true, front))
-}
-
-fn binding<'a>(world: &'a World, hit: &Hit) -> Option<&'a MaterialBinding> {
-    match bare_hits::mesh(world, hit) {
-        Some(mesh) => Some(&mesh.binding),
-        None => world.sphere(hit).map(|(_, sphere)| &sphere.binding),
-    }
 }
 
 struct Cross<'a> {

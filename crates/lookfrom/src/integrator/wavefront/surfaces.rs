@@ -8,9 +8,11 @@ use crate::aov::FirstSurfaceColumns;
 use crate::core::lanes::{LANES, by_lane, gather_rays, store, store_f64};
 use crate::core::points::{Exits, Lift, Points};
 use crate::core::vector::Vector;
-use crate::primitive::{points_on_meshes, points_on_spheres};
+use crate::primitive::{
+    SurfacePoint, SurfacePoints, points_on_meshes, points_on_quadrics, points_on_spheres,
+};
 use crate::shading::interaction::SurfaceInteraction;
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// Surfaces with the directions that shading needs, as [`World::surface`] has them.
 pub(in crate::integrator) struct Surfaces<R: Real> {
@@ -60,9 +62,10 @@ impl<S: Simd> Surfaces<f32x8<S>> {
         wants_uvs: bool,
     ) -> Self {
         let [origin, direction] = gather_rays(simd, &bare.rays).map(Vector::widen);
-        let (points, ng, ns, uv, way) = match bare.are_on_spheres {
-            true => on_spheres(simd, world, bare, [origin, direction], wants_uvs),
-            false => on_triangles(simd, world, bare, wants_uvs),
+        let (points, ng, ns, uv, way) = match bare.shape {
+            ShapeClass::Mesh => on_triangles(simd, world, bare, wants_uvs),
+            ShapeClass::Sphere => on_spheres(simd, world, bare, [origin, direction], wants_uvs),
+            ShapeClass::Other => on_others(simd, world, bare, [origin, direction], wants_uvs),
         };
         let wo = -direction.normalize();
         let front = ng.dot(wo).gt(f64x8::splat(simd, 0.0));
@@ -149,4 +152,37 @@ fn on_spheres<S: Simd>(
     let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
     let at = points_on_spheres(simd, &spheres, origin + direction * Real::widen(t), [wants_uvs, false]);
     (at.points, at.ng, at.ns, wants_uvs.then_some(at.uv), None)
+}
+
+/// The points of hits on other shapes: on quadrics without texture coordinates in lanes, else one by one.
+#[inline(always)]
+fn on_others<S: Simd>(
+    simd: S,
+    world: &World,
+    bare: &BareHits<'_>,
+    [origin, direction]: [Vector<f64x8<S>>; 2],
+    wants_uvs: bool,
+) -> Shapes<S> {
+    let hits = &bare.hits;
+    if let Some(first) = world.quadric(hits[0]).filter(|_| !wants_uvs) {
+        let quadrics = by_lane!(lane => world.quadric(hits[lane]));
+        if quadrics.iter().all(Option::is_some) {
+            let quadrics = by_lane!(lane => quadrics[lane].unwrap_or(first));
+            let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
+            if let Some((points, ng)) =
+                points_on_quadrics(simd, &quadrics, origin + direction * Real::widen(t))
+            {
+                return (points, ng, ng, None, None);
+            }
+        }
+    }
+    let points = by_lane!(lane => point_of(world, bare, lane, wants_uvs));
+    let at = SurfacePoints::gather(simd, &by_lane!(lane => &points[lane]));
+    (at.points, at.ng, at.ns, wants_uvs.then_some(at.uv), None)
+}
+
+#[inline(never)]
+fn point_of(world: &World, bare: &BareHits<'_>, lane: usize, wants_uv: bool) -> SurfacePoint {
+    // What moves is in instances.
+    world.surface_point(bare.rays[lane], bare.hits[lane], 0.0, wants_uv)
 }

@@ -15,7 +15,7 @@ use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::material::WhittedMaterial;
 use crate::shading::texture::lanes::TexturePoints;
 use crate::shading::texture::{SpectrumTexture, TexturePoint};
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// The spectra of a texture that is evaluated side by side.
 #[inline(always)]
@@ -154,7 +154,9 @@ pub(super) fn texture_point<'a>(
     let (ray, hit) = (bare.rays[lane], bare.hits[lane]);
     let is_inside = Vec3::from(ng).dot(ray.direction.into()) > 0.0;
     let is_filtered = |material: u32| world.materials[material as usize].needs_footprint;
-    if world.footprint.is_some() && world.bare_surface(hit).is_some_and(|bare| is_filtered(bare.material)) {
+    if bare.shape == ShapeClass::Other
+        || world.footprint.is_some() && world.bare_surface(hit).is_some_and(|bare| is_filtered(bare.material))
+    {
         return world.shading_point(&world.surface(ray, hit));
     }
     if let Some(mesh) = bare_hits::mesh(world, hit) {

@@ -21,7 +21,7 @@ use crate::shading::bsdf::whitted::WhittedCoefficients;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::material::albedo_of_coefficients;
 use crate::shading::texture::SpectralMode;
-use crate::world::World;
+use crate::world::{ShapeClass, World};
 
 /// Results of a step that are wanted beside the light.
 #[derive(Clone, Copy)]
@@ -209,7 +209,7 @@ pub(super) struct BareEight<'a> {
 impl<'a> BareEight<'a> {
     /// Eight paths of a batch, and what they have met. Unused lanes repeat the last.
     #[inline(always)]
-    pub(super) fn of(batch: &HitBatch<'a>, eight: &Eight<'_>, are_on_spheres: bool) -> Self {
+    pub(super) fn of(batch: &HitBatch<'a>, eight: &Eight<'_>, shape: ShapeClass) -> Self {
         let &Eight { paths: indices, materials } = eight;
         let mut memory = [None; 2];
         let [first, second] = &mut memory;
@@ -217,7 +217,7 @@ impl<'a> BareEight<'a> {
         let hits = by_lane!(lane => &batch.hits[indices[lane] as usize]);
         let paths = by_lane!(lane => &batch.paths[indices[lane] as usize]);
         let rays = by_lane!(lane => &paths[lane].ray);
-        Self { paths, bare: BareHits { rays, hits, are_on_spheres }, materials }
+        Self { paths, bare: BareHits { rays, hits, shape }, materials }
     }
 
     /// The throughput of a path, attenuated by the medium on the way.
@@ -257,8 +257,8 @@ impl Kernel for BareKernel<'_> {
     fn run<S: Simd>(self, simd: S) {
         let Self { world, eight, streams, modes, times, wanted, shaded, first } = self;
         let modes = &Modes::of(&eight.paths, modes, times);
-        // Of spheres they are costly.
-        let wants_uvs = first.is_some() || !eight.bare.are_on_spheres;
+        // Of all but meshes they are costly.
+        let wants_uvs = first.is_some() || eight.bare.shape == ShapeClass::Mesh;
         let surfaces = &Surfaces::of_eight(simd, world, &eight.bare, wants_uvs);
         let coefficients = &WhittedCoefficients::at_eight(simd, world, eight, surfaces, modes);
         if let Some(first) = first {

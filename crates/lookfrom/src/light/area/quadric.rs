@@ -57,7 +57,7 @@ impl QuadricLight {
 
     pub(super) fn normals(&self) -> NormalCone {
         match self.quadric.kind {
-            QuadricKind::Disk { .. } => {
+            QuadricKind::Disk { .. } | QuadricKind::Rectangle { .. } => {
                 let at = self.quadric.point(self.quadric.sample_in_object([0.5; 2]), MaterialBinding::NONE);
                 NormalCone { axis: at.ng, cos: 1.0 }
             }

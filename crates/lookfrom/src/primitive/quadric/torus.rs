@@ -8,6 +8,9 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
+use lookfrom_simd::{Float, Mask};
+
+use crate::core::vector::Vector;
 
 /// A tube of this part of the size or more is as exactly found by the quartic: that loses as many bits as the tube is thin.
 const THIN: f64 = 1.0 / 16.0;
@@ -37,29 +40,35 @@ struct Section {
 }
 
 /// The quartic `s⁴ + 2 p s² + 4 q s + rest`, which is positive outside.
-struct Quartic {
-    p: f64,
-    q: f64,
-    rest: f64,
+struct Quartic<F> {
+    p: F,
+    q: F,
+    rest: F,
 }
 
-impl Quartic {
+impl<F: Float<Scalar = f64>> Quartic<F> {
     /// The value and the derivative.
-    fn at(&self, s: f64) -> (f64, f64) {
+    #[inline(always)]
+    fn at(&self, s: F) -> (F, F) {
         let Self { p, q, rest } = *self;
-        (((s * s + 2.0 * p) * s + 4.0 * q) * s + rest, 4.0 * ((s * s + p) * s + q))
+        let (two, four) = (s.like(2.0), s.like(4.0));
+        (((s * s + two * p) * s + four * q) * s + rest, four * ((s * s + p) * s + q))
     }
 
     /// Whether it has a minimum and no other extremes.
-    fn has_one_extreme(&self) -> bool {
-        self.discriminant() >= 0.0
+    #[inline(always)]
+    fn has_one_extreme(&self) -> F::Mask {
+        !self.discriminant().lt(self.p.like(0.0))
     }
 
     /// The discriminant of a quarter of the derivative, s³ + p s + q.
-    fn discriminant(&self) -> f64 {
-        0.25 * self.q * self.q + self.p * self.p * self.p / 27.0
+    #[inline(always)]
+    fn discriminant(&self) -> F {
+        self.p.like(0.25) * self.q * self.q + self.p * self.p * self.p / self.p.like(27.0)
     }
+}
 
+impl Quartic<f64> {
     /// Parameters of the extremes, ascending, then infinities: Cardano's formula for one, Viète's for three.
     fn extremes(&self) -> [f64; 4] {
         let Self { p, q, .. } = *self;
@@ -78,37 +87,84 @@ impl Quartic {
     }
 }
 
-/// A root has to be searched for between extremes.
-struct Unclear;
-
 /// A line and a torus, in units of its size, in which nothing overflows.
-struct Crossing {
+struct Crossing<F> {
     torus: Torus,
-    line: Line,
-    quartic: Quartic,
+    line: Line<F>,
+    quartic: Quartic<F>,
     /// The ends of the line within the bounds of the torus ([`Torus::ends`]).
-    from: f64,
-    to: f64,
+    from: F,
+    to: F,
     /// Of the line's parameter: the way to its origin, the unit of s, and the way by t.
-    nearest: f64,
-    size: f64,
-    speed: f64,
+    nearest: F,
+    size: F,
+    speed: F,
 }
 
-impl Crossing {
+/// The first meetings of rays, where they are found without extremes.
+pub(super) struct FirstMeetings<F: Float> {
+    pub(super) t: F,
+    pub(super) exist: F::Mask,
+    /// Where a root has to be searched for between extremes, if there is one.
+    pub(super) are_unclear: F::Mask,
+}
+
+impl<F: Float<Scalar = f64>> Crossing<F> {
     /// The parameter of the line that was given.
-    fn parameter(&self, s: f64) -> f64 {
+    #[inline(always)]
+    fn parameter(&self, s: F) -> F {
         (self.nearest + s * self.size) / self.speed
     }
 
+    /// Whether the line meets the bounds of the torus after `first`.
+    #[inline(always)]
+    fn is_near(&self, first: F) -> F::Mask {
+        self.from.lt(self.to) & first.lt(self.to)
+    }
+
+    /// The first root after `first` of quartics with one extreme, if there is one, without that extreme. It is unclear where Newton's
+    /// method passes by the minimum, as it may where the quartic is not convex.
+    #[inline(always)]
+    fn first_roots(&self, first: F, mut are_sought: F::Mask) -> FirstMeetings<F> {
+        let zero = first.like(0.0);
+        let start = first.max(self.from);
+        let (value, slope) = self.quartic.at(start);
+        let comes_down = value.gt(zero) | !first.gt(self.from);
+        are_sought = are_sought & (slope.lt(zero) | !comes_down);
+        // Towards the minimum, from the outside before it or after it.
+        let mut s = F::select(comes_down, start - value / slope, self.to);
+        let (mut exist, mut are_unclear) = (are_sought.like(false), are_sought.like(false));
+        for _ in 0..MOST_STEPS {
+            if !are_sought.any() {
+                break;
+            }
+            let (value, slope) = self.quartic.at(s);
+            let descends = slope.lt(zero);
+            let has_passed = are_sought & ((descends & !comes_down) | (!descends & comes_down));
+            // Of a convex function that has roots no step is too long.
+            let is_above = !self.quartic.p.lt(zero) & value.gt(zero);
+            are_unclear = are_unclear | (has_passed & !is_above);
+            are_sought = are_sought & !has_passed;
+            let step = value / slope;
+            s = F::select(are_sought, s - step, s);
+            let is_found = are_sought & !step.abs().gt(step.like(FOUND));
+            exist = exist | is_found;
+            are_sought = are_sought & !is_found;
+        }
+        FirstMeetings { t: self.parameter(s), exist, are_unclear: are_unclear | are_sought }
+    }
+}
+
+impl Crossing<f64> {
     /// A function that is positive outside and negative inside, and its derivative: the quartic, which is soon computed, but the distance
     /// where that is more exact, or the quartic has roots inside.
     fn at(&self, s: f64) -> (f64, f64) {
         if self.torus.is_by_quartic() {
             return self.quartic.at(s);
         }
-        let (distance, gradient) = self.torus.distance(self.line.at(s));
-        (distance, gradient.dot(self.line.direction))
+        let [origin, direction] = [self.line.origin, self.line.direction].map(DVec3::from);
+        let (distance, gradient) = self.torus.distance(origin + s * direction);
+        (distance, gradient.dot(direction))
     }
 
     /// The roots in ascending order, but those far before `first`: between the extremes of the quartic.
@@ -131,32 +187,6 @@ impl Crossing {
         let start = inside + (outside - inside) * (below / (below - above)).sqrt();
         newton(|s| self.at(s), [inside, outside], start)
     }
-
-    /// The first root after `first` of a quartic with one extreme, if there is one, without that extreme. An error where Newton's method
-    /// passes by the minimum, as it may where the quartic is not convex.
-    fn first_root(&self, first: f64) -> Result<Option<f64>, Unclear> {
-        let start = first.max(self.from);
-        let (value, slope) = self.quartic.at(start);
-        let comes_down = value > 0.0 || first <= self.from;
-        if comes_down && slope >= 0.0 {
-            return Ok(None);
-        }
-        // Towards the minimum, from the outside before it or after it.
-        let mut s = if comes_down { start - value / slope } else { self.to };
-        for _ in 0..MOST_STEPS {
-            let (value, slope) = self.quartic.at(s);
-            if (slope < 0.0) != comes_down {
-                // Of a convex function that has roots no step is too long.
-                return if self.quartic.p >= 0.0 && value > 0.0 { Ok(None) } else { Err(Unclear) };
-            }
-            let step = value / slope;
-            s -= step;
-            if step.abs() <= FOUND {
-                return Ok(Some(s));
-            }
-        }
-        Err(Unclear)
-    }
 }
 
 /// The root of a function, given with its derivative, between an end where it is not positive and one where it is: Newton's method, with
@@ -178,17 +208,17 @@ fn newton(function: impl Fn(f64) -> (f64, f64), [mut below, mut above]: [f64; 2]
     x
 }
 
-/// A line from its point nearest to the centre on, in units of the torus's size: `origin + s direction`.
-struct Line {
-    origin: DVec3,
-    /// Of unit length.
-    direction: DVec3,
+/// A vector divided by a number, component by component.
+#[inline(always)]
+fn quotient<F: Float>(v: Vector<F>, by: F) -> Vector<F> {
+    Vector { x: v.x / by, y: v.y / by, z: v.z / by }
 }
 
-impl Line {
-    fn at(&self, s: f64) -> DVec3 {
-        self.origin + s * self.direction
-    }
+/// A line from its point nearest to the centre on, in units of the torus's size: `origin + s direction`.
+struct Line<F> {
+    origin: Vector<F>,
+    /// Of unit length.
+    direction: Vector<F>,
 }
 
 impl Torus {
@@ -203,39 +233,50 @@ impl Torus {
         Section { away, ring, offset: DVec2::new(ring - self.radius, p.z) }
     }
 
-    /// The parameter of the first meeting with a ray from `t_min` on that is in its range.
-    pub(super) fn first_meeting(
+    /// The first meetings with rays from `t_min` on, which are sought where the mask is set.
+    #[inline(always)]
+    pub(super) fn first_meetings<F: Float<Scalar = f64>>(
+        &self,
+        [origin, direction]: [Vector<F>; 2],
+        t_min: F,
+    ) -> FirstMeetings<F> {
+        let crossing = self.crossing(origin, direction);
+        let first = (t_min * crossing.speed - crossing.nearest) / crossing.size;
+        let is_near = crossing.is_near(first);
+        let are_simple = is_near & crossing.quartic.has_one_extreme();
+        if !(crossing.torus.is_by_quartic() && are_simple.any()) {
+            return FirstMeetings { t: first, exist: is_near.like(false), are_unclear: is_near };
+        }
+        let meetings = crossing.first_roots(first, are_simple);
+        FirstMeetings { are_unclear: meetings.are_unclear | (is_near & !are_simple), ..meetings }
+    }
+
+    /// The parameter of the first meeting with a ray from `t_min` on that is accepted, which any may be.
+    pub(super) fn first_accepted(
         &self,
         [origin, direction]: [DVec3; 2],
         t_min: f64,
-        is_in_range: impl Fn(&f64) -> bool,
+        accepts: impl Fn(&f64) -> bool,
     ) -> Option<f64> {
-        let crossing = self.crossing(origin, direction);
+        let crossing = self.crossing(origin.into(), direction.into());
         let first = (t_min * crossing.speed - crossing.nearest) / crossing.size;
-        if !(crossing.from < crossing.to && first < crossing.to) {
-            return None;
-        }
-        if crossing.torus.is_by_quartic()
-            && crossing.quartic.has_one_extreme()
-            && let Ok(s) = crossing.first_root(first)
-        {
-            return s.map(|s| crossing.parameter(s)).filter(is_in_range);
-        }
-        crossing.roots(first).map(|s| crossing.parameter(s)).find(is_in_range)
+        crossing.roots(first).map(|s| crossing.parameter(s)).find(accepts)
     }
 
     /// The parameters of all meetings with a line, in ascending order.
     pub(crate) fn meetings(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
-        let crossing = self.crossing(origin, direction);
+        let crossing = self.crossing(origin.into(), direction.into());
         crossing.roots(f64::NEG_INFINITY).map(|s| crossing.parameter(s)).collect()
     }
 
-    fn crossing(&self, origin: DVec3, direction: DVec3) -> Crossing {
-        let (size, speed) = (self.size(), direction.length());
-        let direction = direction / speed;
+    #[inline(always)]
+    fn crossing<F: Float<Scalar = f64>>(&self, origin: Vector<F>, direction: Vector<F>) -> Crossing<F> {
+        let speed = direction.length();
+        let size = speed.like(self.size());
+        let direction = quotient(direction, speed);
         let nearest = -origin.dot(direction);
-        let line = Line { origin: (origin + nearest * direction) / size, direction };
-        let torus = Self { radius: self.radius / size, tube: self.tube / size };
+        let line = Line { origin: quotient(origin + direction * nearest, size), direction };
+        let torus = Self { radius: self.radius / self.size(), tube: self.tube / self.size() };
         let [from, to] = torus.ends(&line);
         let quartic = torus.quartic(&line);
         Crossing { torus, line, quartic, from, to, nearest, size, speed }
@@ -247,28 +288,34 @@ impl Torus {
     }
 
     /// The segment of a line within the bounding sphere, of radius 1, and the slab |z| ≤ r; its ends descend where there is none.
-    fn ends(&self, line: &Line) -> [f64; 2] {
+    #[inline(always)]
+    fn ends<F: Float<Scalar = f64>>(&self, line: &Line<F>) -> [F; 2] {
         let Line { origin: o, direction: d } = *line;
-        let half = (1.0 - o.length_squared()).sqrt();
-        let between = if d.z == 0.0 {
-            if o.z.abs() > self.tube { [f64::INFINITY, f64::NEG_INFINITY] } else { [-half, half] }
-        } else {
-            let [a, b] = [-self.tube, self.tube].map(|z| (z - o.z) / d.z);
-            [a.min(b), a.max(b)]
-        };
-        if half > 0.0 { [between[0].max(-half), between[1].min(half)] } else { [0.0; 2] }
+        let (zero, tube) = (o.x.like(0.0), o.x.like(self.tube));
+        let half = (o.x.like(1.0) - o.length_squared()).sqrt();
+        let [a, b] = [(-tube - o.z) / d.z, (tube - o.z) / d.z];
+        let is_level = Float::eq(d.z, zero);
+        let is_beside = is_level & o.z.abs().gt(tube);
+        let low = F::select(is_level, -half, Float::min(a, b));
+        let high = F::select(is_level, half, Float::max(a, b));
+        let is_through = half.gt(zero) & !is_beside;
+        [
+            F::select(is_through, Float::max(low, -half), zero),
+            F::select(is_through, Float::min(high, half), zero),
+        ]
     }
 
     /// The quartic of a line.
-    fn quartic(&self, line: &Line) -> Quartic {
+    #[inline(always)]
+    fn quartic<F: Float<Scalar = f64>>(&self, line: &Line<F>) -> Quartic<F> {
         let Line { origin: o, direction: d } = *line;
-        let (o_across, d_across) = (o.truncate(), d.truncate());
-        let square = self.radius * self.radius;
-        let sum = o.length_squared() + square - self.tube * self.tube;
+        let (two, four) = (o.x.like(2.0), o.x.like(4.0));
+        let square = o.x.like(self.radius * self.radius);
+        let sum = o.length_squared() + square - o.x.like(self.tube * self.tube);
         Quartic {
-            p: sum - 2.0 * square * d_across.length_squared(),
-            q: -2.0 * square * o_across.dot(d_across),
-            rest: sum * sum - 4.0 * square * o_across.length_squared(),
+            p: sum - two * square * (d.x * d.x + d.y * d.y),
+            q: -two * square * (o.x * d.x + o.y * d.y),
+            rest: sum * sum - four * square * (o.x * o.x + o.y * o.y),
         }
     }
 

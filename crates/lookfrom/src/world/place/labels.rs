@@ -84,6 +84,7 @@ fn kind<'a>(scene: &'a Scene, shape: &Shape) -> &'a str {
         Geometry::PartialDisk { .. } => "partial disk",
         Geometry::Cylinder { .. } => "cylinder",
         Geometry::Torus { .. } => "torus",
+        Geometry::SolidSurface { .. } => "solid",
         Geometry::Bilinear(_) => "bilinear patches",
         Geometry::Curves(_) => "curves",
         Geometry::Mesh(id) => match file_stem(&scene.meshes[id.index()].name) {

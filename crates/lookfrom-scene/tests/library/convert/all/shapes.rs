@@ -8,6 +8,7 @@ use lookfrom_scene::material::Scalar;
 use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{Instance, MaterialId, MeshId, Object, ObjectId};
 use lookfrom_scene::shape::{Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand};
+use lookfrom_scene::solid::{Body, Combination, Form, Operation, Solid};
 
 use super::{TEXTURE, base, each, here, shear, unit};
 
@@ -19,6 +20,21 @@ fn strands(profile: impl Fn(usize) -> Profile, count: usize, is_chain: bool) -> 
         Strand { points, width: [end(index), end(index + 1)], profile: profile(index) }
     };
     Geometry::Curves((0..count).map(strand).collect())
+}
+
+/// A solid of one of each form of bodies.
+fn solid() -> Arc<Solid> {
+    let body = |form: Form, map: DMat4| Body::new(form, map).expect("an inverse");
+    let bodies = vec![
+        body(Form::Cuboid { min: DVec3::splat(-1.0), max: DVec3::new(1.0, 1.0 / 3.0, 1.0) }, DMat4::IDENTITY),
+        body(Form::Ball { center: DVec3::X, radius: 0.7 }, shear()),
+        body(Form::Cylinder { radius: 0.1, z: [0.0, 2.0] }, DMat4::from_translation(DVec3::X / 7.0)),
+        body(Form::Torus { radius: 1.0, tube: 0.2 }, DMat4::from_rotation_x(0.4)),
+    ];
+    let cutters = vec![Combination::Body(1), Combination::Body(2)];
+    let operands =
+        vec![Combination::Body(0), Combination::Combined(Operation::Union, cutters), Combination::Body(3)];
+    Arc::new(Solid::new(bodies, Combination::Combined(Operation::Difference, operands)))
 }
 
 pub(super) fn geometries() -> Vec<(String, Scene)> {
@@ -54,6 +70,7 @@ pub(super) fn geometries() -> Vec<(String, Scene)> {
         Geometry::PartialDisk { height: 1.5, radius: 2.0, inner_radius: 0.5, phi_max: 200.0 },
         Geometry::Cylinder { radius: 2.0, z: [-1.0, 1.5], phi_max: 200.0 },
         Geometry::Torus { radius: 2.0, tube: 1.0 / 3.0 },
+        Geometry::SolidSurface { solid: solid(), body: 0 },
         patches(2),
         patches(9),
         strands(|_| Profile::Flat, 3, true),
@@ -74,13 +91,23 @@ pub(super) fn geometries() -> Vec<(String, Scene)> {
         Geometry::Bilinear(_) => 7,
         Geometry::Curves(_) => 8,
         Geometry::Torus { .. } => 9,
+        Geometry::SolidSurface { .. } => 10,
         // By `meshes`.
-        Geometry::Mesh(_) => 10,
+        Geometry::Mesh(_) => 11,
     };
     let mut scenes = Vec::new();
     for matrix in [DMat4::IDENTITY, shear(), DMat4::from_translation(DVec3::new(1.0, 2.0, 1.0 / 3.0))] {
         scenes.extend(each("geometry", variants.clone(), index, |scene, geometry| {
-            (scene.shapes[0].geometry, scene.shapes[0].world_from_object) = (geometry, matrix);
+            scene.shapes[0].world_from_object = matrix;
+            if let Geometry::SolidSurface { solid, .. } = &geometry {
+                // One shape does not tell of all bodies.
+                let surface = |body: u32| Geometry::SolidSurface { solid: solid.clone(), body };
+                let first = scene.shapes[0].clone();
+                let others = (1..solid.bodies().len() as u32)
+                    .map(|body| Shape { geometry: surface(body), ..first.clone() });
+                scene.shapes.splice(1..1, others);
+            }
+            scene.shapes[0].geometry = geometry;
         }));
     }
     scenes

@@ -63,7 +63,12 @@ fn meetings_are_those_that_a_search_finds() {
         by_count[found.len()] += 1;
         // The first of those from a place on, as a ray finds it.
         let t_min = (size * power(seed + 8, 4.0)) / speed;
-        let first = torus.first_meeting([origin, speed * direction], t_min, |t| *t > t_min);
+        let line = [origin, speed * direction];
+        let FirstMeetings { t, exist, are_unclear } = torus.first_meetings(line.map(Vector::from), t_min);
+        let first = match are_unclear {
+            true => torus.first_accepted(line, t_min, |t| *t > t_min),
+            false => exist.then_some(t).filter(|t| *t > t_min),
+        };
         let of_all = found.iter().map(|s| s / speed).find(|t| *t > t_min);
         match (first, of_all) {
             (Some(first), Some(of_all)) => assert!((first - of_all).abs() <= 1e-9 * size / speed, "{index}"),
