@@ -43,7 +43,7 @@ const SOLID: &str = "solid";
 /// So many pieces make 16 million triangles of a sphere.
 const MOST_SEGMENTS: u64 = 1 << 12;
 /// Of the mesh that tells whether anything is left of a solid.
-const COARSE: u64 = 16;
+const COARSE: u64 = 8;
 /// Maximum depth of solids in solids.
 const DEEPEST: usize = 16;
 /// Sizes and places of bodies beyond these are left to meshes, which find fault with them.

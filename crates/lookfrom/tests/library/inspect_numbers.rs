@@ -11,9 +11,9 @@ use lookfrom::inspect::{
 use lookfrom::render::SampleId;
 use lookfrom_scene::settings::Integrator;
 
-/// Scenes with triangles, spheres, instances, quadrics, tori, disks, patches, curves, holes, glass that absorbs; each with an
+/// Scenes with triangles, spheres, instances, quadrics, tori, solids, disks, patches, curves, holes, glass that absorbs; each with an
 /// integrator.
-const SCENES: [(&str, Integrator); 10] = [
+const SCENES: [(&str, Integrator); 11] = [
     ("notes-exercise.toml", Integrator::Raycast),
     ("hero.toml", Integrator::Whitted),
     ("hero.toml", Integrator::Path),
@@ -24,6 +24,7 @@ const SCENES: [(&str, Integrator); 10] = [
     ("../docs/guide/scenes/shape-disk.toml", Integrator::Path),
     ("../docs/guide/scenes/shape-patch.toml", Integrator::Path),
     ("../docs/guide/scenes/shape-torus.toml", Integrator::Whitted),
+    ("../docs/guide/scenes/shape-solid.toml", Integrator::Whitted),
 ];
 
 /// Every inspection of a grid over a small picture of each scene.
@@ -249,6 +250,13 @@ fn candidate(candidate: &Candidate, ray: &RayReport, what: &str) {
         Test::Quadric(_) if has(test, "r of the tube") => {
             let (a, d) = in_space(test, [a, d], "quadric", what);
             torus(test, [a, d], [find(test, "R")[0], find(test, "r of the tube")[0]], what);
+        }
+        Test::Quadric(_) if has(test, "size") => {
+            let (a, d) = in_space(test, [a, d], "quadric", what);
+            let t = -a.z / d.z;
+            equals(test, "t = −a_z/d_z", t, 0.0, what);
+            equals(test, "x at t", a.x + t * d.x, a.length() + (t * d).length(), what);
+            equals(test, "y at t", a.y + t * d.y, a.length() + (t * d).length(), what);
         }
         Test::Quadric(_) => {
             let (a, d) = in_space(test, [a, d], "quadric", what);
@@ -480,6 +488,7 @@ fn every_number_follows_from_what_is_printed() {
                 told.extend(is_torus.then(|| "Torus met".to_owned()));
                 let kind = format!("{:?}", of_ray.test);
                 let kind = kind.split('(').next().expect("a name");
+                told.extend(of_ray.verdict.contains("cut away").then(|| "cut away".to_owned()));
                 told.insert(format!("{kind}{}", if of_ray.is_nearest { " met" } else { "" }));
                 told.extend(has(of_ray.test.numbers(), "instance at").then(|| "Instance".to_owned()));
             }
@@ -504,6 +513,7 @@ fn every_number_follows_from_what_is_printed() {
         "Sphere met",
         "Quadric met",
         "Torus met",
+        "cut away",
         "Disk met",
         "Patch met",
         "Curve met",

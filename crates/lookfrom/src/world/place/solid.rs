@@ -33,6 +33,11 @@ impl Compiler<'_> {
             let reverse = (shape.reverse_orientation != is_turned) != faces_inward;
             let quadric = Quadric::new(kind, 360.0, &(*matrix * solid_from_object), reverse)
                 .ok_or_else(|| not_invertible(&shape.at))?;
+            let [min, max] = quadric.bounds();
+            if min.max(bounds[0]).cmpgt(max.min(bounds[1])).any() {
+                // Nothing of it can be left.
+                continue;
+            }
             let surfaces = &mut group.solid_surfaces;
             surfaces.quadrics.push(quadric);
             surfaces.bindings.push(binding);
