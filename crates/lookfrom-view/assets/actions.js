@@ -3,16 +3,15 @@
 import { byId, h, replace } from "./html.js";
 import { Disconnected } from "./socket.js";
 
-const CONTROLS = "input, select, button";
-
 /** @param {import("./app.js").App} app */
 export function attachActions(app) {
-    const [undo, redo] = ["undo", "redo"].map((id) => /** @type {HTMLButtonElement} */ (byId(id)));
+    const [undo, redo] = [byId("undo"), byId("redo")];
     undo.addEventListener("click", () => app.view.undo());
     redo.addEventListener("click", () => app.view.redo());
     app.view.on(() => {
-        undo.disabled = !app.view.canUndo();
-        redo.disabled = !app.view.canRedo();
+        // The last step leaves the focus where it is, which a disabled button would lose.
+        undo.ariaDisabled = String(!app.view.canUndo());
+        redo.ariaDisabled = String(!app.view.canRedo());
     });
     attachMenu(app);
     attachHelp();
@@ -27,10 +26,10 @@ export function attachActions(app) {
         const key = event.key.toLowerCase();
         if ((event.ctrlKey || event.metaKey) && key === "z" && !isTyping) {
             event.preventDefault();
-            keepingFocus(event.shiftKey ? app.view.redo : app.view.undo);
+            event.shiftKey ? app.view.redo() : app.view.undo();
         } else if ((event.ctrlKey || event.metaKey) && key === "y" && !isTyping) {
             event.preventDefault();
-            keepingFocus(app.view.redo);
+            app.view.redo();
         } else if (isTyping || isOn("select") || event.ctrlKey || event.metaKey || event.altKey) return;
         else if (event.key === "?") /** @type {HTMLDialogElement} */ (byId("help")).showModal();
         else if (key === "l") byId("loupe-button").click();
@@ -38,19 +37,9 @@ export function attachActions(app) {
     });
 }
 
-/** Changes the view, which a control that has the focus shows, too, as those do that have none. @param {() => void} change */
-function keepingFocus(change) {
-    const active = document.activeElement;
-    const group = active?.closest("#development, #settings");
-    const place = group && active ? [...group.querySelectorAll(CONTROLS)].indexOf(active) : -1;
-    if (group && active instanceof HTMLElement) active.blur();
-    change();
-    const control = group?.querySelectorAll(CONTROLS)[place];
-    if (control instanceof HTMLElement) control.focus();
-}
-
 /** @param {import("./app.js").App} app */
 function attachMenu(app) {
+    const menu = /** @type {HTMLDetailsElement} */ (byId("menu"));
     /** @type {Record<string, () => Promise<void>>} */
     const actions = {
         "copy-toml": async () => copy((await app.socket.request("words")).toml, "The view as TOML"),
@@ -62,18 +51,21 @@ function attachMenu(app) {
     };
     for (const [id, action] of Object.entries(actions)) {
         byId(id).addEventListener("click", () => {
-            /** @type {HTMLDetailsElement | null} */ (byId(id).closest("details"))?.removeAttribute("open");
+            close();
             // Who asks for a file waits for it.
             action().catch((error) => (error instanceof Disconnected ? app.toast(error.message) : app.complain(error)));
         });
     }
-    const menu = /** @type {HTMLDetailsElement} */ (byId("menu"));
-    document.addEventListener("click", ({ target }) => void (menu.contains(/** @type {Node} */ (target)) || (menu.open = false)));
-    menu.addEventListener("keydown", (event) => {
-        if (event.key !== "Escape") return;
+    const isOutside = (/** @type {EventTarget | null} */ target) => target instanceof Node && !menu.contains(target);
+    document.addEventListener("click", ({ target }) => void (isOutside(target) && (menu.open = false)));
+    menu.addEventListener("focusout", ({ relatedTarget }) => void (isOutside(relatedTarget) && (menu.open = false)));
+    menu.addEventListener("keydown", (event) => void (event.key === "Escape" && close()));
+
+    /** Closes the menu, whose button has the focus then: also after a dialog. */
+    function close() {
         menu.open = false;
         menu.querySelector("summary")?.focus();
-    });
+    }
 
     /** @param {string} text @param {string} what */
     async function copy(text, what) {

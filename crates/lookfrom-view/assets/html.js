@@ -56,14 +56,27 @@ export function svg(tag, attributes = {}, ...children) {
     return element;
 }
 
+const CONTROLS = "a[href], button, input, select, summary, [tabindex]";
+
+/** What a control is called, to find it among those that replace it. @param {Element} control */
+const called = (control) => {
+    const label = /** @type {HTMLInputElement} */ (control).labels?.[0];
+    return `${control.tagName} ${control.getAttribute("aria-label") ?? (label ?? control).textContent}`;
+};
+
 /**
- * Replaces all children.
+ * Replaces all children. Where one of them has the focus, the control of the same name has it then, or what is around it.
  * @param {Element} element
  * @param {...(Child | Child[])} children
  */
 export function replace(element, ...children) {
+    const active = document.activeElement;
+    const name = active && active !== element && element.contains(active) ? called(active) : null;
     element.replaceChildren();
     append(element, children);
+    if (name === null) return;
+    const control = [...element.querySelectorAll(CONTROLS)].find((control) => called(control) === name) ?? element.closest("[tabindex]");
+    if (control instanceof HTMLElement || control instanceof SVGElement) control.focus({ preventScroll: true });
 }
 
 /**

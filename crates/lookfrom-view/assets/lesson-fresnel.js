@@ -15,12 +15,12 @@ export function fresnelLesson(app) {
     const figure = svg("svg", { viewBox: "0 0 300 260", class: "figure dial", role: "slider", tabindex: "0", "aria-label": "Angle of incidence, degrees", "aria-valuemin": 0, "aria-valuemax": 90 });
     const curve = svg("svg", { viewBox: "0 0 300 120", class: "figure", role: "img", "aria-label": "Fresnel reflectance over the angle of incidence" });
     const words = h("p", { class: "number centred", role: "status" });
-    const first = slider("η above", { min: 1, max: 2.5, step: 0.01 }, eta1, (value) => ((eta1 = value), draw()), (value) => value.toFixed(2));
-    const second = slider("η below", { min: 1, max: 2.5, step: 0.01 }, eta2, (value) => ((eta2 = value), draw()), (value) => value.toFixed(2));
+    const first = slider("η above", { min: 1, max: 2.5, step: 0.01 }, () => eta1, (value) => ((eta1 = value), draw()), (value) => value.toFixed(2));
+    const second = slider("η below", { min: 1, max: 2.5, step: 0.01 }, () => eta2, (value) => ((eta2 = value), draw()), (value) => value.toFixed(2));
     const swap = h("button", { type: "button", onclick: () => {
         [eta1, eta2] = [eta2, eta1];
-        first.set(eta1);
-        second.set(eta2);
+        first.show();
+        second.show();
         draw();
     } }, "Turn it over");
     const here = h("p", { class: "hint" });

@@ -23,9 +23,9 @@ export function mediumLesson(app) {
     let [sigma, length, slices, count, seed] = [0.4, 3, 6, 64, 1];
     const figure = svg("svg", { viewBox: "0 0 400 300", class: "figure", role: "slider", tabindex: "0", "aria-label": "Length of the way through the medium", "aria-valuemin": 0, "aria-valuemax": LONGEST });
     const [law, flights, verdict] = [h("p", { class: "number centred" }), h("p", { class: "number centred" }), h("p", { class: "verdict", role: "status", id: "medium-verdict" })];
-    const ofSigma = slider("σ", { min: 0, max: 2, step: 0.01 }, sigma, (value) => ((sigma = value), draw()), (value) => value.toFixed(2));
-    const ofSlices = slider("slices", { min: 1, max: 60, step: 1 }, slices, (value) => ((slices = value), draw()));
-    const ofCount = slider("paths", { min: 0, max: 14, step: 1 }, Math.log2(count), (value) => ((count = 2 ** value), draw()), (value) => String(2 ** value));
+    const ofSigma = slider("σ", { min: 0, max: 2, step: 0.01 }, () => sigma, (value) => ((sigma = value), draw()), (value) => value.toFixed(2));
+    const ofSlices = slider("slices", { min: 1, max: 60, step: 1 }, () => slices, (value) => ((slices = value), draw()));
+    const ofCount = slider("paths", { min: 0, max: 14, step: 1 }, () => Math.log2(count), (value) => ((count = 2 ** value), draw()), (value) => String(2 ** value));
     const again = h("button", { type: "button", onclick: () => (seed++, draw()) }, "Other random numbers");
     const here = h("div");
     const element = h("div", {},

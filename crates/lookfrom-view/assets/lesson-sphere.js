@@ -41,10 +41,10 @@ export function sphereLesson(app) {
         last = candidate;
         replace(element,
             h("p", {}, "A point of the ray is on the sphere where the distance to its centre is R. Squared, that is a parabola in t; its roots are where the ray enters and leaves. Drag the sphere off the ray, or behind its origin: the arrow keys do it, too."),
-            tests.length > 1 && h("div", { class: "field" }, select(tests.slice(0, 60).map(({ name, verdict }) => [name, `${name}: ${verdict}`]), candidate.name, (name) => {
+            tests.length > 1 && h("div", { class: "field" }, select(tests.slice(0, 60).map(({ name, verdict }) => [name, `${name}: ${verdict}`]), () => candidate.name, (name) => {
                 chosen = name;
                 show();
-            }, "Tested sphere")),
+            }, "Tested sphere").element),
             display("A t² + 2 B t + C = 0,  t = ", frac(row("− B ±", sqrt("B² − A C")), "A")),
             section(candidate ? planeOf(candidate) : EXAMPLE),
             candidate ? [h("p", { class: "hint" }, "As the program has tested it:"), candidateTable(candidate)] : h("p", { class: "hint" }, "The selected ray was tested against no sphere; the picture above is an example."));

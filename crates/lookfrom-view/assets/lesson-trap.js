@@ -17,9 +17,9 @@ export function trapLesson() {
 /** f32 beside f64 for a sphere that moves away. */
 function farSphere() {
     const body = h("tbody");
-    const control = slider("Distance", { min: 0, max: 7, step: 0.1 }, 3, show, (power) => short(10 ** power, 3));
-    /** @param {number} power */
-    function show(power) {
+    let power = 3;
+    const control = slider("Distance", { min: 0, max: 7, step: 0.1 }, () => power, (value) => ((power = value), show()), () => short(10 ** power, 3));
+    function show() {
         const f = Math.fround;
         // The ray passes the centre at 0.6: the true Δ is 1 − 0.36.
         const [d, offset] = [f(10 ** power + 1), f(0.6)];
@@ -36,6 +36,6 @@ function farSphere() {
         ]);
         replace(body, rows.map(([name, f32, f64]) => h("tr", { class: Math.abs(f32 - f64) > 0.01 * Math.abs(f64) || Number.isNaN(f32) ? "lost" : "" }, h("th", { scope: "row" }, name), h("td", {}, single(f32)), h("td", {}, exact(f64)))));
     }
-    show(3);
+    show();
     return h("div", {}, control.element, h("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "f32 beside f64" }, h("table", { class: "twice" }, h("thead", {}, h("tr", {}, h("td"), ["f32", "f64"].map((name) => h("th", { scope: "col" }, name)))), body)));
 }

@@ -33,8 +33,8 @@ export function treeLesson(app) {
         depth = app.view.get().depth ?? scene.depth;
         const least = app.view.get().min_contribution ?? scene.min_contribution;
         power = least > 0 ? Math.max(-5.9, Math.log10(least)) : -6;
-        const grow = slider("Depth", { min: 0, max: Math.max(12, Math.min(depth, 64)), step: 1 }, depth, (value) => ((depth = value), ask()));
-        const prune = slider("Smallest share", { min: -6, max: 0, step: 0.1 }, power, (value) => ((power = value), ask()), () => short(leastShare(), 2));
+        const grow = slider("Depth", { min: 0, max: Math.max(12, Math.min(depth, 64)), step: 1 }, () => depth, (value) => ((depth = value), ask()));
+        const prune = slider("Smallest share", { min: -6, max: 0, step: 0.1 }, () => power, (value) => ((power = value), ask()), () => short(leastShare(), 2));
         replace(element, h("p", {}, "Depth lets the tree grow; the smallest share prunes branches that carry less. The pixel is the sum of what is left."),
             grow.element, prune.element, picture, sum);
         draw(inspection);

@@ -25,10 +25,10 @@ export function triangleLesson(app) {
         const figure = areas(start);
         replace(element,
             h("p", {}, "Three equations, three unknowns; Cramer's rule gives β, γ and t. A hit has ", h("b", {}, "β ≥ 0, γ ≥ 0, β + γ ≤ 1"), ": then α, β, γ are the shares of the three areas."),
-            tests.length > 1 && h("div", { class: "field" }, select(tests.slice(0, 60).map(({ name, verdict }) => [name, `${name}: ${verdict}`]), candidate.name, (name) => {
+            tests.length > 1 && h("div", { class: "field" }, select(tests.slice(0, 60).map(({ name, verdict }) => [name, `${name}: ${verdict}`]), () => candidate.name, (name) => {
                 chosen = name;
                 show();
-            }, "Tested triangle")),
+            }, "Tested triangle").element),
             figure,
             display("β = ", frac("D_1", "D"), ",  γ = ", frac("D_2", "D"), ",  t = ", frac("D_3", "D"), ",  α = 1 − β − γ"),
             candidate ? candidateTable(candidate) : h("p", { class: "hint" }, "The selected ray was tested against no triangle; the picture above is an example."));

@@ -1,11 +1,12 @@
 // The settings of the picture: those that develop it above it, those that render it anew in the panel "View".
 
-import { byId, h, replace } from "./html.js";
-import { field, number, select, slider } from "./fields.js";
+import { append, byId, h, replace } from "./html.js";
+import { check, choices, field, number, select, slider } from "./fields.js";
 import { MOST_PIXELS, fitted } from "./fit.js";
 import { count, counted } from "./format.js";
 
 /** @typedef {import("./app.js").App} App */
+/** @typedef {import("./fields.js").Control} Control */
 /** @typedef {import("./protocol.js").Scene} Scene */
 /** @typedef {import("./protocol.js").View} View */
 
@@ -23,106 +24,104 @@ const [MOST_DEPTH, MOST_SAMPLES] = [256, 2 ** 24];
 
 /** @param {App} app */
 export function showSettings(app) {
-    const rebuild = () => {
-        const scene = app.scene.get();
+    /** @type {Control[]} */
+    let groups = [];
+    app.scene.on((scene) => {
         if (!scene) return;
-        // What is being typed into is not replaced.
-        const active = document.activeElement;
-        if (!(active instanceof HTMLElement && active.closest("#development") && active.matches("input"))) showDevelopment(app, scene);
-        if (!(active instanceof HTMLElement && active.closest("#settings") && active.matches("input"))) showRendering(app, scene);
-    };
-    app.scene.on(rebuild);
-    app.view.on((_, moving) => void (moving || rebuild()));
-    // Time and turntable move the camera of the scene.
-    let shown = "";
-    app.frame.on(() => {
-        const [scene, group, camera] = [app.scene.get(), document.getElementById("camera-group"), JSON.stringify(app.camera())];
-        if (!scene || !group || camera === shown || group.contains(document.activeElement)) return;
-        shown = camera;
-        group.replaceWith(cameraGroup(app, scene));
+        groups = [development(app, scene), rendering(app, scene)];
+        replace(byId("development"), ...groups[0].element.childNodes);
+        replace(byId("settings"), ...groups[1].element.childNodes);
     });
+    // Controls stay: one that has the focus keeps it, and what is being typed into it.
+    const show = () => groups.forEach((group) => group.show());
+    app.view.on((_, moving) => void (moving || show()));
+    // Time and turntable move the camera of the scene.
+    app.frame.on(show);
 }
 
 /** @param {App} app @param {Scene} scene */
-function showDevelopment(app, scene) {
-    const view = app.view.get();
-    const focused = focusedName("development");
-    const exposure = slider(
-        "Exposure",
-        { min: -10, max: 10, step: 0.1 },
-        view.exposure ?? scene.exposure,
-        (value) => app.view.set({ exposure: value }),
-        (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value).toFixed(1)}`,
-    );
-    const denoise = h("input", { type: "checkbox", checked: view.denoise ?? scene.denoise });
-    denoise.addEventListener("change", () => app.view.set({ denoise: denoise.checked }));
-    const rays = h("input", { type: "checkbox", checked: app.raysOverPicture.get() });
-    rays.addEventListener("change", () => app.raysOverPicture.set(rays.checked));
-    replace(
-        byId("development"),
-        select(scene.layers.map(({ name, title }) => [name, title]), view.layer, (layer) => app.view.set({ layer }), "Layer"),
+function development(app, scene) {
+    const { get, set } = app.view;
+    return together(h("div"),
+        select(scene.layers.map(({ name, title }) => [name, title]), () => get().layer, (layer) => set({ layer }), "Layer"),
         scene.reference !== null &&
-            select(COMPARISONS, view.compare ?? "", (compare) => app.view.set({ compare: /** @type {View["compare"]} */ (compare || null) }), "Comparison with the reference"),
-        exposure.element,
-        select(scene.tonemaps.map((name) => [name, name]), view.tonemap ?? scene.tonemap, (tonemap) => app.view.set({ tonemap }), "Tone map"),
-        h("label", { class: "check" }, denoise, "Denoise"),
-        h("label", { class: "check", title: "The selected sample's rays over the picture" }, rays, "Rays"),
+            select(COMPARISONS, () => get().compare ?? "", (compare) => set({ compare: /** @type {View["compare"]} */ (compare || null) }), "Comparison with the reference"),
+        slider(
+            "Exposure",
+            { min: -10, max: 10, step: 0.1 },
+            () => get().exposure ?? scene.exposure,
+            (exposure) => set({ exposure }),
+            (value) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value).toFixed(1)}`,
+        ),
+        select(scene.tonemaps.map((name) => [name, name]), () => get().tonemap ?? scene.tonemap, (tonemap) => set({ tonemap }), "Tone map"),
+        check("Denoise", () => get().denoise ?? scene.denoise, (denoise) => set({ denoise })),
+        check("Rays", app.raysOverPicture.get, app.raysOverPicture.set, "The selected sample's rays over the picture"),
     );
-    refocus("development", focused);
-}
-
-/** The accessible name of the focused control, which survives rebuilding. @param {string} id */
-function focusedName(id) {
-    const active = document.activeElement;
-    if (!(active instanceof HTMLElement) || !byId(id).contains(active)) return null;
-    return [...byId(id).querySelectorAll("input, select, button")].indexOf(active);
-}
-
-/** @param {string} id @param {number | null} index */
-function refocus(id, index) {
-    if (index === null || index < 0) return;
-    const control = byId(id).querySelectorAll("input, select, button")[index];
-    if (control instanceof HTMLElement) control.focus();
 }
 
 /** @param {App} app @param {Scene} scene */
-function showRendering(app, scene) {
-    const view = app.view.get();
-    const focused = focusedName("settings");
-    /** @param {Partial<View>} change */
-    const set = (change) => app.view.set(change);
-    const sizes = sizesOf(scene, view.size ?? scene.size);
-    const chosen = view.animation ?? scene.animation;
-    const animation = chosen === null ? null : scene.animations[chosen];
-    // Expressions have no end: ten seconds of them.
-    const seconds = animation ? animation.seconds : scene.duration === 0 ? 10 : scene.duration;
-    replace(
-        byId("settings"),
+function rendering(app, scene) {
+    const { get, set } = app.view;
+    return together(h("div"),
         group(
             "Light transport",
-            field("Integrator", select(scene.integrators.map((name) => [name, name]), view.integrator ?? scene.integrator, (integrator) => set({ integrator }))),
-            field("Depth", number(view.depth, { min: 0, max: MOST_DEPTH, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
-            field("Samples", number(view.samples, { min: 1, max: MOST_SAMPLES, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
-            field("Min. contribution", number(view.min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree with a smaller share are not followed"),
-            field("Size", select(sizes, (view.size ?? scene.size).join("x"), (text) => set({ size: text === scene.size.join("x") ? null : /** @type {[number, number]} */ (text.split("x").map(Number)) }))),
+            field("Integrator", select(scene.integrators.map((name) => [name, name]), () => get().integrator ?? scene.integrator, (integrator) => set({ integrator }))),
+            field("Depth", number(() => get().depth, { min: 0, max: MOST_DEPTH, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
+            field("Samples", number(() => get().samples, { min: 1, max: MOST_SAMPLES, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
+            field("Min. contribution", number(() => get().min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree with a smaller share are not followed"),
+            field("Size", sizes(app, scene)),
         ),
         group(
             "Scene",
-            scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], view.variant ?? scene.variant ?? "", (variant) => set({ variant: variant || null }))),
+            scene.variants.length > 0 && field("Variant", select([["", "the file's own"], .../** @type {[string, string][]} */ (scene.variants.map((name) => [name, name]))], () => get().variant ?? scene.variant ?? "", (variant) => set({ variant: variant || null }))),
             scene.animations.length > 0 &&
-                field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], chosen === null ? "" : String(chosen), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
-            seconds !== null && slider("Time", { min: 0, max: seconds, step: seconds / 200 }, view.at ?? scene.at ?? 0, (at) => set({ at }), (at) => `${at.toFixed(2)} s`).element,
-            scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, view.turn ?? scene.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`).element,
-            slider("Surroundings", { min: -180, max: 180, step: 1 }, view.rotate_environment ?? scene.rotate_environment ?? 0, (rotate_environment) => set({ rotate_environment }), (turn) => `${turn}°`).element,
+                field("Animation", select([["", "none"], .../** @type {[string, string][]} */ (scene.animations.map(({ name }, i) => [String(i), name || `animation ${i}`]))], () => String(get().animation ?? scene.animation ?? ""), (text) => set({ animation: text === "" ? null : Number(text), at: text === "" ? null : 0 }))),
+            time(app, scene),
+            scene.turntable && slider("Turntable", { min: 0, max: 360, step: 1 }, () => get().turn ?? scene.turn ?? 0, (turn) => set({ turn }), (turn) => `${turn}°`),
+            slider("Surroundings", { min: -180, max: 180, step: 1 }, () => get().rotate_environment ?? scene.rotate_environment ?? 0, (rotate_environment) => set({ rotate_environment }), (turn) => `${turn}°`),
         ),
-        cameraGroup(app, scene),
+        camera(app, scene),
         group(
             "Contents",
             h("dl", { class: "facts" }, Object.entries(scene.counts ?? {}).flatMap(([name, n]) => [h("dt", {}, name), h("dd", {}, contents(n))])),
             scene.warnings.length > 0 && h("details", { class: "warnings" }, h("summary", {}, counted(scene.warnings.length, "warning")), h("ul", {}, scene.warnings.map((warning) => h("li", {}, warning)))),
         ),
     );
-    refocus("settings", focused);
+}
+
+/** The time of an animation, as long as the chosen one, or of expressions. @param {App} app @param {Scene} scene @returns {Control} */
+function time(app, scene) {
+    const element = h("div");
+    let last = /** @type {number | null} */ (null);
+    /** @type {Control | null} */
+    let shown = null;
+    function show() {
+        const chosen = app.view.get().animation ?? scene.animation;
+        const animation = chosen === null ? null : scene.animations[chosen];
+        // Expressions have no end: ten seconds of them.
+        const seconds = animation ? animation.seconds : scene.duration === 0 ? 10 : scene.duration;
+        if (seconds === last) return shown?.show();
+        last = seconds;
+        shown = seconds === null ? null : slider("Time", { min: 0, max: seconds, step: seconds / 200 }, () => app.view.get().at ?? scene.at ?? 0, (at) => app.view.set({ at }), (at) => `${at.toFixed(2)} s`);
+        replace(element, shown?.element);
+    }
+    show();
+    return { element, show };
+}
+
+/** The sizes, which the window and the view change. @param {App} app @param {Scene} scene @returns {Control} */
+function sizes(app, scene) {
+    const size = () => app.view.get().size ?? scene.size;
+    const choice = select([], () => size().join("x"), (text) => app.view.set({ size: text === scene.size.join("x") ? null : /** @type {[number, number]} */ (text.split("x").map(Number)) }));
+    let last = "";
+    function show() {
+        const options = sizesOf(scene, size());
+        if (last !== JSON.stringify(options)) replace(choice.element, choices(options));
+        last = JSON.stringify(options);
+        choice.show();
+    }
+    show();
+    return { element: choice.element, show };
 }
 
 /**
@@ -150,25 +149,31 @@ function contents(n) {
 }
 
 /** @param {App} app @param {Scene} scene */
-function cameraGroup(app, scene) {
-    const camera = app.camera() ?? scene.camera;
+function camera(app, scene) {
+    const shown = () => app.camera() ?? scene.camera;
+    const rounded = (/** @type {number} */ x) => Number(x.toPrecision(6));
+    /** @param {Partial<import("./protocol.js").Camera>} change */
+    const move = (change) => {
+        const { lookfrom, lookat, up, fov } = shown();
+        app.view.set({ camera: { lookfrom, lookat, up, fov, ...change } });
+    };
     /** @param {"lookfrom" | "lookat" | "up"} name */
-    const vector = (name) =>
-        h("div", { class: "field vector", role: "group", "aria-label": name }, h("span", { class: "label" }, name),
-            camera[name].map((x, i) => {
-                const input = number(Number(x.toPrecision(6)), {}, (value) => {
-                    const changed = /** @type {import("./protocol.js").Vector} */ (camera[name].map((old, k) => (k === i ? value ?? 0 : old)));
-                    app.view.set({ camera: { lookfrom: camera.lookfrom, lookat: camera.lookat, up: camera.up, fov: camera.fov, [name]: changed } });
-                });
-                input.setAttribute("aria-label", `${name} ${"xyz"[i]}`);
-                return input;
-            }));
-    const fov = camera.fov !== null && field("fov", number(Number(camera.fov.toPrecision(6)), { min: 1, max: 179 }, (value) =>
-        app.view.set({ camera: value === null ? null : { lookfrom: camera.lookfrom, lookat: camera.lookat, up: camera.up, fov: value } })), "Vertical field of view, degrees");
-    const element = group("Camera", vector("lookfrom"), vector("lookat"), vector("up"), fov, h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
-    element.id = "camera-group";
-    return element;
+    const vector = (name) => together(h("div", { class: "field vector", role: "group", "aria-label": name }, h("span", { class: "label" }, name)),
+        ...[0, 1, 2].map((i) => number(() => rounded(shown()[name][i]), { name: `${name} ${"xyz"[i]}` }, (value) =>
+            move({ [name]: shown()[name].map((old, k) => (k === i ? value ?? 0 : old)) }))));
+    return group("Camera", vector("lookfrom"), vector("lookat"), vector("up"),
+        scene.camera.fov !== null && field("fov", number(() => rounded(shown().fov ?? 0), { min: 1, max: 179 }, (fov) => (fov === null ? app.view.set({ camera: null }) : move({ fov }))), "Vertical field of view, degrees"),
+        h("button", { type: "button", onclick: () => app.view.set({ camera: null }) }, "The scene's own camera"));
 }
 
-/** @param {string} title @param {...(import("./html.js").Child | import("./html.js").Child[])} children */
-const group = (title, ...children) => h("section", { class: "group" }, h("h3", {}, title), ...children);
+/** @typedef {Control | Node | false} Part */
+
+/** @param {string} title @param {...Part} parts */
+const group = (title, ...parts) => together(h("section", { class: "group" }, h("h3", {}, title)), ...parts);
+
+/** Controls and other elements within one, which show together. @param {HTMLElement} element @param {...Part} parts @returns {Control} */
+function together(element, ...parts) {
+    const controls = /** @type {Control[]} */ (parts.filter((part) => part && !(part instanceof Node)));
+    append(element, parts.map((part) => (part && !(part instanceof Node) ? part.element : part)));
+    return { element, show: () => controls.forEach((control) => control.show()) };
+}
