@@ -17,6 +17,8 @@ export function attachDivider() {
         else root.setProperty("--panel", `${Math.round(Math.max(LEAST_PANEL, Math.min(most(), wanted)))}px`);
         tell();
     }
+    /** In such languages the panel is on the left. */
+    const isRightToLeft = () => getComputedStyle(panel).direction === "rtl";
     const width = () => panel.getBoundingClientRect().width;
     const tell = () => {
         for (const [name, value] of Object.entries({ min: LEAST_PANEL, max: most(), now: width() })) divider.setAttribute(`aria-value${name}`, String(Math.round(value)));
@@ -27,14 +29,15 @@ export function attachDivider() {
         divider.setPointerCapture(event.pointerId);
         event.preventDefault();
     });
-    divider.addEventListener("pointermove", (event) => void (divider.hasPointerCapture(event.pointerId) && show(window.innerWidth - event.clientX)));
+    divider.addEventListener("pointermove", (event) => void (divider.hasPointerCapture(event.pointerId) && show(isRightToLeft() ? event.clientX : window.innerWidth - event.clientX)));
     divider.addEventListener("pointerup", keep);
     divider.addEventListener("dblclick", () => {
         show(null);
         memory()?.removeItem("panel");
     });
     divider.addEventListener("keydown", (event) => {
-        const next = { ArrowLeft: width() + STEP, ArrowRight: width() - STEP, Home: LEAST_PANEL, End: most() }[event.key];
+        const step = isRightToLeft() ? -STEP : STEP;
+        const next = { ArrowLeft: width() + step, ArrowRight: width() - step, Home: LEAST_PANEL, End: most() }[event.key];
         if (next === undefined) return;
         event.preventDefault();
         show(next);

@@ -11,6 +11,7 @@ import { attachInspector } from "./inspector.js";
 import { showLegend } from "./legend.js";
 import { showLoupe } from "./loupe.js";
 import { showNotes } from "./notes.js";
+import { attachPaper } from "./paper.js";
 import { keepPermalink, parse } from "./permalink.js";
 import { showPicture } from "./picture.js";
 import { showPixel } from "./pixel.js";
@@ -47,6 +48,7 @@ export function showPage(socket, { fits = false } = {}) {
     showTree(app);
     showEquations(app);
     showSpace(app);
+    attachPaper(picture);
     const notes = showNotes(app);
     attachActions(app);
     keepPermalink(app);

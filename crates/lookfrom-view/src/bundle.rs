@@ -12,7 +12,7 @@ use lookfrom_scene::digest::digest;
 use crate::assets::asset;
 use crate::view::refused;
 
-const STYLES: [&str; 3] = ["style.css", "panels.css", "figures.css"];
+const STYLES: [&str; 4] = ["style.css", "panels.css", "figures.css", "media.css"];
 
 /// The page that begins with a module, and holds JSON in the element of this id. It may load nothing and connect to nobody.
 ///

@@ -18,7 +18,7 @@ let browser, server;
  */
 async function violations(page) {
     await page.evaluate(AXE);
-    const { violations } = await page.evaluate(() => window.axe.run());
+    const { violations } = await page.evaluate(() => window.axe.run({ rules: { "target-size": { enabled: true } } }));
     const isBranch = (id, html) => id === "label-content-name-mismatch" && /^<li role="treeitem"[^>]*aria-expanded/.test(html);
     return violations.flatMap(({ id, nodes }) => nodes.filter(({ html }) => !isBranch(id, html)).map(({ target, failureSummary }) => `${id}: ${target.join(" ")} ${failureSummary}`));
 }
