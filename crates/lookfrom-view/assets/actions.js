@@ -23,6 +23,8 @@ export function attachActions(app) {
     document.addEventListener("keydown", (event) => {
         const isOn = (/** @type {string} */ controls) => event.target instanceof HTMLElement && event.target.matches(controls);
         const isTyping = isOn('textarea, input:not([type="range"], [type="checkbox"])');
+        // Letters alone belong to the pictures: elsewhere a voice that dictates would press them.
+        const isOnPicture = isOn("canvas");
         const key = event.key.toLowerCase();
         if ((event.ctrlKey || event.metaKey) && key === "z" && !isTyping) {
             event.preventDefault();
@@ -30,7 +32,7 @@ export function attachActions(app) {
         } else if ((event.ctrlKey || event.metaKey) && key === "y" && !isTyping) {
             event.preventDefault();
             app.view.redo();
-        } else if (isTyping || isOn("select") || event.ctrlKey || event.metaKey || event.altKey) return;
+        } else if (!isOnPicture || event.ctrlKey || event.metaKey || event.altKey) return;
         else if (event.key === "?") /** @type {HTMLDialogElement} */ (byId("help")).showModal();
         else if (key === "l") byId("loupe-button").click();
         else if (key === "home" && event.target === byId("picture-overlay")) app.view.set({ camera: null });

@@ -40,7 +40,8 @@ export function createApp(socket) {
             element.textContent = sentence;
             element.classList.add("shown");
             clearTimeout(toastTimer);
-            toastTimer = window.setTimeout(() => element.classList.remove("shown"), 4000);
+            // Slow readers read ten letters in a second.
+            toastTimer = window.setTimeout(() => element.classList.remove("shown"), Math.max(4000, 100 * sentence.length));
         },
         /** Shows an error, unless a later question concerns the user more, or the loss of the connection, which the status tells. @param {unknown} error */
         complain(error) {

@@ -14,6 +14,8 @@ import { subtract } from "./vector.js";
  */
 
 const FLIGHT = new Map(Object.entries({ a: [1, 0, 0], d: [-1, 0, 0], e: [0, 1, 0], q: [0, -1, 0], w: [0, 0, 1], s: [0, 0, -1] }));
+/** With Shift, turns of the eye: to the left, and up. */
+const LOOK = new Map(Object.entries({ a: [1, 0], d: [-1, 0], w: [0, 1], s: [0, -1] }));
 /** Shorter movements are clicks. */
 const CLICK = 4;
 const KEY_STEP = Math.PI / 36;
@@ -125,6 +127,12 @@ function attachKeys(element, hand, change, restSoon) {
     element.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
         const key = event.key.toLowerCase();
+        const turn = event.shiftKey && LOOK.get(key);
+        if (turn) {
+            change((camera) => look(camera, turn[0] * KEY_STEP, turn[1] * KEY_STEP));
+            restSoon();
+            return event.preventDefault();
+        }
         if (FLIGHT.has(key)) {
             if (held.size === 0) {
                 lastTime = performance.now();

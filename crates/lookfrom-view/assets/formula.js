@@ -51,10 +51,38 @@ export const matrix = (rows) =>
     h("span", { class: "matrix" }, ...rows.map((cells) => h("span", {}, ...cells.map((cell) => h("span", {}, cell)))));
 
 /**
+ * The line of which an element is the drawing: fractions, roots and exponents, which a screen reader would read as letters side by side, by
+ * signs that it knows.
+ * @param {Node} node
+ * @returns {string}
+ */
+function line(node) {
+    if (!(node instanceof Element)) return node.textContent ?? "";
+    const parts = [...node.childNodes].map(line);
+    const name = node.getAttribute("class");
+    if (name === "frac") return parts.map(enclosed).join(" / ");
+    if (name === "root-of") return `√${enclosed(parts.slice(1).join(" "))}`;
+    if (name === "matrix") return `[ ${[...node.children].map((cells) => [...cells.children].map(line).join(", ")).join("; ")} ]`;
+    if (name === "joined") return parts.join("");
+    if (node.tagName === "SUB") return `_${parts[0]}`;
+    if (node.tagName === "SUP") return Object.keys(SUPERSCRIPTS).find((sign) => SUPERSCRIPTS[sign] === parts[0]) ?? "";
+    return parts.join(" ");
+}
+
+/** @param {string} text */
+const enclosed = (text) => (text.includes(" ") ? `( ${text} )` : text);
+
+/**
  * A formula of strings and parts.
  * @param {...Part} parts
  */
-export const formula = (...parts) => h("span", { class: "math", role: "math" }, row(...parts));
+export const formula = (...parts) => named(h("span", { class: "math", role: "math" }, row(...parts)));
+
+/** @template {Element} T @param {T} element @returns {T} */
+function named(element) {
+    element.setAttribute("aria-label", line(element));
+    return element;
+}
 
 /** What is wider than its place scrolls, by keys too. */
 const widths = new ResizeObserver((entries) => {
@@ -69,7 +97,7 @@ const widths = new ResizeObserver((entries) => {
  * @param {...Part} parts
  */
 export function display(...parts) {
-    const element = h("div", { class: "math", role: "math" }, row(...parts));
+    const element = named(h("div", { class: "math", role: "math" }, row(...parts)));
     widths.observe(element);
     return element;
 }

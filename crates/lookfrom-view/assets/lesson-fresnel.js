@@ -52,7 +52,7 @@ export function fresnelLesson(app) {
             svg("text", { x: 8, y: CY - 8 }, `η₁ = ${eta1.toFixed(2)}`), svg("text", { x: 8, y: CY + 18 }, `η₂ = ${eta2.toFixed(2)}`));
         words.textContent = `θ₁ ${degrees.toFixed(1)}° · ${refracted === null ? "total internal reflection" : `θ₂ ${((refracted * 180) / Math.PI).toFixed(1)}°`} · F = ${short(reflectance, 4)}`;
         figure.setAttribute("aria-valuenow", degrees.toFixed(1));
-        figure.setAttribute("aria-valuetext", words.textContent);
+        figure.setAttribute("aria-valuetext", `${degrees.toFixed(1)}°`);
         const points = Array.from({ length: 91 }, (_, i) => `${20 + i * 3},${(105 - 95 * fresnel(Math.min(i, 89.9) * (Math.PI / 180), eta1, eta2).reflectance).toFixed(1)}`);
         replace(curve, svg("line", { x1: 20, x2: 290, y1: 105, y2: 105, class: "axis" }), svg("polyline", { points: points.join(" "), class: "curve" }),
             svg("circle", { cx: 20 + degrees * 3, cy: 105 - 95 * reflectance, r: 4.5, class: "handle" }),

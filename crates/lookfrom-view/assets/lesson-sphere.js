@@ -64,7 +64,8 @@ function planeOf(candidate) {
 function section({ A, along, beside, R }) {
     const scale = Math.min(RADIUS / R, 300 / (Math.abs(along) + 1.2 * R));
     const figure = svg("svg", { viewBox: "0 0 400 310", class: "figure", role: "slider", tabindex: "0", "aria-label": "The centre of the sphere", "aria-valuenow": 0 });
-    const words = h("p", { class: "number centred", role: "status" });
+    // The slider says the same.
+    const words = h("p", { class: "number centred" });
     const x = (/** @type {number} */ t) => ORIGIN + t * Math.sqrt(A) * scale;
     draggable(figure, {
         to: (_x, _y, right, down) => move(along + right / scale, beside - down / scale),

@@ -41,7 +41,8 @@ function areas(start) {
     const [p0, p1, p2] = CORNERS;
     const parts = ["alpha", "beta", "gamma"].map((name) => svg("polygon", { class: `area ${name}` }));
     const dot = svg("circle", { r: 6, class: "handle" });
-    const words = h("p", { class: "number centred", role: "status" });
+    // The slider says the same.
+    const words = h("p", { class: "number centred" });
     const picture = svg("svg", { viewBox: "0 0 400 240", class: "figure", role: "slider", tabindex: "0", "aria-label": "The point in the triangle", "aria-valuenow": 0 },
         parts, svg("polygon", { points: CORNERS.map(String).join(" "), class: "outline" }), dot,
         svg("text", { x: p0[0] - 24, y: p0[1] + 14 }, "P₀"), svg("text", { x: p1[0] + 8, y: p1[1] + 14 }, "P₁"), svg("text", { x: p2[0] - 6, y: p2[1] - 10 }, "P₂"));
@@ -57,9 +58,9 @@ function areas(start) {
         dot.setAttribute("cy", String(y));
         picture.classList.toggle("miss", !inside);
         picture.setAttribute("aria-valuenow", beta.toFixed(3));
-        picture.setAttribute("aria-valuetext", `beta ${beta.toFixed(3)}, gamma ${gamma.toFixed(3)}`);
         const verdict = inside ? "hit" : beta < 0 ? "miss: β < 0" : gamma < 0 ? "miss: γ < 0" : "miss: β + γ > 1";
         replace(words, h("span", { class: "alpha" }, `α ${short(alpha, 4)}`), " + ", h("span", { class: "beta" }, `β ${short(beta, 4)}`), " + ", h("span", { class: "gamma" }, `γ ${short(gamma, 4)}`), ` = 1 · ${verdict}`);
+        picture.setAttribute("aria-valuetext", words.textContent ?? "");
     }
     draggable(picture, {
         to(x, y) {
