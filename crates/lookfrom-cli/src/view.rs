@@ -7,6 +7,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 
 use lookfrom_scene::load::has_known_name;
+use lookfrom_scene::settings::Allocation;
 use lookfrom_scene::{Disk, Error, ErrorKind, Inputs, Location};
 use lookfrom_view::{Address, Server, Settings, handout};
 
@@ -17,6 +18,9 @@ use crate::{interrupt, prepare};
 
 /// Serves until Ctrl-C, and returns the exit code. `typed` are the arguments by which `render` opens the same session.
 pub(crate) fn run(arguments: &ViewArguments, typed: &[String]) -> u8 {
+    if arguments.overrides.allocation == Some(Allocation::Adaptive) {
+        say("warning: --allocation adaptive is not followed: a picture in a window gets finer everywhere");
+    }
     if let Some(page) = &arguments.export {
         return export(arguments, typed, page).map_or_else(|failure| failure.report(), |()| DONE);
     }

@@ -45,7 +45,7 @@ function attachMenu(app) {
     /** @type {Record<string, () => Promise<void>>} */
     const actions = {
         "copy-toml": async () => copy((await app.socket.request("words")).toml, "The view as TOML"),
-        "copy-command": async () => copy((await app.socket.request("words")).command, "The command line"),
+        "copy-command": async () => copy((await app.socket.request("words")).command, "The command line", app.scene.get()?.camera.projection === "orthographic" ? "; no option says the height of this view, but the TOML does" : ""),
         "copy-link": async () => copy(location.href, "The link"),
         "save-png": async () => save(await app.socket.request("save", { format: "png" })),
         "save-exr": async () => save(await app.socket.request("save", { format: "exr" })),
@@ -69,15 +69,15 @@ function attachMenu(app) {
         menu.querySelector("summary")?.focus();
     }
 
-    /** @param {string} text @param {string} what */
-    async function copy(text, what) {
+    /** @param {string} text @param {string} what @param {string} [but] What the text lacks. */
+    async function copy(text, what, but = "") {
         try {
             await navigator.clipboard.writeText(text);
-            app.toast(`${what} is in the clipboard`);
+            app.toast(`${what} is in the clipboard${but}`);
         } catch {
             // Without permission, the text is shown to be copied by hand.
             const box = /** @type {HTMLDialogElement} */ (byId("text"));
-            replace(box, h("h2", {}, what), h("pre", { tabindex: "0" }, text), h("form", { method: "dialog" }, h("button", {}, "Close")));
+            replace(box, h("h2", {}, what + but), h("pre", { tabindex: "0" }, text), h("form", { method: "dialog" }, h("button", {}, "Close")));
             box.showModal();
         }
     }

@@ -10,15 +10,17 @@ import { h } from "./html.js";
 let lastId = 0;
 
 /**
- * A label beside its control.
+ * A label beside its control, and below what it means, while it has the focus: a finger and keys meet no tooltip.
  * @param {string} label
  * @param {Control} control
- * @param {string} [title]
+ * @param {string} [meaning]
  * @returns {Control}
  */
-export function field(label, { element, show }, title) {
-    element.id ||= `field-${++lastId}`;
-    return { element: h("div", { class: "field", title }, h("label", { for: element.id }, label), element), show };
+export function field(label, { element, show }, meaning) {
+    const id = (element.id ||= `field-${++lastId}`);
+    if (meaning) element.setAttribute("aria-describedby", `${id}-meaning`);
+    const below = meaning && h("p", { class: "meaning", id: `${id}-meaning` }, meaning);
+    return { element: h("div", { class: "field", title: meaning }, h("label", { for: id }, label), element, below), show };
 }
 
 /**

@@ -68,7 +68,7 @@ function rendering(app, scene) {
             field("Integrator", select(scene.integrators.map((name) => [name, name]), () => get().integrator ?? scene.integrator, (integrator) => set({ integrator }))),
             field("Depth", number(() => get().depth, { min: 0, max: MOST_DEPTH, step: 1, placeholder: String(scene.depth) }, (depth) => set({ depth })), "Bounces at most"),
             field("Samples", number(() => get().samples, { min: 1, max: MOST_SAMPLES, step: 1, placeholder: String(scene.samples) }, (samples) => set({ samples })), "Samples per pixel"),
-            field("Min. contribution", number(() => get().min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree with a smaller share are not followed"),
+            field("Min. contribution", number(() => get().min_contribution, { min: 0, max: 1, placeholder: String(scene.min_contribution) }, (min_contribution) => set({ min_contribution })), "Branches of Whitted's tree that carry less are not followed"),
             field("Size", sizes(app, scene)),
         ),
         group(

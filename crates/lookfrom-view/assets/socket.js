@@ -95,7 +95,9 @@ export function connect(transport) {
     return {
         open: () => transport.open(events),
         send,
-        whenLost: transport.whenLost,
+        get whenLost() {
+            return transport.whenLost;
+        },
         whenBroken: transport.whenBroken,
         /**
          * Sends a question. The promise is rejected by the error of the other end, as {@link Unanswered} where a later question of

@@ -90,8 +90,10 @@ export function showStatus(app) {
     app.socket.on("close", () => {
         document.body.classList.add("is-offline");
         if (!app.scene.get()) showName("connecting …");
+        // Each attempt to come back ends here: that it has failed once more is no news.
+        if (text.textContent === app.socket.whenLost) return;
         text.textContent = app.socket.whenLost;
-        app.announce("The connection is lost");
+        app.announce(app.socket.whenLost);
     });
 }
 

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use axum::Router;
-use axum::extract::ws::{Message, WebSocketUpgrade};
+use axum::extract::ws::{CloseFrame, Message, WebSocketUpgrade, close_code};
 use axum::extract::{Path, Query, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
@@ -22,7 +22,7 @@ use serde::Deserialize;
 use crate::Settings;
 use crate::assets::asset;
 use crate::document::Document;
-use crate::message::{Answer, LONGEST};
+use crate::message::LONGEST;
 use crate::patience::{self, PatientListener};
 use crate::window::{self, Counted};
 
@@ -240,11 +240,12 @@ async fn socket(
         return no_token();
     }
     let Some(counted) = Counted::new(&state.windows, MOST_WINDOWS) else {
-        // A page cannot read why a connection was refused, so it is made, for one message.
-        let answer = Answer::refusal(None, format!("{MOST_WINDOWS} windows are open: close one"));
+        // A page cannot read why a connection was refused, so it is made, and closed with the reason.
+        let reason = format!("{MOST_WINDOWS} windows are open: close one").into();
+        let close = CloseFrame { code: close_code::AGAIN, reason };
         return upgrade.on_upgrade(|mut socket| async move {
             // Who is gone need not be told.
-            let _ = socket.send(Message::Text(answer.text().into())).await;
+            let _ = socket.send(Message::Close(Some(close))).await;
         });
     };
     // Longer messages than the longest are read, so that they can be answered, up to a limit.

@@ -43,3 +43,15 @@ fn what_cannot_be_served_is_refused() {
         assert!(run.stderr.contains(says) && run.stdout.is_empty(), "{typed}: {}", run.stderr);
     }
 }
+
+#[test]
+fn an_allocation_that_a_window_does_not_follow_is_told() {
+    let stage = Stage::new("view-allocation");
+    let warns = |options: &str| {
+        let run = stage.run(&format!("view scene.toml --export page.html --samples 8 {options}"));
+        assert_eq!(run.code, Some(0), "{options}: {}", run.stderr);
+        run.stderr.contains("warning: --allocation adaptive is not followed")
+    };
+    assert!(warns("--allocation adaptive"));
+    assert!(!warns("--allocation uniform") && !warns(""));
+}

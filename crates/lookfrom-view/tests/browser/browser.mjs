@@ -28,9 +28,9 @@ export async function copyOf(name, from = SCENES) {
     return { scene, remove: () => rm(folder, { recursive: true, force: true }) };
 }
 
-/** Starts `lookfrom view`; its first line is the address. @param {string} scene @param {string[]} options */
-export async function serve(scene, options = []) {
-    const server = spawn(BINARY, ["view", scene, "--port", "0", ...options], { stdio: ["ignore", "pipe", "pipe"] });
+/** Starts `lookfrom view`; its first line is the address. @param {string} scene @param {string[]} options @param {string} port */
+export async function serve(scene, options = [], port = "0") {
+    const server = spawn(BINARY, ["view", scene, "--port", port, ...options], { stdio: ["ignore", "pipe", "pipe"] });
     let complaints = "";
     server.stderr.on("data", (data) => (complaints += data));
     const url = await new Promise((resolve, reject) => {

@@ -91,6 +91,51 @@ test("a pixel that is shown stays when the connection comes back", async () => {
     await context.close();
 });
 
+test("a server that was started anew is told as such, and each news once", async () => {
+    const first = await serve(SCENE, SMALL);
+    const { page, context } = await open(browser, first.url);
+    await finished(page);
+    await page.evaluate(() => {
+        window.said = [];
+        const place = document.getElementById("announcements");
+        new MutationObserver(() => window.said.push(place.textContent)).observe(place, { childList: true });
+    });
+    await first.stop();
+    await page.locator("body.is-offline").waitFor();
+    await page.waitForTimeout(2000);
+    const second = await serve(SCENE, SMALL, new URL(first.url).port);
+    await until("the reason", async () => /started anew/.test((await page.locator("#progress-text").textContent()) ?? ""));
+    assert.deepEqual(await page.evaluate(() => window.said), ["The server is not there; trying again …", "The server was started anew: open the address that it has printed."]);
+    await page.goto(second.url);
+    await finished(page);
+    assert.equal(await page.locator("body.is-offline").count(), 0);
+    await context.close();
+    await second.stop();
+});
+
+test("a window too many is told why it is empty, and shows the scene when another one is closed", async () => {
+    const server = await serve(SCENE, SMALL);
+    const { page: first, context: others } = await open(browser, server.url);
+    // Fifteen more.
+    await first.evaluate(() => {
+        const url = `ws://${location.host}/socket${location.search}`;
+        window.sockets = Array.from({ length: 15 }, () => new WebSocket(url));
+        return Promise.all(window.sockets.map((socket) => new Promise((resolve) => (socket.onopen = resolve))));
+    });
+    let attempts = 0;
+    const { page, context } = await visit(browser, server.url, {}, async (page) => void page.on("websocket", () => attempts++));
+    await until("the reason", async () => (await page.locator("#progress-text").textContent()) === "16 windows are open: close one");
+    assert.ok(await page.locator("#failure").isHidden());
+    await page.waitForTimeout(4000);
+    assert.ok(attempts <= 6, `${attempts} attempts`);
+    await first.evaluate(() => window.sockets[0].close());
+    await page.locator("body.has-picture").waitFor();
+    assert.equal(await page.locator("body.is-offline").count(), 0);
+    await context.close();
+    await others.close();
+    await server.stop();
+});
+
 test("while there is no file, the header says that there is no scene", async () => {
     const folder = await mkdtemp(join(tmpdir(), "lookfrom-view-"));
     const scene = join(folder, "later.toml");

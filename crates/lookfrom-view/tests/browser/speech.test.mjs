@@ -88,6 +88,18 @@ test("the eye looks around by keys, too", async () => {
     await context.close();
 });
 
+test("what a field means stands below it while it has the focus", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    const depth = page.getByRole("spinbutton", { name: "Depth" });
+    const meaning = page.getByText("Bounces at most");
+    assert.ok(await meaning.isHidden());
+    await depth.focus();
+    assert.ok(await meaning.isVisible());
+    assert.equal(await depth.getAttribute("aria-describedby"), await meaning.getAttribute("id"));
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("a long message stays longer than a short one", async () => {
     const { page, context, errors } = await open(browser, server.url, {}, (page) => page.clock.install());
     const toast = page.locator("#toast.shown");

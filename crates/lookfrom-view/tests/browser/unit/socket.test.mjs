@@ -24,7 +24,7 @@ class FakeWebSocket {
     }
     close() {
         this.readyState = 3;
-        this.onclose();
+        this.onclose({ reason: "" });
     }
 }
 
