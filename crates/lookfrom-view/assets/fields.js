@@ -10,7 +10,7 @@ import { h } from "./html.js";
 let lastId = 0;
 
 /**
- * A label beside its control, and below what it means, while it has the focus: a finger and keys meet no tooltip.
+ * A label beside its control, and below what it means: a finger and keys meet no tooltip.
  * @param {string} label
  * @param {Control} control
  * @param {string} [meaning]
@@ -20,7 +20,7 @@ export function field(label, { element, show }, meaning) {
     const id = (element.id ||= `field-${++lastId}`);
     if (meaning) element.setAttribute("aria-describedby", `${id}-meaning`);
     const below = meaning && h("p", { class: "meaning", id: `${id}-meaning` }, meaning);
-    return { element: h("div", { class: "field", title: meaning }, h("label", { for: id }, label), element, below), show };
+    return { element: h("div", { class: "field" }, h("label", { for: id }, label), element, below), show };
 }
 
 /**

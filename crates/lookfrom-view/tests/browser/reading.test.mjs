@@ -51,6 +51,36 @@ for (const [width, height] of [[800, 900], [740, 360], [640, 400], [360, 740], [
     });
 }
 
+/** The colours of rays, lights and edges that stand out from what is around them by less than WCAG asks for, 3 : 1. */
+function dim() {
+    const numbers = (color) => color.match(/[\d.]+/g).slice(0, 3).map(Number);
+    const light = (color) => numbers(color).map((x) => (x / 255 <= 0.04045 ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4)).reduce((sum, x, i) => sum + [0.2126, 0.7152, 0.0722][i] * x, 0);
+    const probe = document.body.appendChild(document.createElement("i"));
+    const style = (name, property, className = "") => {
+        [probe.className, probe.style.color] = [className, name];
+        return getComputedStyle(probe)[property];
+    };
+    const contrast = (a, b) => {
+        const [high, low] = [light(a), light(b)].sort((x, y) => y - x);
+        return (high + 0.05) / (low + 0.05);
+    };
+    const [ground, surface, soft] = ["--ground", "--surface", "--accent-soft"].map((name) => style(`var(${name})`, "color"));
+    const rays = ["camera", "reflected", "refracted", "scattered", "straight-on", "shadow", "blocked"].flatMap((kind) => [surface, soft].map((below) => [kind, style(`var(--ray-${kind})`, "color"), below]));
+    const lights = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [ground, surface].map((below) => [`light ${i}`, style("", "backgroundColor", `light-${i}`), below]));
+    const edges = [...document.querySelectorAll("select, input[type=number]")].filter((control) => control.checkVisibility()).map((control) => [control.id, getComputedStyle(control).borderTopColor, surface]);
+    probe.remove();
+    return [...rays, ...lights, ...edges].map(([name, color, below]) => `${name}: ${contrast(color, below).toFixed(2)}`).filter((found) => Number(found.split(": ")[1]) < 3);
+}
+
+for (const colorScheme of ["light", "dark"]) {
+    test(`${colorScheme}: rays, lights and fields stand out from what is around them`, async () => {
+        const { page, context, errors } = await open(browser, server.url, { colorScheme });
+        assert.deepEqual(await page.evaluate(dim), []);
+        assert.deepEqual(errors, []);
+        await context.close();
+    });
+}
+
 test("forced colours leave those of data, and mark what is selected", async () => {
     const { page, context, errors } = await open(browser, server.url, { forcedColors: "active" });
     await finished(page);

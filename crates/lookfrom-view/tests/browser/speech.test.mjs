@@ -88,12 +88,10 @@ test("the eye looks around by keys, too", async () => {
     await context.close();
 });
 
-test("what a field means stands below it while it has the focus", async () => {
+test("what a field means stands below it", async () => {
     const { page, context, errors } = await open(browser, server.url);
     const depth = page.getByRole("spinbutton", { name: "Depth" });
     const meaning = page.getByText("Bounces at most");
-    assert.ok(await meaning.isHidden());
-    await depth.focus();
     assert.ok(await meaning.isVisible());
     assert.equal(await depth.getAttribute("aria-describedby"), await meaning.getAttribute("id"));
     assert.deepEqual(errors, []);
