@@ -1,5 +1,6 @@
 // The way from a pixel to its samples, and from a sample to its rays: questions to the server, answers to the page.
 
+import { counted } from "./format.js";
 import { Unanswered } from "./socket.js";
 import { sameFilm } from "./state.js";
 
@@ -48,7 +49,8 @@ export function attachInspector(app) {
             const { report } = await app.socket.request("pixel", { x: pixel[0], y: pixel[1] });
             app.report.set(finite(report));
             choose(report.all?.[0]?.sample ?? 0);
-            app.announce(`Pixel ${pixel.join(" ")}: ${report.samples} samples`);
+            const [red, green, blue] = report.color8;
+            app.announce(`Pixel ${pixel.join(" ")}: red ${red}, green ${green}, blue ${blue}; ${counted(report.samples, "sample")}`);
         } catch (error) {
             app.complain(error);
             if (!(error instanceof Unanswered)) choose(0);

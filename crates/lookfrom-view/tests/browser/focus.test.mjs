@@ -122,3 +122,14 @@ test("the value beside a slider is the slider's", async () => {
     assert.deepEqual(errors, []);
     await context.close();
 });
+
+test("the help begins at its top on a small screen, and goes back to its button", async () => {
+    const { page, context, errors } = await open(browser, server.url, { viewport: { width: 740, height: 360 } });
+    await page.locator("#help-button").press("Enter");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "help-title");
+    assert.ok(await page.locator("#help-title").evaluate((title) => title.getBoundingClientRect().top > 0));
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "help-button");
+    assert.deepEqual(errors, []);
+    await context.close();
+});

@@ -56,6 +56,17 @@ test("what a slider tells of itself, no live region repeats", async () => {
     await context.close();
 });
 
+test("a pixel that is selected is told with its colour", async () => {
+    const { page, context, errors } = await open(browser, server.url);
+    await finished(page);
+    await page.locator("#picture-overlay").press("i");
+    await page.locator("#pixel-summary .numbers").waitFor();
+    const [red, green, blue] = ((await page.locator("#pixel-summary dt", { hasText: "8 bit" }).locator("+ dd").textContent()) ?? "").split(" ");
+    assert.equal(await page.locator("#announcements").textContent(), `Pixel 80 80: red ${red}, green ${green}, blue ${blue}; 2 samples`);
+    assert.deepEqual(errors, []);
+    await context.close();
+});
+
 test("letters alone do something in the picture only", async () => {
     const { page, context, errors } = await open(browser, server.url);
     await finished(page);
