@@ -42,14 +42,25 @@ pub(crate) fn toml(
             serde_json::Value::from(file.as_ref())
         ),
     };
-    for (what, unit, value) in [
-        ("time", " s", request.at.or(own.options.import.at)),
-        ("turntable", "°", request.turn.or(own.options.turn)),
-        ("turn of the surroundings", "°", request.rotate_environment.or(own.options.rotate_environment)),
+    let typed = &own.options.import;
+    let with = |number: Option<f64>, unit| number.map(|number| format!("{number}{unit}"));
+    let animation = request.animation.map(|number| number.to_string());
+    for (what, value) in [
+        ("animation", animation.or_else(|| typed.animation.clone())),
+        ("variant", request.variant.clone().or_else(|| typed.variant.clone())),
+        ("time", with(request.at.or(typed.at), " s")),
+        ("turntable", with(request.turn.or(own.options.turn), "°")),
+        (
+            "turn of the surroundings",
+            with(request.rotate_environment.or(own.options.rotate_environment), "°"),
+        ),
     ] {
         if let Some(value) = value {
-            let _ = writeln!(text, "# No table says the {what}: {value}{unit}.");
+            let _ = writeln!(text, "# No table says the {what}: {}.", one_line(&value));
         }
+    }
+    if source.is_none() && own.session.info().added.contains(&"lights") {
+        text.push_str("# The lights of the studio are to be added: `lookfrom convert` writes them.\n");
     }
     let camera = session.camera();
     if camera.medium.is_some() {

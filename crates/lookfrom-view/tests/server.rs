@@ -430,6 +430,37 @@ fn words_have_every_key_of_the_picture() {
     assert_eq!(differ, 0, "{words}\n{:?}\n{:?}", own.camera(), copy.camera());
 }
 
+/// A view of a model without lights, in a variant and at a time: tables cannot say these, comments do.
+#[test]
+fn words_tell_what_no_table_says() {
+    let served = Served::new("words-model", SCENE);
+    let model = served.scene.with_file_name("triangle.obj");
+    std::fs::write(&model, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a temporary file");
+    let served = Served::of(&model);
+    let mut page = served.open();
+    let mut asked = view(1);
+    (asked["variant"], asked["at"]) = (json!("red\npaint"), json!(0.5));
+    page.say(&asked);
+    page.finished(1);
+    page.say(&json!({ "type": "words", "id": 2 }));
+    let words = page.text("words");
+    let comments: Vec<&str> = words["toml"]
+        .as_str()
+        .expect("a text")
+        .lines()
+        .filter(|line| line.starts_with('#'))
+        .skip(1)
+        .collect();
+    assert_eq!(
+        comments,
+        [
+            "# No table says the variant: red paint.",
+            "# No table says the time: 0.5 s.",
+            "# The lights of the studio are to be added: `lookfrom convert` writes them.",
+        ]
+    );
+}
+
 /// The camera of a picture and where its points are: mirrored, as pbrt's are, in a window beside the axis, and turned.
 #[test]
 fn pictures_have_their_cameras() {
