@@ -62,7 +62,7 @@ struct Build {
 }
 
 /// A solid as it is written.
-enum Tree<'t> {
+enum SolidTree<'t> {
     Body(BodyOperand<'t>),
     /// What can be nothing but a mesh.
     Mesh(MeshSolid),
@@ -129,7 +129,7 @@ impl Reader<'_, '_> {
     }
 
     /// The solid that a table describes; `matrix` is the transform from its space to that of the outermost one.
-    fn combined<'t>(&mut self, table: &Table<'t>, matrix: DMat4, build: &mut Build) -> Result<Tree<'t>> {
+    fn combined<'t>(&mut self, table: &Table<'t>, matrix: DMat4, build: &mut Build) -> Result<SolidTree<'t>> {
         if build.depth == DEEPEST {
             let error = table.error(format!("solids in solids are more than {DEEPEST} deep"));
             return Err(Error { kind: ErrorKind::Limit, ..error });
@@ -165,7 +165,7 @@ impl Reader<'_, '_> {
             return Err(Error::untold());
         }
         self.share_material(&mut build.parts[first..]);
-        Ok(Tree::Combined(operation, table.clone(), operands))
+        Ok(SolidTree::Combined(operation, table.clone(), operands))
     }
 
     /// Gives the material of the first operand to parts without one.
@@ -177,7 +177,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn operand<'t>(&mut self, item: Value<'t>, outer: DMat4, build: &mut Build) -> Result<Tree<'t>> {
+    fn operand<'t>(&mut self, item: Value<'t>, outer: DMat4, build: &mut Build) -> Result<SolidTree<'t>> {
         let table = item.table("[[solid.of]]")?;
         let kind = table.need("type", "\"box\"", None, |value| value.choice(TYPES).map(Some));
         let Some(kind) = kind else { return Err(Error::untold()) };
@@ -202,9 +202,16 @@ impl Reader<'_, '_> {
                 let own = parts[0].world_from_object;
                 // Without a map around it, a matrix stays as it is, bit by bit.
                 let matrix = if outer == DMat4::IDENTITY { own } else { outer * own };
-                Ok(Tree::Body(BodyOperand { number, form, matrix, kind, segments: self.segments, table }))
+                Ok(SolidTree::Body(BodyOperand {
+                    number,
+                    form,
+                    matrix,
+                    kind,
+                    segments: self.segments,
+                    table,
+                }))
             }
-            None => self.closed(&table, kind, outer, &parts, build).map(Tree::Mesh),
+            None => self.closed(&table, kind, outer, &parts, build).map(SolidTree::Mesh),
         };
         if !is_of_file {
             // Nothing else has the mesh of an operand; those of files may be used again.
@@ -215,10 +222,15 @@ impl Reader<'_, '_> {
     }
 
     /// The mesh of a solid, with so many pieces of a circle, or as many as each table says.
-    fn meshed(&mut self, tree: &Tree<'_>, segments: Option<u64>, build: &mut Build) -> Result<MeshSolid> {
+    fn meshed(
+        &mut self,
+        tree: &SolidTree<'_>,
+        segments: Option<u64>,
+        build: &mut Build,
+    ) -> Result<MeshSolid> {
         match tree {
-            Tree::Mesh(solid) => Ok(solid.clone()),
-            Tree::Body(body) => {
+            SolidTree::Mesh(solid) => Ok(solid.clone()),
+            SolidTree::Body(body) => {
                 let segments = segments.unwrap_or(body.segments);
                 let pieces = match body.form {
                     Form::Cuboid { .. } => 12,
@@ -232,7 +244,7 @@ impl Reader<'_, '_> {
                 let may_cross = matches!(body.form, Form::Torus { .. });
                 MeshSolid::new(&[surface], may_cross).map_err(|flaw| flawed(&body.table, body.kind, flaw))
             }
-            Tree::Combined(operation, table, operands) => {
+            SolidTree::Combined(operation, table, operands) => {
                 let solids = operands
                     .iter()
                     .map(|operand| self.meshed(operand, segments, build))
@@ -305,7 +317,7 @@ fn form(kind: &str, table: &Table<'_>, parts: &[Part]) -> Result<Option<Form>> {
 }
 
 /// The solid of a tree that consists of bodies, if they are not all boxes, and no two of them have flush surfaces.
-fn exact(tree: &Tree<'_>) -> Option<Solid> {
+fn exact(tree: &SolidTree<'_>) -> Option<Solid> {
     let mut bodies = Vec::new();
     let combination = combination(tree, &mut bodies)?;
     let [least, most] = SIZES;
@@ -322,14 +334,14 @@ fn exact(tree: &Tree<'_>) -> Option<Solid> {
 }
 
 /// The combination of a tree, whose bodies are added to others.
-fn combination(tree: &Tree<'_>, bodies: &mut Vec<Body>) -> Option<Combination> {
+fn combination(tree: &SolidTree<'_>, bodies: &mut Vec<Body>) -> Option<Combination> {
     match tree {
-        Tree::Mesh(_) => None,
-        Tree::Body(body) => {
+        SolidTree::Mesh(_) => None,
+        SolidTree::Body(body) => {
             bodies.push(Body::new(body.form, body.matrix)?);
             Some(Combination::Body(body.number))
         }
-        Tree::Combined(operation, _, operands) => {
+        SolidTree::Combined(operation, _, operands) => {
             let operands = operands.iter().map(|operand| combination(operand, bodies));
             Some(Combination::Combined(*operation, operands.collect::<Option<_>>()?))
         }

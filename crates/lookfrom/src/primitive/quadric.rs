@@ -24,7 +24,7 @@ pub use clip::Clip;
 pub(crate) use frame::{QuadricFrames, gather_frames};
 pub(crate) use lanes::points_on_quadrics;
 pub use many::Quadrics;
-use meeting::{Meetings, Rays};
+use meeting::{Meetings, TestedRays};
 pub use torus::Torus;
 
 use super::{MaterialBinding, SurfacePoint, capsule};
@@ -322,7 +322,7 @@ impl Quadric {
     /// The first intersection of a ray in render space with its part of the surface, of which `clip` may leave a part.
     fn first_meeting(&self, ray: &Ray, clip: Option<&Clip>) -> Option<f32> {
         let Ray { origin, direction, t_min, t_max } = *ray;
-        let rays = Rays { origin: origin.into(), direction: direction.into(), t_min, t_max };
+        let rays = TestedRays { origin: origin.into(), direction: direction.into(), t_min, t_max };
         let Meetings { t, exist, are_unclear } = self.first_meetings(clip, &rays);
         if are_unclear { self.unclear_meeting(ray, clip) } else { exist.then_some(t) }
     }

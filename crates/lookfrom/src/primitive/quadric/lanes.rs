@@ -9,7 +9,7 @@ use crate::core::vector::Vector;
 
 /// What the points of a quadric have to be.
 #[derive(Clone, Copy)]
-struct Lane {
+struct SurfaceLane {
     /// At this z, if it is flat.
     height: f64,
     is_flat: bool,
@@ -21,7 +21,7 @@ struct Lane {
     error: [f64; 3],
 }
 
-impl Lane {
+impl SurfaceLane {
     /// `None` for tori.
     #[inline]
     fn of(quadric: &Quadric) -> Option<Self> {
@@ -58,8 +58,8 @@ pub(crate) fn points_on_quadrics<S: Simd>(
     quadrics: &[&Quadric; LANES],
     near: Vector<f64x8<S>>,
 ) -> Option<PointsAndNormals<S>> {
-    let first = Lane::of(quadrics[0])?;
-    let all = by_lane!(lane => Lane::of(quadrics[lane]));
+    let first = SurfaceLane::of(quadrics[0])?;
+    let all = by_lane!(lane => SurfaceLane::of(quadrics[lane]));
     if all.iter().any(Option::is_none) {
         return None;
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lookfrom_bvh::{Aabb, Capsule, Procedural, ProceduralHit, Ray};
 use lookfrom_simd::{Kernel, LaneMask, Simd, f32x8, prelude::*};
 
-use super::{Clip, Meetings, Quadric, Rays};
+use super::{Clip, Meetings, Quadric, TestedRays};
 use crate::core::lanes::{LANES, are_shaded_together, by_lane, gather_rays, shade_together};
 use crate::primitive::{MaterialBinding, SurfacePoint};
 
@@ -42,7 +42,7 @@ impl Quadrics {
 }
 
 /// Finds the first meetings of eight rays with a quadric.
-struct FirstMeetings<'a> {
+struct EightRays<'a> {
     quadric: &'a Quadric,
     clip: Option<&'a Clip>,
     rays: &'a [Ray; LANES],
@@ -55,7 +55,7 @@ struct FirstOfEight {
     are_unclear: u32,
 }
 
-impl Kernel for FirstMeetings<'_> {
+impl Kernel for EightRays<'_> {
     type Output = FirstOfEight;
 
     #[inline(always)]
@@ -65,7 +65,7 @@ impl Kernel for FirstMeetings<'_> {
         let t_min = f32x8::load_array(simd, by_lane!(lane => rays[lane].t_min));
         let t_max = f32x8::load_array(simd, by_lane!(lane => rays[lane].t_max));
         let Meetings { t, exist, are_unclear } =
-            quadric.first_meetings(clip, &Rays { origin, direction, t_min, t_max });
+            quadric.first_meetings(clip, &TestedRays { origin, direction, t_min, t_max });
         FirstOfEight {
             t: t.into(),
             exist: exist.to_bitmask() as u32,
@@ -113,7 +113,7 @@ impl Procedural for Quadrics {
             LaneMask(wanted).for_each(|lane| found[lane] = self.intersect(primitive, &rays[lane]));
             return found;
         }
-        let FirstOfEight { t, exist, are_unclear } = shade_together(FirstMeetings { quadric, clip, rays });
+        let FirstOfEight { t, exist, are_unclear } = shade_together(EightRays { quadric, clip, rays });
         let hit = |t: f32| ProceduralHit { t, u: 0.0, v: 0.0 };
         LaneMask(exist).for_each(|lane| found[lane] = Some(hit(t[lane])));
         LaneMask(are_unclear & wanted)

@@ -13,15 +13,15 @@ fn is_within<F: Float<Scalar = f64>>(x: F, low: f64, high: f64) -> F::Mask {
     !(x.lt(x.like(low)) | x.gt(x.like(high)))
 }
 
-/// Rays in render space.
-pub(super) struct Rays<R> {
+/// Rays in render space, with their ranges.
+pub(super) struct TestedRays<R> {
     pub(super) origin: Vector<R>,
     pub(super) direction: Vector<R>,
     pub(super) t_min: R,
     pub(super) t_max: R,
 }
 
-impl<R: Real> Rays<R> {
+impl<R: Real> TestedRays<R> {
     /// Whether they include the points of parameters.
     #[inline(always)]
     fn include(&self, t: R) -> R::Mask {
@@ -48,7 +48,7 @@ struct Roots<F: Float> {
 impl Quadric {
     /// The first meetings of rays with its part of the surface, of which `clip` may leave a part.
     #[inline(always)]
-    pub(super) fn first_meetings<R: Real>(&self, clip: Option<&Clip>, rays: &Rays<R>) -> Meetings<R> {
+    pub(super) fn first_meetings<R: Real>(&self, clip: Option<&Clip>, rays: &TestedRays<R>) -> Meetings<R> {
         let like = rays.t_min;
         let nowhere = Float::eq(like, like).like(false);
         let none = Meetings { t: like, exist: nowhere, are_unclear: nowhere };
@@ -88,7 +88,7 @@ impl Quadric {
     fn meeting<R: Real>(
         &self,
         clip: Option<&Clip>,
-        rays: &Rays<R>,
+        rays: &TestedRays<R>,
         [origin, direction]: [Vector<R::Double>; 2],
         (t, exists): (R::Double, <R::Double as Float>::Mask),
     ) -> (R, R::Mask) {

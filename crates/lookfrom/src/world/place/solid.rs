@@ -10,7 +10,7 @@ use super::{Compiler, Group, Placing, Y_FROM_Z, not_invertible, whole_sphere};
 use crate::primitive::{Clip, Quadric, QuadricKind, Torus};
 
 /// A piece of a body's surface: its kind, the map from its object space to that of the body, and whether it faces inward.
-type Piece = (QuadricKind, DMat4, bool);
+type SurfacePiece = (QuadricKind, DMat4, bool);
 
 impl Compiler<'_> {
     /// What is left of the surface of a body.
@@ -48,7 +48,7 @@ impl Compiler<'_> {
 }
 
 /// The surface of a body.
-fn pieces(form: &Form) -> Vec<Piece> {
+fn pieces(form: &Form) -> Vec<SurfacePiece> {
     match *form {
         Form::Ball { center, radius } => {
             let upright = DMat4::from_translation(center) * DMat4::from_mat3(Y_FROM_Z);
@@ -72,7 +72,7 @@ fn pieces(form: &Form) -> Vec<Piece> {
 }
 
 /// A side of a box, perpendicular to an axis.
-fn face([min, max]: [DVec3; 2], axis: usize, height: f64) -> Piece {
+fn face([min, max]: [DVec3; 2], axis: usize, height: f64) -> SurfacePiece {
     // x × y points along the axis; on the lower side they are swapped.
     let is_lower = height == min[axis];
     let (mut x, mut y) = ((axis + 1) % 3, (axis + 2) % 3);
