@@ -133,7 +133,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "contents files",
             "digest disk inputs packed spectrum texture",
             "excerpt image measured medium",
-            "atmosphere lens light settings",
+            "atmosphere lens light settings solid",
             "shape",
             "composite scene text volume",
             "builder chain count duplicates model nanovdb openvdb shutter",
@@ -151,6 +151,7 @@ pub(super) const LADDERS: &[Ladder] = &[
                 "ids of a scene's parts are in `scene`",
                 "camera > scene, light > scene, material > scene, medium > scene, shape > scene, texture > scene",
             ),
+            ("the boxes around a scene's parts are in `scene`", "solid > scene"),
             ("a camera's lens system has the picture of its aperture", "camera > lens"),
             ("a measured material has its tables", "material > measured"),
             (
