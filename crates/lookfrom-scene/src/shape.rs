@@ -141,7 +141,7 @@ pub enum Geometry {
         /// Radius of the tube, positive.
         tube: f64,
     },
-    /// What is left of the surface of a body in a solid, which other shapes complete. It faces outward and emits no light; uv as that of the
+    /// The part of a body's surface that is left in a solid, which other shapes complete. It faces outward and emits no light; uv as that of the
     /// body's shape by itself, of a cylinder with v from 0 to 1 on its side and on each of its ends.
     SolidSurface {
         /// The solid, in the shape's space.

@@ -74,7 +74,7 @@ pub enum Combination {
     Combined(Operation, Vec<Combination>),
 }
 
-/// What a point of a body's surface must fulfil to be on the surface of the solid.
+/// A condition on the points of a body's surface that are on the surface of the solid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// Whether the point must be inside of `of`, or outside.
@@ -233,7 +233,7 @@ impl Solid {
         self.bodies.len() <= MOST_BODIES && numbers.into_iter().eq(0..self.bodies.len() as u32)
     }
 
-    /// What the points of a body's surface fulfil that are on the surface of the solid, and whether its inside is outside of the solid
+    /// The conditions on the points of a body's surface that are on the surface of the solid, and whether its inside is outside of the solid
     /// there.
     pub fn constraints(&self, body: u32) -> (Vec<Constraint>, bool) {
         let mut constraints = Vec::new();

@@ -41,7 +41,7 @@ pub(super) struct Group {
     /// Quadrics with capsules.
     thin_quadrics: Quadrics,
     quadrics: Quadrics,
-    /// What is left of quadrics in solids.
+    /// Quadrics of which solids leave parts.
     solid_surfaces: Quadrics,
 }
 

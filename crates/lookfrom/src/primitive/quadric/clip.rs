@@ -1,4 +1,4 @@
-//! What a solid leaves of the surface of one of its bodies.
+//! Clips: the parts of quadrics that are on the surface of a solid.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct Clip {
     constraints: Vec<Constraint>,
 }
 
-/// What bodies fill, in the object space of a quadric.
+/// A region of the object space of a quadric: that of a body, or of several.
 #[derive(Clone, Debug)]
 enum Region {
     Body(Form, Affine),
@@ -32,7 +32,7 @@ enum Region {
 type Masks<R> = <<R as Real>::Double as Float>::Mask;
 
 impl Clip {
-    /// What is left of the surface of a body, by [constraints](Solid::constraints). `solid_from_object` maps from the object space of the
+    /// The clip of a body's surface, by its [constraints](Solid::constraints). `solid_from_object` maps from the object space of the
     /// quadric; `bounds` are in render space.
     pub fn new(
         solid: Arc<Solid>,

@@ -7,7 +7,7 @@ use crate::core::lanes::{LANES, by_lane, gather_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
 
-/// What the points of a quadric have to be.
+/// The surface of a quadric in one lane, in its object space.
 #[derive(Clone, Copy)]
 struct SurfaceLane {
     /// At this z, if it is flat.

@@ -15,7 +15,7 @@ pub struct Quadrics {
     pub quadrics: Vec<Quadric>,
     /// The attributes of each.
     pub bindings: Vec<MaterialBinding>,
-    /// What is left of each in a solid. Without any, they are whole.
+    /// The part of each that is left in a solid. Without any, they are whole.
     pub clips: Vec<Clip>,
 }
 

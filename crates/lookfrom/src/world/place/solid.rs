@@ -13,7 +13,7 @@ use crate::primitive::{Clip, Quadric, QuadricKind, Torus};
 type SurfacePiece = (QuadricKind, DMat4, bool);
 
 impl Compiler<'_> {
-    /// What is left of the surface of a body.
+    /// Places the part of a body's surface that is left.
     pub(super) fn solid_surface(
         &self,
         placing: Placing<'_>,
