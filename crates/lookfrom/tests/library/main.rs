@@ -37,6 +37,7 @@ mod nested;
 mod one_by_one;
 mod openpbr;
 mod own_integrator;
+mod packages;
 mod panes;
 mod path;
 mod portal;
