@@ -16,11 +16,11 @@ const SAME: f64 = 1e-9;
 /// A set operation on solids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// What is in any of them.
+    /// All points that are in at least one of them.
     Union,
-    /// What is in all of them.
+    /// All points that are in each of them.
     Intersection,
-    /// The first without all others.
+    /// The points of the first that are in none of the others.
     Difference,
 }
 
@@ -220,7 +220,7 @@ impl Solid {
         &self.bodies
     }
 
-    /// How they are combined.
+    /// The combination of all of them.
     pub fn combination(&self) -> &Combination {
         &self.combination
     }

@@ -64,7 +64,7 @@ struct Build {
 /// A solid as it is written.
 enum SolidTree<'t> {
     Body(BodyOperand<'t>),
-    /// What can be nothing but a mesh.
+    /// An operand that is a mesh.
     Mesh(MeshSolid),
     Combined(Operation, Table<'t>, Vec<Self>),
 }

@@ -13,7 +13,7 @@ use crate::core::vector::Vector;
 /// A part of a quadric: that which is on the surface of a solid. Whether a point is left, is decided in double precision.
 #[derive(Clone, Debug)]
 pub struct Clip {
-    /// Where the points that are left are inside, or outside.
+    /// Regions, and whether the points that are left are inside of each, or outside.
     conditions: Vec<(bool, Region)>,
     /// A box around the part, in render space.
     pub bounds: [DVec3; 2],
@@ -47,7 +47,7 @@ impl Clip {
         Self { conditions, bounds, solid, constraints }
     }
 
-    /// Which points of the quadric, in its object space, are left; `like` has the width.
+    /// The mask of the points that are left, in the object space of the quadric; `like` has the width.
     #[inline(always)]
     pub(crate) fn keeps<R: Real>(&self, like: R, p: Vector<R::Double>) -> Masks<R> {
         let mut kept = p.x.eq(p.x).like(true);
@@ -61,7 +61,7 @@ impl Clip {
         kept
     }
 
-    /// Where a point of the quadric is that is not left: `inside of shape 2 of the solid, a cylinder`.
+    /// The reason why a point is not left, by the first condition that it does not fulfil: `inside of shape 2 of the solid, a cylinder`.
     pub(crate) fn cut(&self, p: DVec3) -> Option<String> {
         let is_broken = |(inside, region): &(bool, Region)| region.contains(0.0_f32, p.into()) != *inside;
         let Constraint { inside, of } = &self.constraints[self.conditions.iter().position(is_broken)?];
@@ -100,7 +100,7 @@ impl Region {
         }
     }
 
-    /// Which points it contains.
+    /// Membership of points.
     #[inline(always)]
     fn contains<R: Real>(&self, like: R, p: Vector<R::Double>) -> Masks<R> {
         match self {

@@ -34,7 +34,7 @@ pub(super) struct Meetings<R: Real> {
     /// Parameters, where they exist.
     pub(super) t: R,
     pub(super) exist: R::Mask,
-    /// Where only [`Quadric::unclear_meeting`] tells.
+    /// The rays for which [`Quadric::unclear_meeting`] has to be asked.
     pub(super) are_unclear: R::Mask,
 }
 

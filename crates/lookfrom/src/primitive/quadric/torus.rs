@@ -105,7 +105,7 @@ struct Crossing<F> {
 pub(super) struct FirstMeetings<F: Float> {
     pub(super) t: F,
     pub(super) exist: F::Mask,
-    /// Where a root has to be searched for between extremes, if there is one.
+    /// The lanes whose roots, if there are any, have to be searched for between extremes.
     pub(super) are_unclear: F::Mask,
 }
 
