@@ -25,6 +25,9 @@ use crate::scenes;
 use lookfrom_scene::json;
 use lookfrom_scene::plural::counted;
 
+/// Names of objects that are shown.
+const MOST_NAMES: usize = 8;
+
 /// Describes every scene and returns the exit code. A scene that fails does not stop the others; its code is kept.
 pub(crate) fn run(arguments: &InfoArguments) -> u8 {
     if let Err(failure) = prepare::use_threads(&arguments.common) {
@@ -91,6 +94,7 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     let mut lines = vec![path.display().to_string()];
     let mut line = |name: &str, text: String| lines.push(format!("  {name:<10} {text}"));
     contents(&info.counts, &mut line);
+    line("names", names(session.world().objects().names()));
     let bounds = info.bounds;
     let size = bounds.max - bounds.min;
     line(
@@ -163,6 +167,14 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
         format!("read {:.2} s, build {:.2} s", report::seconds(info.read), report::seconds(info.build)),
     );
     lines.join("\n")
+}
+
+/// How many objects masks tell apart, and the names of the first of them.
+fn names(names: &[String]) -> String {
+    let shown = names.iter().take(MOST_NAMES).map(String::as_str);
+    let more = (names.len() > MOST_NAMES).then_some("…");
+    let listed = shown.chain(more).collect::<Vec<_>>().join(", ");
+    if names.is_empty() { "none".to_owned() } else { format!("{}: {listed}", thousands(names.len() as u64)) }
 }
 
 /// Counts of the contents by kind; kinds with a count of 0 are left out.

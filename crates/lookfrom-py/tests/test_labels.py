@@ -200,3 +200,26 @@ def test_vertices_are_where_they_are() -> None:
     homogeneous = np.hstack([VERTICES, np.ones((4, 1))]) @ camera.extrinsics().T
     by_hand = homogeneous[:, :3] @ camera.intrinsics.T
     assert np.allclose(pixels, by_hand[:, :2] / by_hand[:, 2:]) and np.allclose(depths, homogeneous[:, 2])
+
+
+def test_objects_are_those_of_obj_files_and_instances(tmp_path: Path) -> None:
+    squares = "\n".join(
+        f"v {x} 0 0\nv {x + 1} 0 0\nv {x + 1} 1 0\nv {x} 1 0\no {name}\nf -4 -3 -2 -1"
+        for x, name in enumerate(["Chair", "Table top"])
+    )
+    (tmp_path / "a.obj").write_text(squares)
+    camera = {"lookfrom": [1, 0, 5], "lookat": [1, 0, 0], "projection": "orthographic", "height": 2}
+    tile = {"quad": [{"corner": [0, -1, 0], "edge_u": [1, 0, 0], "edge_v": [0, 1, 0]}]}
+    instances = [{"object": "tile"}, {"object": "tile", "name": "mine", "translate": [1, 0, 0]}]
+    scene = {
+        "camera": camera,
+        "mesh": [{"file": str(tmp_path / "a.obj")}],
+        "objects": {"tile": tile},
+        "instance": instances,
+    }
+    labels = lookfrom.Session(scene, size=(2, 2)).labels()
+    names = [[labels.object_names[index] for index in row] for row in labels.object]
+    assert names == [["Chair", "Table top"], ["tile 1", "mine"]]
+    assert labels.mask(object="Table top").tolist() == [[False, True], [False, False]]
+    with pytest.raises(lookfrom.Error, match="there is no object 'Sofa'; there are 'Chair', 'Table top'"):
+        labels.mask(object="Sofa")

@@ -20,10 +20,23 @@ const SAMPLES: usize = 4096;
 
 /// Keeps the first of equal elements in each mesh and cloud, and among the instances, with a note.
 pub(crate) fn remove(scene: &mut Scene, file: &Location, context: &mut LoadContext<'_>) {
-    let triangles =
-        scene.meshes.iter_mut().filter(|mesh| !mesh.is_of_solid && mesh.later.is_empty()).map(of_mesh).sum();
+    let of_mesh = |mesh: &mut Mesh| match !mesh.is_of_solid && mesh.later.is_empty() {
+        true => of_mesh(mesh),
+        false => Vec::new(),
+    };
+    let gone: Vec<Vec<u32>> = scene.meshes.iter_mut().map(of_mesh).collect();
+    let triangles = gone.iter().map(Vec::len).sum();
     let in_objects = scene.objects.iter_mut().flat_map(|object| &mut object.shapes);
-    let spheres = scene.shapes.iter_mut().chain(in_objects).map(of_cloud).sum();
+    let mut spheres = 0;
+    for shape in scene.shapes.iter_mut().chain(in_objects) {
+        spheres += of_cloud(shape);
+        if let Geometry::Mesh(id) = shape.geometry
+            && !gone[id.index()].is_empty()
+        {
+            let left = scene.meshes[id.index()].triangles.len();
+            shape.pieces = shape.pieces.without(&gone[id.index()], left);
+        }
+    }
     let instances = of_instances(&mut scene.instances);
     for (count, noun) in [(triangles, "triangle"), (spheres, "sphere"), (instances, "instance")] {
         if count > 0 {
@@ -39,20 +52,29 @@ fn is_suspicious<K: Eq + Hash>(count: usize, key: impl Fn(usize) -> K) -> bool {
     (0..count).step_by(count.div_ceil(SAMPLES).max(1)).any(|index| !seen.insert(key(index)))
 }
 
-fn of_mesh(mesh: &mut Mesh) -> usize {
+/// The numbers of the triangles that are left out, in order.
+fn of_mesh(mesh: &mut Mesh) -> Vec<u32> {
     // The other numbers of vertices are looked at only where places are the same.
     let place = |vertex: u32| mesh.positions[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
     if !is_suspicious(mesh.triangles.len(), |index| turned(mesh.triangles[index].map(place))) {
-        return 0;
+        return Vec::new();
     }
     let mut known = HashMap::new();
     let first: Vec<u32> = (0..mesh.positions.len())
         .map(|vertex| *known.entry(numbers(mesh, vertex)).or_insert(vertex as u32))
         .collect();
-    let before = mesh.triangles.len();
+    let mut gone = Vec::new();
     let mut seen = HashSet::new();
-    mesh.triangles.retain(|triangle| seen.insert(turned(triangle.map(|vertex| first[vertex as usize]))));
-    before - mesh.triangles.len()
+    let mut number = 0;
+    mesh.triangles.retain(|triangle| {
+        let is_new = seen.insert(turned(triangle.map(|vertex| first[vertex as usize])));
+        if !is_new {
+            gone.push(number);
+        }
+        number += 1;
+        is_new
+    });
+    gone
 }
 
 /// The corners, with the least one first.
@@ -113,7 +135,8 @@ mod tests {
 
     use super::*;
     use crate::files::Memory;
-    use crate::scene::MaterialId;
+    use crate::scene::{MaterialId, MeshId};
+    use crate::shape::{Piece, Pieces};
 
     #[test]
     fn what_differs_in_anything_stays() {
@@ -123,9 +146,24 @@ mod tests {
         // The second is the first; the third has other texture coordinates, and the fourth looks the other way.
         let triangles = vec![[0, 1, 2], [4, 5, 3], [6, 7, 8], [0, 2, 1], [1, 2, 0]];
         let mut mesh = Mesh { positions, uvs, triangles, ..Mesh::default() };
-        assert_eq!(of_mesh(&mut mesh), 2);
+        assert_eq!(of_mesh(&mut mesh), [1, 4]);
         assert_eq!(mesh.triangles, [[0, 1, 2], [6, 7, 8], [0, 2, 1]]);
-        assert_eq!(of_mesh(&mut mesh), 0);
+        assert!(of_mesh(&mut mesh).is_empty());
+    }
+
+    #[test]
+    fn what_is_left_keeps_its_name() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE];
+        let triangles = vec![[0, 1, 2], [1, 2, 0], [1, 2, 3]];
+        let mesh = Mesh { positions: corners.to_vec(), triangles, ..Mesh::default() };
+        let piece = |first, name: &str| Piece { first, name: Some(name.into()) };
+        let pieces = Pieces::new(vec![piece(0, "a"), piece(1, "a again"), piece(2, "b")]);
+        let geometry = Geometry::Mesh(MeshId(0));
+        let shape = Shape { pieces, ..Shape::new(Location::default(), geometry, MaterialId(0)) };
+        let mut scene = Scene { shapes: vec![shape], meshes: vec![mesh], ..Scene::default() };
+        let files = Memory::default();
+        remove(&mut scene, &Location::default(), &mut LoadContext::new(&files));
+        assert_eq!(scene.shapes[0].pieces, Pieces::new(vec![piece(0, "a"), piece(1, "b")]));
     }
 
     #[test]

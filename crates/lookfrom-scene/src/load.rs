@@ -206,6 +206,7 @@ pub(crate) fn shapes(parts: Vec<Part>, at: &Location, default: MaterialId) -> Ve
         .into_iter()
         .map(|part| Shape {
             name: part.name,
+            pieces: part.pieces,
             emission: part.emission,
             alpha: part.alpha,
             single_sided: part.single_sided,

@@ -76,7 +76,8 @@ pub(crate) fn of_source(
     {
         subdivision::subdivide_meshes(&mut scene.meshes[before..], levels, &file, context)?;
     }
-    let meshes = scene.meshes[before..].iter().map(Mesh::bytes).sum();
-    context.keep(meshes, "the meshes of the model", &file)?;
+    let meshes: u64 = scene.meshes[before..].iter().map(Mesh::bytes).sum();
+    let pieces: u64 = parts.iter().map(|part| part.pieces.bytes()).sum();
+    context.keep(meshes + pieces, "the meshes of the model", &file)?;
     Ok(parts)
 }

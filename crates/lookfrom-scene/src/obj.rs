@@ -28,7 +28,7 @@ use crate::scene::{MeshId, Scene};
 use crate::shape::{Geometry, Part};
 
 /// Reads the content of an OBJ file and the material libraries and images that it names. There is one part per material; a file without
-/// faces and lines is a point cloud; lines are thin wires. Vertex colours are taken to be sRGB-encoded.
+/// faces and lines is a point cloud; lines are thin wires. Objects are pieces of the parts that have their faces. Vertex colours are taken to be sRGB-encoded.
 /// Messages and relative file names use `path`.
 ///
 /// # Errors
@@ -83,12 +83,15 @@ fn read(
     let mut parts = Vec::new();
     for group in meshes.groups {
         let traits = match &group.elements {
-            Elements::Mesh(mesh) => MeshTraits { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
+            Elements::Mesh(mesh, _) => MeshTraits { is_colored: colored, unit_of_uv: unit_of_uv(mesh) },
             Elements::Lines(..) => MeshTraits { is_colored: false, unit_of_uv: None },
         };
         let material = group.material.as_deref().filter(|_| has_materials);
         let binding = libraries.binding(material, traits, &file, context, scene);
-        let name = group.material.map(|name| String::from_utf8_lossy(&name).into_owned()).or(group.object);
+        let name = group
+            .material
+            .map(|name| String::from_utf8_lossy(&name).into_owned())
+            .or_else(|| group.object.as_deref().map(str::to_owned));
         let part = |geometry, material| Part {
             material,
             emission: binding.emission,
@@ -96,10 +99,10 @@ fn read(
             ..Part::new(name.clone(), geometry)
         };
         match group.elements {
-            Elements::Mesh(mesh) => {
+            Elements::Mesh(mesh, pieces) => {
                 let id = MeshId(scene.meshes.len() as u32);
                 scene.meshes.push(*mesh);
-                parts.push(part(Geometry::Mesh(id), binding.material));
+                parts.push(Part { pieces, ..part(Geometry::Mesh(id), binding.material) });
             }
             Elements::Lines(ends, colors) => {
                 for (color, wires) in

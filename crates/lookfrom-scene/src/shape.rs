@@ -1,5 +1,7 @@
 //! Shapes: quadrics, quads, patches, curves and triangle meshes, each with a transform, a material and perhaps emission.
 
+mod pieces;
+
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
@@ -10,12 +12,15 @@ use crate::material::{Color, Scalar};
 use crate::medium::Sides;
 use crate::scene::{Bounds, MaterialId, MeshId};
 use crate::solid::Solid;
+pub use pieces::{Piece, Pieces};
 
 /// A shape in the world (or in an object).
 #[derive(Clone, Debug)]
 pub struct Shape {
     /// Its name, if it has one.
     pub name: Option<String>,
+    /// The pieces of its mesh that have names of their own.
+    pub pieces: Pieces,
     /// The location in the file.
     pub at: Location,
     /// Its geometry, in its own space.
@@ -39,13 +44,14 @@ pub struct Shape {
 impl Shape {
     /// Bytes of itself and of the arrays that only it has: its meshes are the scene's.
     pub fn bytes(&self) -> u64 {
-        size_of::<Self>() as u64 + self.geometry.bytes()
+        size_of::<Self>() as u64 + self.geometry.bytes() + self.pieces.bytes()
     }
 
     /// A geometry with a material, at the origin, opaque, without emission.
     pub fn new(at: Location, geometry: Geometry, material: MaterialId) -> Self {
         Self {
             name: None,
+            pieces: Pieces::default(),
             at,
             geometry,
             material,
@@ -279,6 +285,8 @@ impl Mesh {
 pub struct Part {
     /// Its name in the file, if it has one.
     pub name: Option<String>,
+    /// The pieces of its mesh that have names of their own.
+    pub pieces: Pieces,
     /// Its geometry.
     pub geometry: Geometry,
     /// Its material, if the file gives one.
@@ -298,6 +306,7 @@ impl Part {
     pub fn new(name: Option<String>, geometry: Geometry) -> Self {
         Self {
             name,
+            pieces: Pieces::default(),
             geometry,
             material: None,
             emission: None,

@@ -30,6 +30,7 @@ mod model;
 mod object;
 mod open_pbr;
 mod physical;
+mod pieces;
 mod principled;
 mod quadric;
 mod quantity;

@@ -205,6 +205,19 @@ impl<R: Real> SurfacePoints<R> {
 }
 
 impl Primitives {
+    /// The numbers of their shapes, which may repeat.
+    pub(crate) fn shapes(&self) -> Vec<u32> {
+        let of_all = |bindings: &[MaterialBinding]| bindings.iter().map(|binding| binding.shape).collect();
+        match self {
+            Self::Mesh(mesh) => vec![mesh.binding.shape],
+            Self::Spheres(spheres) => spheres.bindings.iter().map(|sphere| sphere.binding.shape).collect(),
+            Self::Disks(disks) => of_all(&disks.bindings),
+            Self::Quadrics(quadrics) => of_all(&quadrics.bindings),
+            Self::Patches(patches) => vec![patches.binding.shape],
+            Self::Curves(curves) => vec![curves.binding.shape],
+        }
+    }
+
     /// The attributes of a primitive.
     #[inline]
     pub(crate) fn binding(&self, index: usize) -> &MaterialBinding {

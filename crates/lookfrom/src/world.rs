@@ -16,6 +16,7 @@ mod measured;
 mod medium;
 mod memory;
 mod numbers;
+mod objects;
 mod origin;
 mod place;
 mod precision;
@@ -30,6 +31,7 @@ pub(crate) use instance::Instance;
 pub use instance::PlacedInstance;
 pub(crate) use measured::MeasuredSurface;
 use medium::EndOfSpace;
+pub use objects::Objects;
 
 use std::fmt;
 use std::sync::Arc;
@@ -38,6 +40,7 @@ use glam::{DMat3, DVec3, Vec2, Vec3};
 use lookfrom_bvh::{Bvh, Hit, NONE, OriginPrimitive, Ray};
 use lookfrom_scene::Location;
 use lookfrom_scene::scene::MediumId;
+use lookfrom_scene::shape::Pieces;
 
 use crate::core::spectrum::Spectrum;
 use crate::light::{ChosenLight, IncompletePdf, Light, LightChoice, LightSample, LightSampleContext};
@@ -142,6 +145,15 @@ pub struct ShapeLabel {
     pub name: String,
     /// The location of a shape without a name.
     pub at: Option<Location>,
+    /// The pieces of its mesh that have names of their own.
+    pub pieces: Pieces,
+}
+
+impl ShapeLabel {
+    /// The label of one of its primitives: that of the shape, or the name of a piece.
+    pub fn of(&self, primitive: u32) -> String {
+        self.pieces.name_of(primitive).map_or_else(|| self.to_string(), str::to_owned)
+    }
 }
 
 impl fmt::Display for ShapeLabel {

@@ -21,6 +21,8 @@ pub(super) struct Object<'a> {
     scene: String,
     #[serde(flatten)]
     counts: &'a Counts,
+    /// Those of Cryptomattes and labels.
+    names: Vec<String>,
     bounds: Option<BoundsObject>,
     scenes: Vec<SceneObject<'a>>,
     animations: Vec<AnimationObject<'a>>,
@@ -145,6 +147,7 @@ impl<'a> Object<'a> {
         Self {
             scene: path.display().to_string(),
             counts,
+            names: session.world().objects().names().to_vec(),
             bounds: (!bounds.is_empty()).then(|| bounds.into()),
             scenes: scenes(contents),
             animations: contents.animations.iter().map(Into::into).collect(),

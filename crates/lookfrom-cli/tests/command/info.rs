@@ -41,6 +41,20 @@ fn a_model_says_what_was_added() {
     assert_eq!(model["bounds"]["max"], json!([1.0, 1.0, 0.0]));
 }
 
+#[test]
+fn objects_have_their_names() {
+    let stage = Stage::new("info-names");
+    let names: Vec<String> = (1..=9).map(|number| format!("Part {number}")).collect();
+    let object = |(x, name): (usize, &String)| {
+        format!("v {x} 0 0\nv {x} 1 0\nv {x} 1 1\no {name}\nusemtl red\nf -3 -2 -1\n")
+    };
+    stage.write("parts.obj", &names.iter().enumerate().map(object).collect::<String>());
+    assert_eq!(stage.json("info parts.obj --json")[0]["names"], json!(names));
+    let text = String::from_utf8(stage.done("info parts.obj").stdout).unwrap();
+    let listed = format!("  names      9: {}, …\n", names[..8].join(", "));
+    assert!(text.contains(&listed), "{text}");
+}
+
 /// Two of everything that a person can choose from.
 const CHOICES: &str = r#"{"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[]},{"name":"Hall","nodes":[0,1,2]}],
 "nodes":[{"mesh":0},{"name":"Front","camera":0,"translation":[0,0,3]},{"camera":1,"translation":[0,0,3]}],

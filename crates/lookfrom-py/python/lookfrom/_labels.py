@@ -20,6 +20,8 @@ class Labels:
     """What is seen at the middle of each pixel, through the middle of the lens. Arrays have the shape (h, w), with rows from
     the top.
 
+    object: indices into `object_names`; -1 where nothing is seen. Objects are those of Cryptomattes: an instance, an object of an
+        OBJ file, a node of a glTF file, or else a shape; all of one name are one.
     shape, material: indices into `shape_names` and `material_names`; -1 where nothing is seen.
     instance: the instance that the shape is in; -1 outside of instances.
     primitive: the primitive within its shape: of a mesh, the triangle; -1 where nothing is seen.
@@ -28,6 +30,7 @@ class Labels:
     normal: the shading normal, shape (h, w, 3), in the world, on the viewer's side; NaN where nothing is seen.
     """
 
+    object: NDArray[np.int32]
     shape: NDArray[np.int32]
     instance: NDArray[np.int32]
     material: NDArray[np.int32]
@@ -35,6 +38,7 @@ class Labels:
     depth: NDArray[np.float64]
     position: NDArray[np.float64]
     normal: NDArray[np.float32]
+    object_names: list[str]
     shape_names: list[str]
     material_names: list[str]
     camera: Camera
@@ -44,10 +48,14 @@ class Labels:
         """Where anything is seen."""
         return self.shape >= 0
 
-    def mask(self, *, shape: str | None = None, material: str | None = None) -> NDArray[np.bool_]:
-        """Where a shape or material of this name is seen; several may have it. Raises Error for a name that none has."""
+    def mask(
+        self, *, object: str | None = None, shape: str | None = None, material: str | None = None
+    ) -> NDArray[np.bool_]:
+        """Where an object, shape or material of this name is seen; several shapes may have it. Raises Error for a name that
+        none has."""
         mask = self.hit
         for kind, name, names, ids in (
+            ("object", object, self.object_names, self.object),
             ("shape", shape, self.shape_names, self.shape),
             ("material", material, self.material_names, self.material),
         ):

@@ -282,8 +282,9 @@ class Session:
         with np.errstate(invalid="ignore"):
             depth = (position - camera.lookfrom) @ axis
         depth[np.isnan(depth)] = np.inf
-        shapes, materials = self._native.names()
+        shapes, materials, objects = self._native.names()
         return Labels(
+            object=arrays["object"].reshape(shape),
             shape=arrays["shape"].reshape(shape),
             instance=arrays["instance"].reshape(shape),
             material=arrays["material"].reshape(shape),
@@ -291,6 +292,7 @@ class Session:
             depth=depth,
             position=position,
             normal=arrays["normal"].reshape(*shape, 3),
+            object_names=objects,
             shape_names=shapes,
             material_names=materials,
             camera=camera,

@@ -135,11 +135,11 @@ impl Session {
         parallel::for_each(py, session.threads().unwrap_or(0), items, || {
             |(row, y): (&mut Vec<Label>, u32)| row.extend((0..width).map(|x| renderer.label([x, y])))
         })?;
-        labels::arrays(py, &rows.concat())
+        labels::arrays(py, &rows.concat(), &renderer.world().objects())
     }
 
-    /// Names of shapes and of materials, by index.
-    fn names(&self) -> (Vec<String>, Vec<String>) {
+    /// Names of shapes, of materials and of objects, by index.
+    fn names(&self) -> [Vec<String>; 3] {
         labels::names(self.now().renderer())
     }
 
@@ -177,7 +177,7 @@ impl Session {
 
     /// Replaces a material by that of a text in the scene format.
     fn set_material(&self, py: Python<'_>, name: &str, text: &str) -> PyResult<()> {
-        let known = self.names().1;
+        let known = &self.names()[1];
         let Some(index) = known.iter().position(|other| other == name) else {
             return Err(Error::new_err(format!(
                 "there is no material {name:?}; the scene has {}",

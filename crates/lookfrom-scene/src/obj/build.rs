@@ -4,15 +4,17 @@
 //! where smoothing groups require them: face normals weighted by the angle at the corner (Thürmer & Wüthrich 1998), so
 //! that they do not depend on the triangulation.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec2, Vec3};
 
-use super::statement::{Corner, Group, NONE, Statements};
+use super::statement::{Corner, Face, Group, NONE, Statements};
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::model::polygon::{Triangulator, has_area};
 use crate::model::tally::Tally;
 use crate::model::weld::Weld;
-use crate::shape::Mesh;
+use crate::shape::{Mesh, Piece, Pieces};
 
 /// All meshes of a file.
 pub(super) struct Meshes {
@@ -24,13 +26,14 @@ pub(super) struct Meshes {
 /// The faces or the lines of one material.
 pub(super) struct MeshGroup {
     pub(super) material: Option<Vec<u8>>,
-    pub(super) object: Option<String>,
+    pub(super) object: Option<Arc<str>>,
     pub(super) elements: Elements,
 }
 
 /// The elements of a group.
 pub(super) enum Elements {
-    Mesh(Box<Mesh>),
+    /// A mesh, and the objects that it is made of.
+    Mesh(Box<Mesh>, Pieces),
     /// The ends of lines, and the colour of each, where vertices have colours.
     Lines(Vec<[Vec3; 2]>, Vec<[f32; 3]>),
 }
@@ -58,10 +61,10 @@ pub(super) fn meshes(
     for group in std::mem::take(&mut statements.groups) {
         let mesh_group =
             |elements| MeshGroup { material: group.material.clone(), object: group.object.clone(), elements };
-        let mut mesh = mesh(&group, &statements, &mut triangulator, &mut tallies);
+        let (mut mesh, pieces) = mesh(&group, &statements, &mut triangulator, &mut tallies);
         if !mesh.triangles.is_empty() {
             mesh.name = file.file.to_string();
-            groups.push(mesh_group(Elements::Mesh(Box::new(mesh))));
+            groups.push(mesh_group(Elements::Mesh(Box::new(mesh), pieces)));
         }
         let (ends, colors) = lines(&group, &statements, &mut tallies.lines);
         if !ends.is_empty() {
@@ -92,14 +95,14 @@ fn make_values_finite(statements: &mut Statements, tally: &mut Tally) {
     }
 }
 
-/// Calls `each` with the corners and line of every triangle of a group, and `skipped` with the lines of faces whose
+/// Calls `each` with the corners and face of every triangle of a group, and `skipped` with the lines of faces whose
 /// positions are not finite.
 fn triangles(
     group: &Group,
     positions: &[Vec3],
     triangulator: &mut Triangulator,
     mut skipped: impl FnMut(u32),
-    mut each: impl FnMut([usize; 3], [Vec3; 3], u32, u32),
+    mut each: impl FnMut([usize; 3], [Vec3; 3], &Face),
 ) {
     let mut points = Vec::new();
     let mut cut = Vec::new();
@@ -113,7 +116,7 @@ fn triangles(
             triangulator.cut(&points, &mut cut);
             for triangle in &cut {
                 let local = triangle.map(|i| i as usize);
-                each(local.map(|i| start + i), local.map(|i| points[i]), face.line, face.smoothing);
+                each(local.map(|i| start + i), local.map(|i| points[i]), face);
             }
         } else {
             skipped(face.line);
@@ -136,7 +139,7 @@ fn smooth(statements: &mut Statements, triangulator: &mut Triangulator) {
             positions,
             triangulator,
             |_| {},
-            |corners, points, _, smoothing| {
+            |corners, points, &Face { smoothing, .. }| {
                 let points = points.map(Vec3::as_dvec3);
                 let facet = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or_zero();
                 for (i, corner) in corners.into_iter().enumerate() {
@@ -179,8 +182,10 @@ fn mesh(
     statements: &Statements,
     triangulator: &mut Triangulator,
     tallies: &mut Tallies,
-) -> Mesh {
+) -> (Mesh, Pieces) {
     let mut mesh = Mesh::default();
+    let mut pieces = Vec::new();
+    let mut last = NONE;
     let mut weld = Weld::new();
     let Tallies { not_finite, flat, .. } = tallies;
     triangles(
@@ -188,14 +193,19 @@ fn mesh(
         &statements.positions,
         triangulator,
         |line| not_finite.add(line),
-        |corners, points, line, _| {
+        |corners, points, face| {
             if has_area(points) {
+                if face.object != last {
+                    last = face.object;
+                    let name = statements.objects.get(last as usize).cloned();
+                    pieces.push(Piece { first: mesh.triangles.len() as u32, name });
+                }
                 mesh.triangles.push(corners.map(|corner| {
                     let Corner { position, uv, normal } = group.corners[corner];
                     weld.id([position, uv, normal])
                 }));
             } else {
-                flat.add(line);
+                flat.add(face.line);
             }
         },
     );
@@ -210,7 +220,7 @@ fn mesh(
     if !statements.colors.is_empty() {
         mesh.colors = keys.iter().map(|key| value(&statements.colors, key[0], [1.0; 3])).collect();
     }
-    mesh
+    (mesh, Pieces::new(pieces))
 }
 
 /// The lines of a group, and their colours.

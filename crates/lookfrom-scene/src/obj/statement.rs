@@ -4,6 +4,7 @@
 //! normals are left to [`super::build`], materials to [`super::mtl`].
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -34,6 +35,8 @@ pub(super) struct Face {
     pub(super) line: u32,
     /// The smoothing group; 0 is flat.
     pub(super) smoothing: u32,
+    /// The index of its object's name, or [`NONE`].
+    pub(super) object: u32,
 }
 
 /// The faces of one material.
@@ -41,8 +44,8 @@ pub(super) struct Face {
 pub(super) struct Group {
     /// The name in `usemtl`, in bytes.
     pub(super) material: Option<Vec<u8>>,
-    /// The first object or group in which it was used.
-    pub(super) object: Option<String>,
+    /// The name of the object in which it was used first.
+    pub(super) object: Option<Arc<str>>,
     pub(super) faces: Vec<Face>,
     /// The corners of all faces, one face after the other.
     pub(super) corners: Vec<Corner>,
@@ -61,6 +64,8 @@ pub(super) struct Statements {
     pub(super) uvs: Vec<Vec2>,
     pub(super) normals: Vec<Vec3>,
     pub(super) groups: Vec<Group>,
+    /// The names of objects.
+    pub(super) objects: Vec<Arc<str>>,
     /// The locations and names of the libraries of `mtllib`.
     pub(super) libraries: Vec<(Location, Vec<u8>)>,
 }
@@ -82,7 +87,9 @@ struct Parser<'a> {
     colors: Colors,
     group_of_material: HashMap<Option<Vec<u8>>, usize>,
     group: usize,
-    object: Option<String>,
+    index_of_object: HashMap<Arc<str>, u32>,
+    /// The indices of the last names in `o` and in `g`, or [`NONE`].
+    named: [u32; 2],
     smoothing: u32,
     largest: [Largest<'a>; 3],
     /// The first index of a position that does not exist.
@@ -117,7 +124,8 @@ pub(super) fn parse(text: &[u8], file: &Location, context: &mut LoadContext<'_>)
         colors: Colors::default(),
         group_of_material: HashMap::new(),
         group: 0,
-        object: None,
+        index_of_object: HashMap::new(),
+        named: [NONE; 2],
         smoothing: 0,
         largest: [largest(), largest(), largest()],
         first_broken: None,
@@ -174,10 +182,8 @@ impl Parser<'_> {
                 let name = self.scanner.rest_of_line();
                 self.use_material((!name.is_empty()).then_some(name));
             }
-            b"o" | b"g" => {
-                let name = self.scanner.rest_of_line();
-                self.object = (!name.is_empty()).then(|| String::from_utf8_lossy(name).into_owned());
-            }
+            b"o" => self.named[0] = self.name(),
+            b"g" => self.named[1] = self.name(),
             b"mtllib" => {
                 let name = self.scanner.rest_of_line();
                 let at = self.scanner.at(self.file);
@@ -210,6 +216,26 @@ impl Parser<'_> {
             return Err(self.too_many("vertices"));
         }
         Ok(())
+    }
+
+    /// The index of the object that the rest of the line names.
+    fn name(&mut self) -> u32 {
+        let name = self.scanner.rest_of_line();
+        if name.is_empty() {
+            return NONE;
+        }
+        let objects = &mut self.statements.objects;
+        let name: Arc<str> = String::from_utf8_lossy(name).into();
+        *self.index_of_object.entry(name).or_insert_with_key(|name| {
+            objects.push(name.clone());
+            objects.len() as u32 - 1
+        })
+    }
+
+    /// The index of the object that faces belong to: that of `o`; before the first, that of `g`.
+    fn object(&self) -> u32 {
+        let [object, group] = self.named;
+        if object == NONE { group } else { object }
     }
 
     fn position(&mut self) -> Result<()> {
@@ -268,7 +294,7 @@ impl Parser<'_> {
             let corner = self.corner(word)?;
             self.statements.groups[self.group].corners.push(corner);
         }
-        let line = self.scanner.line();
+        let (line, object) = (self.scanner.line(), self.object());
         let group = &mut self.statements.groups[self.group];
         let corners = group.corners.len() - start;
         let is_broken = group.corners[start..].iter().any(|corner| corner.position == NONE);
@@ -277,7 +303,7 @@ impl Parser<'_> {
             if is_broken { &mut self.broken } else { &mut self.thin }.add(line);
             return Ok(());
         }
-        group.faces.push(Face { corners: corners as u32, line, smoothing: self.smoothing });
+        group.faces.push(Face { corners: corners as u32, line, smoothing: self.smoothing, object });
         if group.corners.len() > self.elements { Err(self.too_many("corners of faces")) } else { Ok(()) }
     }
 
@@ -373,10 +399,11 @@ impl Parser<'_> {
     }
 
     fn use_material(&mut self, name: Option<&[u8]>) {
+        let object = self.statements.objects.get(self.object() as usize).cloned();
         let groups = &mut self.statements.groups;
         self.group = *self.group_of_material.entry(name.map(<[u8]>::to_vec)).or_insert_with(|| {
             let material = name.map(<[u8]>::to_vec);
-            groups.push(Group { material, object: self.object.clone(), ..Group::default() });
+            groups.push(Group { material, object, ..Group::default() });
             groups.len() - 1
         });
     }

@@ -26,11 +26,12 @@ pub(super) fn subdivide(
     Ok(())
 }
 
-/// A face of the file: its group, line and smoothing group.
+/// A face of the file: its group, line, smoothing group and object.
 struct Source {
     group: usize,
     line: u32,
     smoothing: u32,
+    object: u32,
 }
 
 /// Takes the faces out of the groups. The values of corners are texture coordinates, then colours.
@@ -67,7 +68,8 @@ fn cage(statements: &mut Statements) -> (Cage, Vec<Source>) {
                 }
             }
             cage.end_face(sources.len() as u32);
-            sources.push(Source { group: index, line: face.line, smoothing: face.smoothing });
+            let Face { line, smoothing, object, .. } = face;
+            sources.push(Source { group: index, line, smoothing, object });
         }
     }
     (cage, sources)
@@ -93,9 +95,9 @@ fn replace(statements: &mut Statements, refined: &Refined, sources: &[Source]) {
         statements.colors.resize(statements.positions.len() + refined.positions.len(), [1.0; 3]);
     }
     for (index, corners) in refined.corners.chunks_exact(4).enumerate() {
-        let Source { group, line, smoothing } = sources[refined.tags[index] as usize];
+        let Source { group, line, smoothing, object } = sources[refined.tags[index] as usize];
         let group = &mut statements.groups[group];
-        group.faces.push(Face { corners: 4, line, smoothing });
+        group.faces.push(Face { corners: 4, line, smoothing, object });
         for (k, &vertex) in corners.iter().enumerate() {
             let values = &refined.values[(4 * index + k) * width..][..width];
             let uv = match has_uvs {

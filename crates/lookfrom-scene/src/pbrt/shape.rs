@@ -49,16 +49,12 @@ impl Reader<'_, '_> {
         }
         let sides = self.sides(&p.place)?;
         let shape = Shape {
-            name: None,
-            at: p.place.location(),
-            geometry,
-            material: self.state.material,
             emission,
             alpha,
             sides,
             reverse_orientation: self.state.reverse_orientation,
-            single_sided: false,
             world_from_object: matrix,
+            ..Shape::new(p.place.location(), geometry, self.state.material)
         };
         self.context.keep(shape.bytes(), "the shape", &shape.at)?;
         match matrix == end {

@@ -33,7 +33,7 @@ impl Reader<'_, '_> {
             triangles.note(triangles.error("`triangles` needs `positions`, not `file`"));
         }
         table.allow(&[
-            &["file", "positions", "triangles", "subdivision", "displacement"],
+            &["file", "positions", "triangles", "subdivision", "displacement", "pieces"],
             CHOICE,
             COMMON,
             OPERAND,

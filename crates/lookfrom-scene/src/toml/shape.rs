@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::material::Scalar;
 use crate::medium::Sides;
 use crate::scene::MaterialId;
-use crate::shape::{Emission, Geometry, Mesh, Part, Shape};
+use crate::shape::{Emission, Geometry, Mesh, Part, Pieces, Shape};
 
 /// The keys of shapes, by kind, in addition to those in [`common`].
 pub(super) const KEYS: Kinds = &[
@@ -44,6 +44,7 @@ pub(super) const KEYS: Kinds = &[
             "uvs",
             "colors",
             "displacement",
+            "pieces",
         ],
     ),
     ("patch", &["corners", "positions", "patches", "normals", "uvs"]),
@@ -136,6 +137,7 @@ impl Reader<'_, '_> {
             let opacity = || self.opacities.get(&material).copied().filter(|_| is_default);
             shapes.push(Shape {
                 name: part.name,
+                pieces: part.pieces,
                 emission: part.emission.or_else(glow),
                 alpha: part.alpha.or_else(opacity),
                 reverse_orientation,
@@ -169,6 +171,9 @@ impl Reader<'_, '_> {
             part.world_from_object = transform::after(table, &world_from_object, &part.world_from_object);
         }
         self.dress(&attributes, &mut parts);
+        if kind == "mesh" {
+            self.put_pieces(table, &mut parts);
+        }
         Ok(parts)
     }
 
@@ -184,7 +189,10 @@ impl Reader<'_, '_> {
     /// Gives parts the look that a table has for them.
     pub(super) fn dress(&self, attributes: &ShapeAttributes, parts: &mut [Part]) {
         for part in parts {
-            part.name = attributes.name.clone().or(part.name.take());
+            if let Some(name) = &attributes.name {
+                part.name = Some(name.clone());
+                part.pieces = Pieces::default();
+            }
             part.material = attributes.material.or(part.material);
             // Emission of the shape has priority over that of its material, and that over that of its file.
             let glow = attributes.material.and_then(|material| self.glows.get(&material).copied());

@@ -18,7 +18,7 @@ use crate::budget::Reservation;
 use crate::composite;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Bounds, MeshId};
-use crate::shape::{Geometry, Mesh, Part, Sphere};
+use crate::shape::{Geometry, Mesh, Part, Pieces, Sphere};
 use crate::solid::{Body, Combination, Form, MOST_BODIES, Operation, Solid};
 
 pub(super) const OPERATIONS: &[(&str, Operation)] = &[
@@ -115,6 +115,7 @@ impl Reader<'_, '_> {
             part.geometry =
                 self.mesh(table, Mesh { name: SOLID.to_owned(), is_of_solid: true, ..surface })?;
             part.world_from_object = DMat4::IDENTITY;
+            part.pieces = Pieces::default();
             parts.push(part);
         }
         Ok(parts)

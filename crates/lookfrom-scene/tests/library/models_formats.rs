@@ -2,6 +2,7 @@
 
 mod exporters;
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
@@ -633,4 +634,38 @@ fn ply_edges_without_faces_are_wires() {
     // Without ends there are no edges: the vertices are points.
     let other = of(&format!("{header}element edge 1\nproperty int length\nend_header\n{vertices}7\n"));
     assert!(matches!(&other.parts[0].geometry, Geometry::Spheres(spheres) if spheres.len() == 3));
+}
+
+/// The first triangles of the pieces of a part, and their names.
+fn pieces(part: &Part) -> Vec<(u32, Option<&str>)> {
+    part.pieces.iter().map(|piece| (piece.first, piece.name.as_deref())).collect()
+}
+
+#[test]
+fn objects_of_obj_files_are_pieces_of_the_meshes_of_their_materials() {
+    let positions = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    let of = |statements: &str| Model::of(&[("a.obj", &[positions, statements.as_bytes()].concat())]);
+    // Quadrilaterals are two triangles each; a face without area is none.
+    let model = of("usemtl red\nf 1 2 3\no Table top\nf 1 2 3 4\nusemtl blue\nf 1 2 3\nf 1 1 2\n\
+                    o Lämpe\nf 2 3 4\nusemtl red\nf 1 2 4\no Table top\nf 2 3 4\no Gone\nf 1 1 2\n");
+    let expected = [(1, Some("Table top")), (3, Some("Lämpe")), (4, Some("Table top"))];
+    assert_eq!(pieces(&model.parts[0]), expected);
+    assert_eq!(pieces(&model.parts[1]), [(0, Some("Table top")), (1, Some("Lämpe"))]);
+    assert_eq!(model.parts[0].name.as_deref(), Some("red"));
+    // Groups are objects only where nothing says what is one.
+    let model = of("g leg\nf 1 2 3\ng\nf 1 2 4\no Chair\ng seat\nf 1 3 4\ng back\nf 2 3 4\n");
+    assert_eq!(pieces(&model.parts[0]), [(0, Some("leg")), (1, None), (2, Some("Chair"))]);
+    assert_eq!(pieces(&of("f 1 2 3\n").parts[0]), []);
+}
+
+#[test]
+fn subdivided_objects_keep_their_names() {
+    let files = Memory(HashMap::from([(
+        PathBuf::from("a.obj"),
+        b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\no a\nf 1 2 3 4\no b\nf 2 5 6 3\n".to_vec(),
+    )]));
+    let mut context = LoadContext::new(&files);
+    context.import.subdivision = 2;
+    let parts = model::read(Path::new("a.obj"), &mut context, &mut Scene::default()).unwrap();
+    assert_eq!(pieces(&parts[0]), [(0, Some("a")), (32, Some("b"))]);
 }

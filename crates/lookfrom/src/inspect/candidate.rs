@@ -248,7 +248,7 @@ fn candidate(
         (false, false) => outcome,
     };
     Candidate {
-        name: format!("{kind} {primitive} of {}{within}", world.names.shapes[shape as usize]),
+        name: format!("{kind} {primitive} of {}{within}", world.names.shapes[shape as usize].of(primitive)),
         verdict,
         is_nearest,
         test,

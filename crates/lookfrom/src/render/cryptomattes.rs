@@ -10,7 +10,7 @@ use crate::core::parallel;
 use crate::film;
 use crate::shading::interaction::SurfaceInteraction;
 use crate::shading::interior_stack::InteriorStack;
-use crate::world::World;
+use crate::world::{Objects, World};
 
 /// The most samples of a pixel whose rays are traced for mattes: coverage is about as exact as 8 bits.
 pub const MOST_MATTE_SAMPLES: u32 = 256;
@@ -44,9 +44,8 @@ impl Renderer {
         for row in rows {
             pixels.iter_mut().zip(row).for_each(|(pixels, row)| pixels.extend(row));
         }
-        let names = |kind| names(&self.world, kind).map(|name| (CryptomatteId::of(&name), name));
-        let mattes = kinds.iter().zip(pixels);
-        mattes.map(|(&kind, pixels)| Cryptomatte::new(kind, pixels, names(kind))).collect()
+        let mattes = kinds.iter().zip(&all).zip(pixels);
+        mattes.map(|((&kind, ids), pixels)| Cryptomatte::new(kind, pixels, ids.named(&self.world))).collect()
     }
 }
 
@@ -100,24 +99,19 @@ impl PixelRays {
 
 /// The identifiers of one kind of things.
 enum Ids {
-    Objects {
-        shapes: Vec<CryptomatteId>,
-        /// `None` for those that are no instances of the scene.
-        instances: Vec<Option<CryptomatteId>>,
-    },
+    Objects { objects: Objects, ids: Vec<CryptomatteId> },
     Materials(Vec<CryptomatteId>),
 }
 
 impl Ids {
     fn new(world: &World, kind: CryptomatteKind) -> Self {
-        let of_all =
-            |names: &mut dyn Iterator<Item = &String>| names.map(|name| CryptomatteId::of(name)).collect();
+        let of_all = |names: &[String]| names.iter().map(|name| CryptomatteId::of(name)).collect();
         match kind {
-            CryptomatteKind::Object => Self::Objects {
-                shapes: of_all(&mut world.names.shapes.iter().map(|label| &label.name)),
-                instances: instance_names(world).map(|name| name.as_deref().map(CryptomatteId::of)).collect(),
-            },
-            CryptomatteKind::Material => Self::Materials(of_all(&mut world.names.materials.iter())),
+            CryptomatteKind::Object => {
+                let objects = world.objects();
+                Self::Objects { ids: of_all(objects.names()), objects }
+            }
+            CryptomatteKind::Material => Self::Materials(of_all(&world.names.materials)),
         }
     }
 
@@ -125,45 +119,19 @@ impl Ids {
     fn of(&self, surface: &SurfaceInteraction, hit: &Hit) -> CryptomatteId {
         match self {
             Self::Materials(ids) => ids[surface.material as usize],
-            Self::Objects { shapes, instances } => {
-                let instance = if hit.instance == NONE { None } else { instances[hit.instance as usize] };
-                instance.unwrap_or_else(|| shapes[surface.shape as usize])
+            Self::Objects { objects, ids } => {
+                let instance = (hit.instance != NONE).then_some(hit.instance);
+                ids[objects.of(surface.shape, surface.primitive, instance) as usize]
             }
         }
     }
-}
 
-/// The names of all things of a kind.
-fn names(world: &World, kind: CryptomatteKind) -> Box<dyn Iterator<Item = String> + '_> {
-    let names = &world.names;
-    match kind {
-        CryptomatteKind::Object => {
-            let shapes = names.shapes.iter().map(|label| label.name.clone());
-            Box::new(shapes.chain(instance_names(world).flatten()))
-        }
-        CryptomatteKind::Material => Box::new(names.materials.iter().cloned()),
+    /// All names with their identifiers.
+    fn named<'a>(&'a self, world: &'a World) -> impl Iterator<Item = (CryptomatteId, String)> + 'a {
+        let (ids, names) = match self {
+            Self::Materials(ids) => (ids, &*world.names.materials),
+            Self::Objects { objects, ids } => (ids, objects.names()),
+        };
+        ids.iter().copied().zip(names.iter().cloned())
     }
-}
-
-/// The names of instances. One that the scene does not name has the name of its object, with a number where there are several of it;
-/// those that are made for shapes which emit light and move have none.
-fn instance_names(world: &World) -> impl Iterator<Item = Option<String>> {
-    let names = &world.names;
-    let mut counts = vec![0_u32; names.objects.len()];
-    for instance in &*world.instances {
-        counts.get_mut(instance.object as usize).into_iter().for_each(|count| *count += 1);
-    }
-    let mut numbers = vec![0_u32; names.objects.len()];
-    world.instances.iter().enumerate().map(move |(index, instance)| {
-        let object = instance.object as usize;
-        let name = names.objects.get(object)?;
-        numbers[object] += 1;
-        let own = names.instances.get(index).and_then(Option::as_ref);
-        Some(match (own, counts[object]) {
-            (Some(own), _) => own.to_string(),
-            (None, 1) if !name.is_empty() => name.clone(),
-            (None, _) if name.is_empty() => format!("object {} {}", object + 1, numbers[object]),
-            (None, _) => format!("{name} {}", numbers[object]),
-        })
-    })
 }

@@ -84,6 +84,36 @@ fn instances_are_objects_with_the_materials_that_they_show() {
 }
 
 #[test]
+fn pieces_of_a_mesh_are_objects() {
+    let scene = squares(
+        r#"
+        [[mesh]]
+        name = "whole"
+        positions = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]
+        triangles = [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]]
+        pieces = [{ name = "left", first = 1 }, { name = "right", first = 2 }]
+        material = "red"
+        "#,
+    );
+    let objects = |pixel| coverage(&scene, CryptomatteKind::Object, pixel);
+    assert_covers(&objects(2), &[("left", 0.5), ("whole", 0.5)]);
+    assert_covers(&objects(3), &[("right", 1.0)]);
+    assert_covers(&coverage(&scene, CryptomatteKind::Material, 3), &[("red", 1.0)]);
+    // What has no triangles under its own name is no object.
+    let scene = squares(
+        r#"
+        [[mesh]]
+        name = "whole"
+        positions = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+        triangles = [[0, 1, 2]]
+        pieces = [{ name = "part", first = 0 }]
+        "#,
+    );
+    let names = Compiled::new(scene).renderer().world().objects().names().to_vec();
+    assert_eq!(names, ["part"]);
+}
+
+#[test]
 fn fractional_alpha_covers_in_part() {
     let scene = squares(
         r#"

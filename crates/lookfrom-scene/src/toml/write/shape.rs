@@ -11,7 +11,7 @@ use crate::composite::{sphereflake, sphereflake_count};
 use crate::error::Result;
 use crate::material::Scalar;
 use crate::npy;
-use crate::shape::{Emission, Geometry, Patches, Profile, Shape, Sphere, Strand};
+use crate::shape::{Emission, Geometry, Patches, Piece, Profile, Shape, Sphere, Strand};
 use crate::toml::curve::PROFILES;
 use crate::toml::quadric::{DEEPEST_FLAKE, along};
 use crate::toml::word_of;
@@ -25,6 +25,7 @@ impl Writer<'_> {
         let shape = &surfaces[0];
         let Shape {
             name: _,
+            pieces,
             at: _,
             geometry,
             sides,
@@ -44,6 +45,9 @@ impl Writer<'_> {
             _ => {
                 put_name(&mut fields, shape);
                 let placed = self.geometry(&mut fields, geometry, world_from_object)?;
+                if !pieces.is_empty() {
+                    fields.put("pieces", Item::list(pieces.iter().map(piece)));
+                }
                 self.put_look(&mut fields, shape)?;
                 placed
             }
@@ -317,4 +321,14 @@ pub(super) fn put_name(fields: &mut Fields, shape: &Shape) {
     if let Some(name) = &shape.name {
         fields.put("name", spoken("shape", name));
     }
+}
+
+/// The table of a piece.
+fn piece(Piece { first, name }: &Piece) -> Fields {
+    let mut fields = Fields::default();
+    if let Some(name) = name {
+        fields.put("name", spoken("piece", name));
+    }
+    fields.put("first", *first);
+    fields
 }

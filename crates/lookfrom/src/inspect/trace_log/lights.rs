@@ -187,7 +187,7 @@ impl TraceLogBuilder<'_> {
         let world = self.world;
         let blocker = hit.is_hit().then(|| {
             let surface = world.surface_at(&shadow.ray, hit, self.time);
-            let shape = world.names.shapes[surface.shape as usize].to_string();
+            let shape = world.names.shapes[surface.shape as usize].of(surface.primitive);
             let point = (world.origin + DVec3::from_array(surface.point.position)).to_array();
             Blocker { shape, t: hit.t, point, passed: self.factor(passed) }
         });

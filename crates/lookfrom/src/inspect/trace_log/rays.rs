@@ -166,7 +166,7 @@ impl TraceLogBuilder<'_> {
 
 fn met_report(world: &World, (hit, time): (&Hit, f32), surface: &SurfaceInteraction) -> MetReport {
     MetReport {
-        shape: world.names.shapes[surface.shape as usize].to_string(),
+        shape: world.names.shapes[surface.shape as usize].of(surface.primitive),
         primitive: hit.primitive,
         instance: (hit.instance != NONE).then_some(hit.instance),
         t: hit.t,

@@ -34,7 +34,7 @@ impl Labels {
         let mut numbers: HashMap<String, usize> = HashMap::new();
         let mut label = |shape: &Shape| {
             if let Some(name) = &shape.name {
-                return ShapeLabel { name: name.clone(), at: None };
+                return ShapeLabel { name: name.clone(), at: None, pieces: shape.pieces.clone() };
             }
             let words = words(scene, shape);
             let name = match material(scene, shape) {
@@ -46,7 +46,7 @@ impl Labels {
                     format!("{words} {number}")
                 }
             };
-            ShapeLabel { name, at: Some(shape.at.clone()) }
+            ShapeLabel { name, at: Some(shape.at.clone()), pieces: shape.pieces.clone() }
         };
         Self {
             shapes: scene.shapes.iter().map(&mut label).collect(),

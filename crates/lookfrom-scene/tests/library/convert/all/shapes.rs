@@ -7,7 +7,9 @@ use lookfrom_scene::Scene;
 use lookfrom_scene::material::Scalar;
 use lookfrom_scene::motion::Motion;
 use lookfrom_scene::scene::{Instance, MaterialId, MeshId, Object, ObjectId};
-use lookfrom_scene::shape::{Geometry, Mesh, MeshPose, Patches, Profile, Shape, Sphere, Strand};
+use lookfrom_scene::shape::{
+    Geometry, Mesh, MeshPose, Patches, Piece, Pieces, Profile, Shape, Sphere, Strand,
+};
 use lookfrom_scene::solid::{Body, Combination, Form, Operation, Solid};
 
 use super::{TEXTURE, base, each, here, shear, unit};
@@ -152,7 +154,9 @@ pub(super) fn meshes() -> Vec<(String, Scene)> {
     let scene = |(number, mesh): (usize, Mesh)| {
         let mut scene = base();
         scene.meshes.push(mesh);
-        let shape = Shape { geometry: Geometry::Mesh(MeshId(0)), ..scene.shapes[0].clone() };
+        let pieces = [(0, Some("chair \"2\"".into())), (1, None)].map(|(first, name)| Piece { first, name });
+        let pieces = Pieces::new(pieces.to_vec());
+        let shape = Shape { geometry: Geometry::Mesh(MeshId(0)), pieces, ..scene.shapes[0].clone() };
         // Shared by shapes of an object, which may change their form.
         scene.objects.push(Object { name: "o".to_owned(), at: here(), shapes: vec![shape.clone()] });
         let motion = Motion::of_maps(vec![shear(), DMat4::IDENTITY, shear()]).map(Arc::new);
