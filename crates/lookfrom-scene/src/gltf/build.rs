@@ -61,7 +61,10 @@ impl Model {
     pub(super) fn into_parts(self) -> load::Model {
         let repeated = self.instances.iter().flat_map(|instance| {
             let shapes = &self.objects[instance.object.index()].shapes;
-            shapes.iter().map(|shape| part(shape, &instance.world_from_object))
+            shapes.iter().map(|shape| {
+                let part = part(shape, &instance.world_from_object);
+                Part { name: instance.name.as_deref().cloned().or(part.name), ..part }
+            })
         });
         let parts = self.shapes.iter().map(|shape| part(shape, &DMat4::IDENTITY)).chain(repeated).collect();
         load::Model { parts, is_gltf: true, camera: self.eye.map(|eye| eye.camera), lights: self.lights }

@@ -195,6 +195,26 @@ fn instances_are_instances() {
 }
 
 #[test]
+fn instances_keep_the_names_of_their_nodes_in_scenes_of_ours() {
+    let mut model = Model::default();
+    let positions = model.square();
+    // So many that nodes with the same mesh are instances.
+    let indices = model.indices(&[0, 1, 2].repeat((1 << 18) + 1));
+    let nodes = json!([{"name": "left", "mesh": 0}, {"name": "right", "mesh": 0, "translation": [2, 0, 0]}]);
+    let root = one(
+        json!({"attributes": {"POSITION": positions}, "indices": indices}),
+        json!({"scenes": [{"nodes": [0, 1]}], "nodes": nodes}),
+    );
+    let mut memory = model.memory(root);
+    memory.0.insert(PathBuf::from("a.toml"), b"import = \"m/a.gltf\"\n".to_vec());
+    let scene = load::scene(Path::new("a.toml"), &mut LoadContext::new(&memory)).expect("it is valid");
+    let names: Vec<_> = scene.shapes.iter().map(|shape| shape.name.as_deref()).collect();
+    assert_eq!(names, [Some("left"), Some("right")]);
+    let scene = load::scene(Path::new("m/a.gltf"), &mut LoadContext::new(&memory)).expect("it is valid");
+    assert_eq!(scene.instances.len(), 2);
+}
+
+#[test]
 fn many_triangles_are_read_at_once() {
     let side = 224_u16;
     let mut model = Model::default();
