@@ -3,14 +3,14 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { join } from "node:path";
-import { PATIENCE, SCENES, inspect, launch, open, placeOf, screenshot, serve } from "./browser.mjs";
+import { PATIENCE, SCENES, inspect, open, placeOf, screenshot, serve, served } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
 /** The checks of accessibility of Deque's axe. */
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-let browser, server;
+const at = served("glass-and-mirror.toml", SMALL);
 
 /**
  * What axe finds wrong, as its rules and where. A branch of a tree is named by its own row, as the ARIA authoring practices ask; axe
@@ -23,17 +23,8 @@ async function violations(page) {
     return violations.flatMap(({ id, nodes }) => nodes.filter(({ html }) => !isBranch(id, html)).map(({ target, failureSummary }) => `${id}: ${target.join(" ")} ${failureSummary}`));
 }
 
-before(async () => {
-    browser = await launch();
-    server = await serve(join(SCENES, "glass-and-mirror.toml"), SMALL);
-});
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-});
-
 test("keys alone lead from the picture to a ray's equations", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await page.locator('#picture[data-done="true"]').waitFor();
     const isAt = (selector) => page.evaluate((selector) => document.activeElement?.matches(selector) ?? false, selector);
     for (let i = 0; !(await isAt("#picture-overlay")); i++) {
@@ -60,7 +51,7 @@ test("keys alone lead from the picture to a ray's equations", async () => {
 });
 
 test("every control has a name", async () => {
-    const { page, context } = await open(browser, server.url);
+    const { page, context } = await open(at.browser, at.url);
     await inspect(page, 60, 75);
     for (const tab of ["Why this pixel", "Notes, alive", "View"]) {
         await page.getByRole("tab", { name: tab }).click();
@@ -75,7 +66,7 @@ test("every control has a name", async () => {
 });
 
 test("fingers: a tap selects a pixel, two come nearer", async () => {
-    const { page, context, errors } = await open(browser, server.url, { viewport: { width: 360, height: 740 }, hasTouch: true });
+    const { page, context, errors } = await open(at.browser, at.url, { viewport: { width: 360, height: 740 }, hasTouch: true });
     await page.locator('#picture[data-done="true"]').waitFor();
     const { x, y } = await placeOf(page, 60, 75);
     await page.touchscreen.tap(x, y);
@@ -94,7 +85,7 @@ test("fingers: a tap selects a pixel, two come nearer", async () => {
 });
 
 test("the panel is widened by dragging its edge and by keys", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     const width = () => page.locator("#panel").evaluate((panel) => panel.getBoundingClientRect().width);
     const own = await width();
     const edge = await page.locator("#divider").boundingBox();
@@ -119,7 +110,7 @@ test("the panel is widened by dragging its edge and by keys", async () => {
 
 test("a picture has a pixel for each of the window, unless someone says its size", async () => {
     const free = await serve(join(SCENES, "notes-exercise.toml"), ["--samples", "1"]);
-    const { page, context, errors } = await open(browser, free.url, { viewport: { width: 1100, height: 700 } });
+    const { page, context, errors } = await open(at.browser, free.url, { viewport: { width: 1100, height: 700 } });
     const size = () => page.locator("#picture").evaluate((canvas) => [canvas.width, Math.round(canvas.getBoundingClientRect().width)]);
     const [own, shown] = await size();
     assert.equal(own, shown);
@@ -130,14 +121,14 @@ test("a picture has a pixel for each of the window, unless someone says its size
     assert.deepEqual(errors, []);
     await context.close();
     await free.stop();
-    const told = await open(browser, server.url);
+    const told = await open(at.browser, at.url);
     assert.equal(await told.page.locator("#picture").evaluate((canvas) => canvas.width), 160);
     await told.context.close();
 });
 
 for (const [width, height, colorScheme] of [[360, 740, "light"], [360, 740, "dark"], [800, 900, "light"], [1280, 800, "dark"]]) {
     test(`${width} pixels, ${colorScheme}: nothing is cut off, and text is legible`, async () => {
-        const { page, context, errors } = await open(browser, server.url, { viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
+        const { page, context, errors } = await open(at.browser, at.url, { viewport: { width, height }, colorScheme, reducedMotion: "reduce" });
         await page.locator('#picture[data-done="true"]').waitFor();
         await inspect(page, 60, 75);
         await page.waitForTimeout(500);

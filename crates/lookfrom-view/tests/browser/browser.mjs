@@ -6,6 +6,7 @@ import { cp, mkdtemp, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { createInterface } from "node:readline";
+import { after, before } from "node:test";
 import { fileURLToPath } from "node:url";
 import { promisify } from "node:util";
 import { chromium } from "playwright-core";
@@ -38,6 +39,24 @@ export async function serve(scene, options = [], port = "0") {
         server.once("exit", (code) => reject(new Error(`the server ended with ${code}: ${complaints}`)));
     });
     return { url, stop: () => new Promise((resolve) => void (server.once("exit", resolve), server.kill("SIGINT"))) };
+}
+
+/**
+ * A browser and the server of an example scene, for all tests of a file: there while they run.
+ * @param {string} scene @param {string[]} options
+ */
+export function served(scene, options) {
+    const at = {};
+    before(async () => {
+        at.browser = await launch();
+        at.server = await serve(join(SCENES, scene), options);
+        at.url = at.server.url;
+    });
+    after(async () => {
+        await at.browser?.close();
+        await at.server?.stop();
+    });
+    return at;
 }
 
 /**

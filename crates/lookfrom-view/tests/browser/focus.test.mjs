@@ -1,21 +1,11 @@
 // Where the focus is after what a person does with keys: a page that loses it starts anew from its top.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { join } from "node:path";
-import { SCENES, finished, inspect, launch, open, serve, until } from "./browser.mjs";
+import { test } from "node:test";
+import { finished, inspect, open, served, until } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
-let browser, server;
-
-before(async () => {
-    browser = await launch();
-    server = await serve(join(SCENES, "glass-and-mirror.toml"), SMALL);
-});
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-});
+const at = served("glass-and-mirror.toml", SMALL);
 
 /** The name of what has the focus. */
 const focused = (page) => page.evaluate(() => {
@@ -25,7 +15,7 @@ const focused = (page) => page.evaluate(() => {
 const toast = (page) => page.locator("#toast").textContent();
 
 test("Tab leads from a number that was typed to the next field", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     for (const [field, typed, part, next] of [["Depth", "5", "depth=5", "Samples"], ["lookfrom x", "1", "camera=1,", "lookfrom y"], ["fov", "50", "/50", "The scene's own camera"]]) {
         await page.getByRole("spinbutton", { name: field }).fill(typed);
@@ -39,7 +29,7 @@ test("Tab leads from a number that was typed to the next field", async () => {
 });
 
 test("a number that is refused goes back while its field has the focus, and what is being typed stays", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     const up = page.getByRole("spinbutton", { name: "up y" });
     await up.fill("0");
@@ -59,7 +49,7 @@ test("a number that is refused goes back while its field has the focus, and what
 });
 
 test("the menu closes when the focus leaves it, and what it does brings the focus back to its button", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     const isOpen = () => page.locator("#menu").evaluate((menu) => menu.open);
     await page.locator("#menu summary").focus();
@@ -79,7 +69,7 @@ test("the menu closes when the focus leaves it, and what it does brings the focu
 });
 
 test("the last step of undo, another pixel and another triangle leave the focus where it is", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await page.locator("#picture-overlay").focus();
     await page.keyboard.press("ArrowRight");
@@ -111,7 +101,7 @@ test("the last step of undo, another pixel and another triangle leave the focus 
 });
 
 test("the value beside a slider is the slider's", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await inspect(page, 60, 75);
     await page.getByRole("tab", { name: "Notes, alive" }).click();
@@ -124,7 +114,7 @@ test("the value beside a slider is the slider's", async () => {
 });
 
 test("the help begins at its top on a small screen, and goes back to its button", async () => {
-    const { page, context, errors } = await open(browser, server.url, { viewport: { width: 740, height: 360 } });
+    const { page, context, errors } = await open(at.browser, at.url, { viewport: { width: 740, height: 360 } });
     await page.locator("#help-button").press("Enter");
     assert.equal(await page.evaluate(() => document.activeElement.id), "help-title");
     assert.ok(await page.locator("#help-title").evaluate((title) => title.getBoundingClientRect().top > 0));

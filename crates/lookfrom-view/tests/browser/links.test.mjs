@@ -1,28 +1,19 @@
 // The address of the page: links to what is not there, views that are refused, and what an open page does when its address changes.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
-import { SCENES, copyOf, finished, inspect, launch, open, pictureHash, screenshot, serve, until, visit } from "./browser.mjs";
+import { SCENES, copyOf, finished, inspect, open, pictureHash, screenshot, serve, served, until, visit } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "160", "--samples", "4"];
-let browser, server;
-
-before(async () => {
-    browser = await launch();
-    server = await serve(join(SCENES, "notes-exercise.toml"), SMALL);
-});
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-});
+const at = served("notes-exercise.toml", SMALL);
 
 const hash = (page) => page.evaluate(() => location.hash);
 const toast = (page) => page.locator("#toast").textContent();
 
 test("a link to what the scene lacks shows the scene without it, and tells", async () => {
-    const { page, context, errors } = await open(browser, `${server.url}#layer=foo&compare=wipe&variant=red&samples=0.5&depth=2`);
+    const { page, context, errors } = await open(at.browser, `${at.url}#layer=foo&compare=wipe&variant=red&samples=0.5&depth=2`);
     assert.match((await toast(page)) ?? "", /does not have: layer foo, variant red, compare wipe/);
     await until("what there is stays in the link", async () => (await hash(page)) === "#depth=2");
     assert.ok(await page.locator("#undo").isDisabled());
@@ -31,7 +22,7 @@ test("a link to what the scene lacks shows the scene without it, and tells", asy
 });
 
 test("a first view that is refused says so, and the way to the scene's own is open", async () => {
-    const { page, context, errors } = await visit(browser, `${server.url}#camera=0,0,0/0,0,0/0,1,0`);
+    const { page, context, errors } = await visit(at.browser, `${at.url}#camera=0,0,0/0,0,0/0,1,0`);
     const failure = page.locator("#failure");
     await failure.waitFor();
     assert.match((await failure.textContent()) ?? "", /This view cannot be shown/);
@@ -45,7 +36,7 @@ test("a first view that is refused says so, and the way to the scene's own is op
 });
 
 test("a setting that is refused goes back, and the camera still moves", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     const start = await pictureHash(page);
     await page.evaluate(() => (location.hash = "#min_contribution=7"));
@@ -61,7 +52,7 @@ test("a setting that is refused goes back, and the camera still moves", async ()
 });
 
 test("the link to the picture leaves the address as it is", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await inspect(page, 50, 90);
     await until("the pixel is in the address", async () => /pixel=50,90&sample=\d+&ray=\d+/.test(await hash(page)));
     const before = await hash(page);
@@ -76,7 +67,7 @@ test("the link to the picture leaves the address as it is", async () => {
 
 test("an open page follows the ray of its address, and without a pixel there is neither ray nor sample", async () => {
     const glass = await serve(join(SCENES, "glass-and-mirror.toml"), ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"]);
-    const { page, context, errors } = await open(browser, glass.url);
+    const { page, context, errors } = await open(at.browser, glass.url);
     await inspect(page, 60, 75);
     await until("the ray is in the address", async () => /ray=\d+/.test(await hash(page)));
     const own = Number(/ray=(\d+)/.exec(await hash(page))[1]);
@@ -101,7 +92,7 @@ test("a variant that is renamed in the file leaves the scene as it is without, a
     const copy = await copyOf("variants.gltf", folder);
     await writeFile(join(copy.scene, "../ball.bin"), await readFile(join(folder, "ball.bin")));
     const server = await serve(copy.scene, ["--width", "120", "--height", "80", "--samples", "1"]);
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, server.url);
     await finished(page);
     const own = await pictureHash(page);
     await page.getByLabel("Variant").selectOption("lacquer");

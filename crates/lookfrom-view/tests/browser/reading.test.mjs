@@ -1,21 +1,11 @@
 // Other ways to read the page: enlarged, in colours of one's own, on paper, without scripts, among words that are written from right to left.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { join } from "node:path";
-import { SCENES, finished, inspect, launch, open, screenshot, serve } from "./browser.mjs";
+import { test } from "node:test";
+import { finished, inspect, open, screenshot, served } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "120", "--samples", "2", "--depth", "3"];
-let browser, server;
-
-before(async () => {
-    browser = await launch();
-    server = await serve(join(SCENES, "glass-and-mirror.toml"), SMALL);
-});
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-});
+const at = served("glass-and-mirror.toml", SMALL);
 
 const background = (page, selector) => page.locator(selector).first().evaluate((element) => getComputedStyle(element).backgroundColor);
 
@@ -39,7 +29,7 @@ async function covered(page) {
 
 for (const [width, height] of [[800, 900], [740, 360], [640, 400], [360, 740], [320, 256]]) {
     test(`${width} × ${height} pixels: nothing covers what has the focus`, async () => {
-        const { page, context, errors } = await open(browser, `${server.url}#pixel=60,75`, { viewport: { width, height } });
+        const { page, context, errors } = await open(at.browser, `${at.url}#pixel=60,75`, { viewport: { width, height } });
         await page.locator("#tree li").first().waitFor();
         await finished(page);
         for (const tab of ["Why this pixel", "Notes, alive", "View"]) {
@@ -74,7 +64,7 @@ function dim() {
 
 for (const colorScheme of ["light", "dark"]) {
     test(`${colorScheme}: rays, lights and fields stand out from what is around them`, async () => {
-        const { page, context, errors } = await open(browser, server.url, { colorScheme });
+        const { page, context, errors } = await open(at.browser, at.url, { colorScheme });
         assert.deepEqual(await page.evaluate(dim), []);
         assert.deepEqual(errors, []);
         await context.close();
@@ -82,7 +72,7 @@ for (const colorScheme of ["light", "dark"]) {
 }
 
 test("forced colours leave those of data, and mark what is selected", async () => {
-    const { page, context, errors } = await open(browser, server.url, { forcedColors: "active" });
+    const { page, context, errors } = await open(at.browser, at.url, { forcedColors: "active" });
     await finished(page);
     await inspect(page, 60, 75);
     const own = { swatch: await background(page, "#pixel-summary .swatch"), ray: await background(page, "#tree .kind.camera") };
@@ -100,7 +90,7 @@ test("forced colours leave those of data, and mark what is selected", async () =
 });
 
 test("on paper a pixel has the name of its scene and its picture, in the inks of paper", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await inspect(page, 60, 75);
     await page.locator("#theme").click();
@@ -130,15 +120,15 @@ test("on paper a pixel has the name of its scene and its picture, in the inks of
 });
 
 test("without scripts the page says that it needs them", async () => {
-    const context = await browser.newContext({ javaScriptEnabled: false });
+    const context = await at.browser.newContext({ javaScriptEnabled: false });
     const page = await context.newPage();
-    await page.goto(server.url);
+    await page.goto(at.url);
     assert.ok(await page.locator(".no-script").isVisible());
     await context.close();
 });
 
 test("where words are written from right to left, numbers are not, and the panel is widened toward the picture", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await inspect(page, 60, 75);
     await page.evaluate(() => (document.documentElement.dir = "rtl"));

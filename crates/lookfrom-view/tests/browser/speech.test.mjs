@@ -1,21 +1,11 @@
 // What a screen reader is told, and what a voice that types must not do.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { join } from "node:path";
-import { SCENES, finished, inspect, launch, open, serve, until } from "./browser.mjs";
+import { test } from "node:test";
+import { finished, inspect, open, served, until } from "./browser.mjs";
 
 const SMALL = ["--width", "160", "--height", "160", "--samples", "2"];
-let browser, server;
-
-before(async () => {
-    browser = await launch();
-    server = await serve(join(SCENES, "notes-exercise.toml"), SMALL);
-});
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-});
+const at = served("notes-exercise.toml", SMALL);
 
 async function lesson(page, number) {
     await page.getByRole("tab", { name: "Notes, alive" }).click();
@@ -23,7 +13,7 @@ async function lesson(page, number) {
 }
 
 test("formulas are named as a line: with their fractions, roots, exponents and matrices", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await inspect(page, 110, 80);
     const names = () => page.locator("#notes .math").evaluateAll((formulas) => formulas.map((formula) => formula.getAttribute("aria-label")));
@@ -40,7 +30,7 @@ test("formulas are named as a line: with their fractions, roots, exponents and m
 });
 
 test("what a slider tells of itself, no live region repeats", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await inspect(page, 110, 80);
     for (const number of [1, 4, 5, 6, 7, 9]) {
@@ -57,7 +47,7 @@ test("what a slider tells of itself, no live region repeats", async () => {
 });
 
 test("a pixel that is selected is told with its colour", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await page.locator("#picture-overlay").press("i");
     await page.locator("#pixel-summary .numbers").waitFor();
@@ -68,7 +58,7 @@ test("a pixel that is selected is told with its colour", async () => {
 });
 
 test("letters alone do something in the picture only", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     const loupe = () => page.locator("#loupe-button").getAttribute("aria-pressed");
     const isHelpOpen = () => page.locator("#help").evaluate((dialog) => dialog.open);
@@ -85,7 +75,7 @@ test("letters alone do something in the picture only", async () => {
 });
 
 test("the eye looks around by keys, too", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     await finished(page);
     await page.locator("#picture-overlay").focus();
     await page.keyboard.press("Shift+A");
@@ -100,7 +90,7 @@ test("the eye looks around by keys, too", async () => {
 });
 
 test("what a field means stands below it", async () => {
-    const { page, context, errors } = await open(browser, server.url);
+    const { page, context, errors } = await open(at.browser, at.url);
     const depth = page.getByRole("spinbutton", { name: "Depth" });
     const meaning = page.getByText("Bounces at most");
     assert.ok(await meaning.isVisible());
@@ -110,7 +100,7 @@ test("what a field means stands below it", async () => {
 });
 
 test("a long message stays longer than a short one", async () => {
-    const { page, context, errors } = await open(browser, server.url, {}, (page) => page.clock.install());
+    const { page, context, errors } = await open(at.browser, at.url, {}, (page) => page.clock.install());
     const toast = page.locator("#toast.shown");
     await page.evaluate(() => (location.hash = "#layer=foo&variant=red&compare=wipe&animation=7&tonemap=none-that-is-known"));
     await page.reload();
