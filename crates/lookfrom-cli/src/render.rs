@@ -81,7 +81,8 @@ impl<'a> Call<'a> {
         }
         if keep.film && call.targets.iter().any(|target| target.format() != Format::Exr) {
             return usage(
-                "--film needs an .exr: -o NAME.exr; make other pictures of it by lookfrom develop".to_owned(),
+                "--film needs an .exr of 32 bits: -o NAME.exr; make other pictures of it by lookfrom develop"
+                    .to_owned(),
             );
         }
         if keep.film && is_piped {

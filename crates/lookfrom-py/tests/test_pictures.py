@@ -337,6 +337,16 @@ def _contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
+def test_pictures_of_16_bits(tmp_path: Path) -> None:
+    picture = lookfrom.render(BALL)
+    picture.save(tmp_path / "whole.exr", bits=32)
+    assert (tmp_path / "whole.exr").read_bytes() == picture.encode(".exr")
+    assert len(picture.encode("exr", bits=16)) < len(picture.encode("exr"))
+    assert len(picture.encode("png", bits=16)) > len(picture.encode("png"))
+    with pytest.raises(lookfrom.SceneError, match="JPEG pictures have no channels of 16 bits"):
+        picture.encode("jpg", bits=16)
+
+
 def test_files_that_cannot_be_written_stay_as_they_were(tmp_path: Path) -> None:
     picture = lookfrom.render(BALL, film=True)
     film = picture.film

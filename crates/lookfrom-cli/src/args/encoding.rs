@@ -2,6 +2,7 @@
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use lookfrom::scene::Error;
 use lookfrom::session::Format;
 
 use crate::exit::Failure;
@@ -18,19 +19,14 @@ pub(crate) struct EncodingArguments {
     #[arg(long, value_name = "N", value_parser = values::whole(1u8, 100))]
     quality: Option<u8>,
 
-    /// Bits of a channel in PNGs: 8 or 16 [default: 8]
-    #[arg(long, value_name = "8|16", value_parser = values::word(BITS))]
-    bits: Option<Bits>,
+    /// Bits of a channel: 8 or 16 in PNGs [default: 8], 16 or 32 in EXRs [default: 32]
+    ///
+    /// Of an .exr 16 are for colours, alpha and normals: half the bytes. Its other layers, such as depths and masks, keep 32.
+    #[arg(long, value_name = "8|16|32", value_parser = values::word(BITS))]
+    bits: Option<u8>,
 }
 
-/// Bits of a channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Bits {
-    Eight,
-    Sixteen,
-}
-
-const BITS: &[(&str, Bits)] = &[("8", Bits::Eight), ("16", Bits::Sixteen)];
+const BITS: &[(&str, u8)] = &[("8", 8), ("16", 16), ("32", 32)];
 
 /// Parser of extensions of formats.
 fn extensions() -> PossibleValuesParser {
@@ -52,18 +48,19 @@ impl EncodingArguments {
     }
 
     fn of_target(&self, target: Target) -> Result<Target, Failure> {
-        let wrong = |option: &str, formats: &str| {
-            Err(Failure::Usage(format!("{option} is for {formats}, and {} is none", target.name())))
-        };
         let format = match target.format() {
             Format::Jpeg(quality) => Format::Jpeg(self.quality.unwrap_or(quality)),
-            _ if self.quality.is_some() => return wrong("--quality", "JPEGs"),
-            Format::Png if self.bits == Some(Bits::Sixteen) => Format::Png16,
+            _ if self.quality.is_some() => {
+                let message = format!("--quality is for JPEGs, and {} is none", target.name());
+                return Err(Failure::Usage(message));
+            }
             format => format,
         };
-        if self.bits == Some(Bits::Sixteen) && format != Format::Png16 {
-            return wrong("--bits 16", "PNGs");
-        }
+        let Some(bits) = self.bits else { return Ok(target.of_format(format)) };
+        let wrong = |error: Error| {
+            Failure::Usage(format!("{} cannot have --bits {bits}: {}", target.name(), error.message))
+        };
+        let format = format.with_bits(bits).map_err(wrong)?;
         Ok(target.of_format(format))
     }
 }

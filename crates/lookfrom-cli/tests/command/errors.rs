@@ -100,8 +100,12 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
         .run("render endless.toml -o p.bmp")
         .fails(2, &["p.bmp", ".bmp", ".png, .jpg, .jpeg, .webp, .exr, .hdr, .pfm, .ppm, .gif, .apng"]);
     stage.run("render endless.toml -o p.png --quality 80").fails(2, &["--quality", "JPEG", "p.png"]);
-    stage.run("render endless.toml -o p.webp --bits 16").fails(2, &["--bits 16", "PNG", "p.webp"]);
-    stage.run("render endless.toml -o p.png --bits 12").fails(2, &["--bits", "8, 16"]);
+    for (name, bits) in [("p.webp", 16), ("p.hdr", 16), ("p.exr", 8), ("p.png", 32)] {
+        let run = stage.run(&format!("render endless.toml -o {name} --bits {bits}"));
+        run.fails(2, &[&format!("{name} cannot have --bits {bits}"), "of PNGs have 8 or 16"]);
+    }
+    stage.run("render endless.toml -o p.png --bits 12").fails(2, &["--bits", "8, 16, 32"]);
+    stage.run("render endless.toml -o p.exr --film --bits 16").fails(2, &["--film", ".exr of 32 bits"]);
     stage.run("render endless.toml -o p.jpg --quality 0").fails(2, &["from 1 to 100"]);
     stage.run("render endless.toml -o picture").fails(2, &["no extension"]);
     stage.run("render endless.toml -o scene.toml/p.png").fails(3, &["scene.toml is not a folder"]);

@@ -37,6 +37,30 @@ fn layers_have_the_names_of_pbrts() {
 }
 
 #[test]
+fn layers_that_measure_keep_32_bits() {
+    let stage = Stage::new("half-layers");
+    let layers = "--layers geometry --cryptomatte object --light-path glow=C<L.>";
+    stage.done(&format!("render scene.toml -q -o whole.exr {layers}"));
+    stage.done(&format!("render scene.toml -q -o half.exr --bits 16 {layers}"));
+    let read = |file: &str| image::read_exr(&stage.path(file), &mut LoadContext::new(&Disk)).unwrap();
+    let [whole, half] = ["whole.exr", "half.exr"].map(read);
+    assert_eq!(names(&stage, "whole.exr"), names(&stage, "half.exr"));
+    for (name, exact) in &whole.channels {
+        let found = half.channel(name).unwrap();
+        let layer = name.split('.').next().unwrap();
+        let is_rounded = ["R", "G", "B", "Albedo", "N", "Ns", "glow"].contains(&layer);
+        // Halves have 11 bits.
+        let is_near = |(a, b): (&f32, &f32)| (a - b).abs() <= a.abs() / 2048.0 + 1e-7;
+        let keeps = if is_rounded { exact.iter().zip(found).all(is_near) } else { exact == found };
+        assert!(keeps, "{name}");
+    }
+    assert_ne!(whole.channel("Ns.X"), half.channel("Ns.X"));
+    let [large, small] =
+        ["whole.exr", "half.exr"].map(|file| std::fs::metadata(stage.path(file)).unwrap().len());
+    assert!(small < large, "{small} of {large} bytes");
+}
+
+#[test]
 fn a_spectral_film_has_a_layer_for_each_bucket() {
     let stage = Stage::new("spectral-film");
     let said = |options: &str| {

@@ -43,7 +43,9 @@ fn every_format_holds_the_same_light() {
     for extension in ["exr", "pfm", "hdr", "png", "ppm", "webp"] {
         stage.done(&format!("render scene.toml -q -o p.{extension}"));
     }
-    stage.done("render scene.toml -q --bits 16 -o p16.png");
+    for extension in ["png", "exr"] {
+        stage.done(&format!("render scene.toml -q --bits 16 -o p16.{extension}"));
+    }
     let exact = colors(&stage.path("p.exr"));
     assert!(exact.iter().flatten().any(|&value| value > 0.1), "the picture is black");
     for (name, step) in [
@@ -53,11 +55,13 @@ fn every_format_holds_the_same_light() {
         ("p.ppm", 0.01),
         ("p.webp", 0.01),
         ("p16.png", 1e-4),
+        ("p16.exr", 1.0 / 2048.0),
     ] {
         let other = colors(&stage.path(name));
         for (a, b) in exact.iter().flatten().zip(other.iter().flatten()) {
-            // 8-bit pictures are cut at 1.
-            let a = if name.ends_with("pfm") || name.ends_with("hdr") { *a } else { a.clamp(0.0, 1.0) };
+            // Pictures for screens are cut at 1.
+            let is_linear = ["pfm", "hdr", "exr"].iter().any(|extension| name.ends_with(extension));
+            let a = if is_linear { *a } else { a.clamp(0.0, 1.0) };
             assert!((a - b).abs() <= step * a.max(1.0), "{name}: {a} {b}");
         }
     }
@@ -161,6 +165,23 @@ fn settings_of_light_change_the_picture() {
     }
     stage.done("render scene.toml -q -o other.ppm --seed 0 --fov 40 --lookfrom 0,1,5");
     assert!(stage.bytes("other.ppm") == plain, "what the scene says is not what it says");
+}
+
+#[test]
+fn an_exr_holds_only_the_crop() {
+    let stage = Stage::new("crop");
+    stage.done("render scene.toml -q -o whole.exr");
+    stage.done("render scene.toml -q -o crop.exr --crop 8,4,30,20");
+    // Developed from the picture, without the film, it stays so.
+    stage.done("develop crop.exr -o again.exr");
+    let [whole, crop, again] =
+        ["whole", "crop", "again"].map(|name| colors(&stage.path(&format!("{name}.exr"))));
+    let is_held = |i: usize| (8..30).contains(&(i % 40)) && (4..20).contains(&(i / 40));
+    let expected = whole.iter().enumerate().map(|(i, &pixel)| if is_held(i) { pixel } else { [0.0; 3] });
+    assert_eq!(crop, expected.collect::<Vec<_>>());
+    assert_eq!(again, crop);
+    let sizes = ["whole", "crop", "again"].map(|name| stage.bytes(&format!("{name}.exr")).len());
+    assert!(2 * sizes[1] < sizes[0] && 2 * sizes[2] < sizes[0], "{sizes:?}");
 }
 
 #[test]

@@ -130,17 +130,20 @@ class Picture(Mapping[str, "NDArray[np.float32]"]):
         film = self._native.film()
         return None if film is None else Film(film)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], bits: int | None = None) -> None:
         """Writes a file in the format of its extension: .png, .jpg, .webp, .exr (with layers; with film=True the film), .hdr,
         .pfm, .ppm, .gif. A file that was there stays until the new one is on the disk.
 
-        Raises Error for another extension, and OSError where the file cannot be written.
-        """
-        _lookfrom.replace_files([(path, self._native.encode(Path(path).suffix[1:]))])
+        bits: of a channel: 8 or 16 of a .png, 16 or 32 of an .exr; 8 and 32 without it. An .exr of 16 has its colours, alpha and
+        normals so, other layers in 32, and no film.
 
-    def encode(self, extension: str) -> bytes:
-        """The bytes of a file in the format of an extension, such as "png"."""
-        return self._native.encode(extension.removeprefix("."))
+        Raises Error for another extension, SceneError for other bits, and OSError where the file cannot be written.
+        """
+        _lookfrom.replace_files([(path, self.encode(Path(path).suffix, bits))])
+
+    def encode(self, extension: str, bits: int | None = None) -> bytes:
+        """The bytes of a file in the format of an extension, such as "png", with so many bits of a channel (as `save`)."""
+        return self._native.encode(extension.removeprefix("."), bits)
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.linear, dtype=dtype, copy=True if copy is None else copy)

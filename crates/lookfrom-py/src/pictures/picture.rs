@@ -78,14 +78,21 @@ impl Picture {
         self.developed.header.clone()
     }
 
-    /// The bytes of a file, in the format of an extension.
-    fn encode<'py>(&self, py: Python<'py>, extension: &str) -> PyResult<Bound<'py, PyBytes>> {
+    /// The bytes of a file, in the format of an extension, with so many bits of a channel.
+    fn encode<'py>(
+        &self,
+        py: Python<'py>,
+        extension: &str,
+        bits: Option<u8>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
         let known = Format::EXTENSIONS;
         let Some((_, format)) = known.iter().find(|(known, _)| *known == extension.to_lowercase()) else {
             let known: Vec<String> = known.iter().map(|(known, _)| format!(".{known}")).collect();
             let message = format!("{extension:?} is no format; pictures are written as {}", known.join(", "));
             return Err(Error::new_err(message));
         };
+        let with_bits = bits.map_or(Ok(*format), |bits| format.with_bits(bits));
+        let format = &with_bits.map_err(|error| raised(py, &error, &lookfrom::scene::Disk))?;
         let bytes = parallel::in_pool(py, 0, || {
             let mut out = std::io::Cursor::new(Vec::new());
             let written = match (&self.provenance, format) {

@@ -7,7 +7,8 @@ use ::image::{
     DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Rgb, Rgb32FImage, RgbImage, Rgba,
     RgbaImage,
 };
-use lookfrom_scene::image::{self, Image, Metadata, Pixels};
+use lookfrom_scene::image::{self, ExrChannel, ExrHeader, Image, Metadata, Pixels};
+use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{ErrorKind, LoadContext, Memory};
 use proptest::prelude::*;
 use tiff::encoder::TiffEncoder;
@@ -165,6 +166,64 @@ fn light_is_kept_as_it_is() {
         excess += (0..3).map(|c| (a[c] - b[c]) / largest.max(f32::MIN_POSITIVE)).sum::<f32>();
     }
     assert!(excess.abs() / (3.0 * texels.len() as f32) < 2e-4, "{excess}");
+}
+
+#[test]
+fn channels_of_16_bits_have_the_nearest_halves() {
+    const NUMBERS: [f32; 8] = [1.0, 1.0 / 3.0, -2049.0, 65504.0, 1e9, f32::MIN, f32::NEG_INFINITY, 1e-9];
+    let header = ExrHeader {
+        width: 8,
+        height: 1,
+        channels: vec![("R".to_owned(), ExrChannel::Half), ("Z".to_owned(), ExrChannel::Float)],
+        ..ExrHeader::default()
+    };
+    let bytes: Vec<u8> = NUMBERS.iter().chain(&NUMBERS).flat_map(|number| number.to_le_bytes()).collect();
+    let mut file = Cursor::new(Vec::new());
+    image::write_exr(&header, &mut |_: u32, row: &mut [u8]| row.copy_from_slice(&bytes), &mut file)
+        .expect("EXR");
+    let mut files = Memory::default();
+    files.0.insert("a.exr".into(), file.into_inner());
+    let read = image::read_exr(Path::new("a.exr"), &mut LoadContext::new(&files)).expect("EXR");
+    let third = 1365.0 / 4096.0;
+    let halves = [1.0, third, -2048.0, 65504.0, 65504.0, -65504.0, f32::NEG_INFINITY, 0.0];
+    assert_eq!(read.channel("R"), Some(halves.as_slice()));
+    assert_eq!(read.channel("Z"), Some(NUMBERS.as_slice()));
+}
+
+#[test]
+fn a_crop_is_the_data_window() {
+    let depth: Vec<f32> = (0..40 * 33).map(|i| i as f32).collect();
+    let mut header = ExrHeader {
+        width: 40,
+        height: 33,
+        crop: Some(PixelBounds { x0: 3, y0: 5, x1: 39, y1: 30 }),
+        channels: ["Y", "Z"].map(|name| (name.to_owned(), ExrChannel::Float)).into(),
+        ..ExrHeader::default()
+    };
+    let written = |header: &ExrHeader| {
+        let mut file = Cursor::new(Vec::new());
+        let mut fill = |row: u32, bytes: &mut [u8]| {
+            let numbers = depth[row as usize * 40..].iter().take(40).flat_map(|number| number.to_le_bytes());
+            bytes[40 * 4..].copy_from_slice(&numbers.collect::<Vec<u8>>());
+        };
+        image::write_exr(header, &mut fill, &mut file).map(|()| file.into_inner())
+    };
+    let bytes = written(&header).expect("EXR");
+    let read = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false).expect("a header");
+    let window = read.headers[0].own_attributes.layer_position;
+    assert_eq!((window.0, window.1, read.headers[0].layer_size.0), (3, 5, 36));
+
+    let mut files = Memory::default();
+    files.0.insert("a.exr".into(), bytes);
+    let read = image::read_exr(Path::new("a.exr"), &mut LoadContext::new(&files)).expect("EXR");
+    let is_held = |i: usize| (3..39).contains(&(i % 40)) && (5..30).contains(&(i / 40));
+    let cropped: Vec<f32> = (0..40 * 33).map(|i| if is_held(i) { depth[i] } else { 0.0 }).collect();
+    assert_eq!(read.channel("Z"), Some(cropped.as_slice()));
+
+    for (x1, y1) in [(41, 30), (39, 34), (3, 30)] {
+        header.crop = Some(PixelBounds { x0: 3, y0: 5, x1, y1 });
+        assert!(written(&header).expect_err("no part").message.contains("40 × 33 pixels"));
+    }
 }
 
 /// Values beyond the range of RGBE (Ward 1991) saturate: their exponents do not wrap, and bright ones do not become black.

@@ -32,6 +32,8 @@ pub enum Format {
     WebP,
     /// Linear light in 32-bit floats, with AOVs, alpha and a header with the settings.
     Exr,
+    /// An EXR whose colours, alpha and normals are 16-bit floats: half the bytes. Other layers have 32 bits.
+    Exr16,
     /// Linear light in Radiance's shared exponents.
     Hdr,
     /// Linear light in 32-bit floats.
@@ -68,6 +70,26 @@ impl Format {
         Self::EXTENSIONS.iter().find(|(known, _)| *known == extension).map(|&(_, format)| format)
     }
 
+    /// The format with as many bits of a channel.
+    ///
+    /// # Errors
+    /// `Request` where it has none of so many.
+    pub fn with_bits(self, bits: u8) -> Result<Self> {
+        match (self, bits) {
+            (Self::Png | Self::Png16, 16) => Ok(Self::Png16),
+            (Self::Exr | Self::Exr16, 16) => Ok(Self::Exr16),
+            (Self::Png16, 8) => Ok(Self::Png),
+            (Self::Exr | Self::Exr16, 32) => Ok(Self::Exr),
+            (Self::Pfm, 32) => Ok(self),
+            (other, 8) if other.is_for_screens() => Ok(other),
+            _ => Err(unsuitable(format!(
+                "{} pictures have no channels of {bits} bits; those of PNGs have 8 or 16, of EXRs 16 or 32, of PFMs 32, of \
+                 others 8",
+                self.name()
+            ))),
+        }
+    }
+
     /// The extension of its files.
     pub fn extension(self) -> &'static str {
         let of_extension = |format: Self| std::mem::discriminant(&format) == std::mem::discriminant(&self);
@@ -90,7 +112,7 @@ impl Format {
 
     /// Whether the format holds colours of a screen, not linear light.
     pub fn is_for_screens(self) -> bool {
-        !matches!(self, Self::Exr | Self::Hdr | Self::Pfm)
+        !matches!(self, Self::Exr | Self::Exr16 | Self::Hdr | Self::Pfm)
     }
 
     /// Whether the format can hold a transparent background.
@@ -116,7 +138,7 @@ impl Format {
             Self::Png | Self::Png16 => "PNG",
             Self::Jpeg(_) => "JPEG",
             Self::WebP => "WebP",
-            Self::Exr => "OpenEXR",
+            Self::Exr | Self::Exr16 => "OpenEXR",
             Self::Hdr => "Radiance",
             Self::Pfm => "PFM",
             Self::Ppm => "PPM",
@@ -127,7 +149,7 @@ impl Format {
 
     /// Whether the format can hold AOVs.
     pub fn has_layers(self) -> bool {
-        self == Self::Exr
+        matches!(self, Self::Exr | Self::Exr16)
     }
 }
 
@@ -249,12 +271,18 @@ pub(super) fn write(
         Format::Hdr => put(&encode_hdr(width, height, &linear())?, out),
         Format::Pfm => put(&encode_pfm(width, height, &linear())?, out),
         Format::Gif | Format::Apng => put(&Shown::new(picture, development).encode(format)?, out),
-        Format::Exr => {
+        Format::Exr | Format::Exr16 => {
             let rows = Rows { light: Light::Picture(picture), layers, background: development.background };
-            let channels = rows.channels().into_iter().map(|name| (name, ExrChannel::Float)).collect();
+            let kind = |name: &str| match format == Format::Exr16 && rows.is_shade(name) {
+                true => ExrChannel::Half,
+                false => ExrChannel::Float,
+            };
+            let channels = rows.channels().into_iter().map(|name| (kind(&name), name));
+            let channels = channels.map(|(kind, name)| (name, kind)).collect();
             let mut attributes = header.to_vec();
             attributes.extend(layers.attributes());
-            let header = ExrHeader { width, height, channels, attributes, ..ExrHeader::default() };
+            let crop = header::crop(header);
+            let header = ExrHeader { width, height, crop, channels, attributes, ..ExrHeader::default() };
             write_exr(&header, &mut |row: u32, bytes: &mut [u8]| rows.fill(row, bytes), out)
         }
     }
@@ -305,6 +333,11 @@ impl Rows<'_> {
         let alpha = (self.background == Background::Transparent).then_some("A");
         let light = ["R", "G", "B"].into_iter().chain(alpha).map(str::to_owned);
         light.chain(self.layers.names()).collect()
+    }
+
+    /// Whether a channel is of a colour, of alpha or of a normal.
+    fn is_shade(&self, name: &str) -> bool {
+        matches!(name, "R" | "G" | "B" | "A") || self.layers.is_shade(name)
     }
 
     /// Writes the numbers of a row in little endian: `width` of the first channel, `width` of the second …

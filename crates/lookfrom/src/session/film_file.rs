@@ -214,6 +214,7 @@ impl Provenance {
         ExrHeader {
             width: film.width(),
             height: film.height(),
+            crop: None,
             channels: channels.chain(sums).collect(),
             attributes,
             is_fast: true,

@@ -120,6 +120,17 @@ pub(super) fn light_path_of(name: &str) -> Option<&str> {
     Some(name.strip_prefix(LIGHT_PATH)?.split_once('.')?.1)
 }
 
+/// The name of the text with the crop.
+const CROP: &str = "crop";
+
+/// The pixels that were rendered, if not all were, by the texts.
+pub(super) fn crop(texts: &[(String, String)]) -> Option<PixelBounds> {
+    let (_, text) = texts.iter().find(|(name, _)| name == CROP)?;
+    let numbers: Vec<u32> = text.split(' ').map_while(|number| number.parse().ok()).collect();
+    let [x0, y0, x1, y1] = numbers.try_into().ok()?;
+    Some(PixelBounds { x0, y0, x1, y1 })
+}
+
 /// The name of the text with the name of the scene's file.
 pub(super) const SCENE: &str = "scene";
 
@@ -131,7 +142,7 @@ pub(super) const ALLOCATION: &str = "allocation";
 
 /// Names of the texts that [`finished`] adds.
 const OF_FINISHED: [&str; 7] =
-    ["samples", "samples_taken", "exposure", "background", "fireflies", "denoised", "crop"];
+    ["samples", "samples_taken", "exposure", "background", "fireflies", "denoised", CROP];
 
 /// The texts of a finished picture: those that all have in common, which samples it has, and its post-processing.
 pub(super) fn finished(
@@ -165,7 +176,7 @@ pub(super) fn finished(
     }
     let PixelBounds { x0, y0, x1, y1 } = area;
     if (x0, y0, x1, y1) != (0, 0, film.width(), film.height()) {
-        add("crop", format!("{x0} {y0} {x1} {y1}"));
+        add(CROP, format!("{x0} {y0} {x1} {y1}"));
     }
     texts.sort();
     texts

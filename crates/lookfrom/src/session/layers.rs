@@ -13,6 +13,9 @@ const AOVS: [&str; 15] = [
     "depth", "u", "v",
 ];
 
+/// The colours and normals among [`AOVS`].
+const SHADES: &[&str] = AOVS.split_at(9).0;
+
 /// Channel names of the variances of one sample; as in pbrt, those of the sensor's channels: X, Y and Z, or a camera's
 /// red, green and blue. The header states which (`variance.from_rgb`).
 const VARIANCES: [&str; 3] = ["Variance.R", "Variance.G", "Variance.B"];
@@ -59,6 +62,16 @@ impl Layers<'_> {
                 names.chain(buckets).chain(noisy.map(|name| (*name).to_owned())).collect()
             }
         }
+    }
+
+    /// Whether a channel, by its name, is of a colour or a normal, of which 16 bits keep all that one sees; others measure or
+    /// number something. Where a layer comes from another file, that is unknown.
+    pub(super) fn is_shade(&self, name: &str) -> bool {
+        let Self::OfFilm { light_paths, .. } = self else { return false };
+        let is_of_light_path = |layer: &str| light_paths.contains(&layer);
+        SHADES.contains(&name)
+            || NOISY.contains(&name)
+            || name.rsplit_once('.').is_some_and(|(layer, _)| is_of_light_path(layer))
     }
 
     /// The texts of a file's header that tell what its channels are.

@@ -67,10 +67,12 @@ impl Shown {
                 alone.add(&self.rgba)?;
                 alone.finish()
             }
-            Format::Png16 | Format::Exr | Format::Hdr | Format::Pfm => Err(options::unsuitable(
-                "sheets and animations have 8 bits a channel, for a screen: PNG, JPEG, WebP, PPM or GIF"
-                    .to_owned(),
-            )),
+            Format::Png16 | Format::Exr | Format::Exr16 | Format::Hdr | Format::Pfm => {
+                Err(options::unsuitable(
+                    "sheets and animations have 8 bits a channel, for a screen: PNG, JPEG, WebP, PPM or GIF"
+                        .to_owned(),
+                ))
+            }
         }
     }
 }

@@ -78,6 +78,7 @@ impl<B: AsRef<[u8]>> ExrRows<B> {
         let header = ExrHeader {
             width: width as u32,
             height: height as u32,
+            crop: None,
             channels: channels.collect::<Result<_>>()?,
             attributes,
             is_fast,

@@ -5,11 +5,13 @@ use std::io::{Cursor, Seek, SeekFrom, Write};
 use std::ops::Range;
 
 use crc32fast::Hasher;
+use half::f16;
 
 use super::MAGIC;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::image::write::check;
 use crate::parallel;
+use crate::settings::PixelBounds;
 
 /// The compression level: of 10, the fastest that searches for repetitions: files are 1 to 5 % larger than at level 4, which takes four times as
 /// long.
@@ -24,10 +26,12 @@ pub(super) const CHECKSUM: &str = "crc32";
 /// The header of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ExrHeader {
-    /// Width in pixels.
+    /// Width of the picture in pixels: that of the display window.
     pub width: u32,
-    /// Height in pixels.
+    /// Height of the picture in pixels.
     pub height: u32,
+    /// The pixels that are in the file, a part of the picture that is not empty: the data window. `None` for all.
+    pub crop: Option<PixelBounds>,
     /// The channels by name, in any order; they are sorted in the file.
     pub channels: Vec<(String, ExrChannel)>,
     /// Texts, under names that the format does not use itself.
@@ -38,18 +42,38 @@ pub struct ExrHeader {
     pub has_checksum: bool,
 }
 
-/// The numbers of a channel, 32 bits each.
+/// The numbers of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExrChannel {
-    /// Floats.
+    /// Floats of 32 bits.
     Float,
-    /// Unsigned integers.
+    /// Floats of 16 bits, the nearest to those of 32 bits that are given; beyond their largest number that one.
+    Half,
+    /// Unsigned integers of 32 bits.
     Uint,
+}
+
+impl ExrHeader {
+    /// The data window.
+    fn held(&self) -> PixelBounds {
+        self.crop.unwrap_or(PixelBounds::of_size(self.width, self.height))
+    }
+}
+
+impl ExrChannel {
+    /// The format's number of it.
+    fn pixel_type(self) -> i32 {
+        match self {
+            Self::Uint => 0,
+            Self::Half => 1,
+            Self::Float => 2,
+        }
+    }
 }
 
 /// The rows of a picture that is written.
 pub trait ExrFill: Sync {
-    /// Makes these rows ready, before any of them is filled. They follow those of the call before, from 0 at the top on.
+    /// Makes these rows ready, before any of them is filled. They follow those of the call before, from the top on.
     ///
     /// # Errors
     /// The errors of what the rows come from.
@@ -57,8 +81,8 @@ pub trait ExrFill: Sync {
         Ok(())
     }
 
-    /// Writes the numbers of a row in little endian: `width` of the first channel of the header, `width` of the second …; they are
-    /// zeros before. It is called from several threads.
+    /// Writes the numbers of a row in little endian, of 32 bits each: `width` of the first channel of the header, `width` of the
+    /// second …; they are zeros before. It is called from several threads.
     fn fill(&self, row: u32, bytes: &mut [u8]);
 }
 
@@ -71,7 +95,7 @@ impl<F: Fn(u32, &mut [u8]) + Sync> ExrFill for F {
 /// Writes an OpenEXR file: one part of scan lines, whose rows come from `fill`. The same input gives the same bytes.
 ///
 /// # Errors
-/// `Invalid` if a name is empty, too long, duplicate or reserved, or the picture has no pixels; `Io` where `out` fails; those of
+/// `Invalid` if a name is empty, too long, duplicate or reserved, the picture has no pixels, or the crop is not a part of it; `Io` where `out` fails; those of
 /// `fill`.
 pub fn write_exr(header: &ExrHeader, fill: &mut impl ExrFill, out: &mut (impl Write + Seek)) -> Result<()> {
     check_names(header)?;
@@ -158,20 +182,26 @@ pub fn encode_exr(
 
 /// The rows that are compressed together.
 fn blocks(header: &ExrHeader) -> impl Iterator<Item = Range<u32>> {
-    let (rows, height) = (if header.is_fast { 1 } else { ZIP_ROWS }, header.height);
-    (0..height).step_by(rows as usize).map(move |row| row..height.min(row.saturating_add(rows)))
+    let (rows, PixelBounds { y0, y1, .. }) = (if header.is_fast { 1 } else { ZIP_ROWS }, header.held());
+    (y0..y1).step_by(rows as usize).map(move |row| row..y1.min(row.saturating_add(rows)))
 }
 
 /// A block as it is in the file: its first row, its length, its packed bytes.
 fn block(header: &ExrHeader, order: &[usize], rows: Range<u32>, fill: &impl ExrFill) -> Vec<u8> {
     let a_channel = header.width as usize * 4;
-    let mut raw = Vec::with_capacity(rows.len() * order.len() * a_channel);
+    let PixelBounds { x0, x1, .. } = header.held();
+    let columns = x0 as usize * 4..x1 as usize * 4;
+    let mut raw = Vec::with_capacity(rows.len() * order.len() * columns.len());
     let mut row_bytes = vec![0; order.len() * a_channel];
     for row in rows.clone() {
         row_bytes.fill(0);
         fill.fill(row, &mut row_bytes);
         for &channel in order {
-            raw.extend_from_slice(&row_bytes[channel * a_channel..][..a_channel]);
+            let numbers = &row_bytes[channel * a_channel..][columns.clone()];
+            match header.channels[channel].1 {
+                ExrChannel::Half => raw.extend(numbers.as_chunks().0.iter().flat_map(|&bytes| half(bytes))),
+                ExrChannel::Float | ExrChannel::Uint => raw.extend_from_slice(numbers),
+            }
         }
     }
     let predicted = predicted(&raw);
@@ -185,6 +215,14 @@ fn block(header: &ExrHeader, order: &[usize], rows: Range<u32>, fill: &impl ExrF
     block.extend((stored.len() as u32).to_le_bytes());
     block.extend(stored);
     block
+}
+
+/// The half nearest to a float.
+fn half(float: [u8; 4]) -> [u8; 2] {
+    let largest = f16::MAX.to_f32();
+    let number = f32::from_le_bytes(float);
+    let is_too_large = number.is_finite() && number.abs() > largest;
+    f16::from_f32(if is_too_large { largest.copysign(number) } else { number }).to_le_bytes()
 }
 
 /// Even and odd bytes separated, each as the difference from the previous one: what both compressions begin with.
@@ -246,6 +284,13 @@ fn check_names(header: &ExrHeader) -> Result<()> {
     if header.width == 0 || header.height == 0 {
         return wrong(format!("a picture of {} × {} has no pixels", header.width, header.height));
     }
+    let PixelBounds { x0, y0, x1, y1 } = header.held();
+    if x0 >= x1 || y0 >= y1 || x1 > header.width || y1 > header.height {
+        let (width, height) = (header.width, header.height);
+        return wrong(format!(
+            "the crop {x0},{y0},{x1},{y1} is no part of a picture of {width} × {height} pixels"
+        ));
+    }
     if header.channels.is_empty() {
         return wrong("an OpenEXR picture needs at least one channel".to_owned());
     }
@@ -284,30 +329,28 @@ fn head(header: &ExrHeader, order: &[usize]) -> Vec<u8> {
         bytes.extend(value);
     };
 
-    // Each channel: its name, pixel type (0: integers, 2: floats), not perceptually linear, no subsampling.
+    // Each channel: its name, pixel type, not perceptually linear, no subsampling.
     let mut list = Vec::new();
     for (name, kind) in order.iter().map(|&channel| &header.channels[channel]) {
         list.extend(name.as_bytes());
         list.push(0);
-        let pixel_type = match kind {
-            ExrChannel::Uint => 0_i32,
-            ExrChannel::Float => 2,
-        };
-        for number in [pixel_type, 0, 1, 1] {
+        for number in [kind.pixel_type(), 0, 1, 1] {
             list.extend(number.to_le_bytes());
         }
     }
     list.push(0);
-    let edges = [0, 0, header.width as i32 - 1, header.height as i32 - 1];
-    let window: Vec<u8> = edges.iter().flat_map(|edge| edge.to_le_bytes()).collect();
+    let window = |PixelBounds { x0, y0, x1, y1 }| {
+        let edges = [x0 as i32, y0 as i32, x1 as i32 - 1, y1 as i32 - 1];
+        edges.iter().flat_map(|edge| edge.to_le_bytes()).collect::<Vec<u8>>()
+    };
     let one = 1.0_f32.to_le_bytes();
     // 1: run lengths, 3: ZIP of 16 rows.
     let compression = if header.is_fast { [1] } else { [3] };
     let rows_downwards = [0];
     attribute("channels", "chlist", &list);
     attribute("compression", "compression", &compression);
-    attribute("dataWindow", "box2i", &window);
-    attribute("displayWindow", "box2i", &window);
+    attribute("dataWindow", "box2i", &window(header.held()));
+    attribute("displayWindow", "box2i", &window(PixelBounds::of_size(header.width, header.height)));
     attribute("lineOrder", "lineOrder", &rows_downwards);
     attribute("pixelAspectRatio", "float", &one);
     attribute("screenWindowCenter", "v2f", &[0; 8]);
