@@ -7,12 +7,14 @@
 
 mod camera;
 pub mod daylight;
+mod dispersion;
 mod named;
 pub mod observer;
 mod read;
 pub mod space;
 
 pub use camera::{CameraSensor, swatches};
+pub use dispersion::Dispersion;
 pub use named::{d50, named, names};
 pub use read::read_spd;
 

@@ -12,6 +12,7 @@ mod color_names;
 mod curve;
 mod directional;
 mod disney;
+mod dispersion;
 mod document;
 mod elements;
 mod evaluate;

@@ -115,6 +115,32 @@ fn named_curves_are_whole() {
     assert_eq!(named("glass-SF11"), named("glass-F11"));
 }
 
+/// Schott's data sheet of N-BK7: the coefficients, and the indices from the ultraviolet line i to the infrared line r.
+#[test]
+fn formulas_have_the_indices_of_a_data_sheet() {
+    let sellmeier = Dispersion::Sellmeier(vec![
+        [1.039_612_12, 0.006_000_698_67],
+        [0.231_792_344, 0.020_017_914_4],
+        [1.010_469_45, 103.560_653],
+    ]);
+    let cauchy = Dispersion::of_abbe(1.5168, 64.17);
+    for (nm, index) in
+        [(404.7, 1.53024), (486.1, 1.52238), (587.6, 1.51680), (656.3, 1.51432), (706.5, 1.51289)]
+    {
+        assert!((sellmeier.at(nm) - index).abs() < 6e-6, "{nm}: {}", sellmeier.at(nm));
+        // Two terms meet the line d and the difference of F and C.
+        assert!((cauchy.at(nm) - index).abs() < 6e-4, "{nm}: {}", cauchy.at(nm));
+        let curve = sellmeier.curve().expect("a glass");
+        assert!((f64::from(curve.at(nm as f32)) - index).abs() < 7e-6);
+    }
+    let [f, d, c] = [486.1327, 587.5618, 656.2725].map(|nm| cauchy.at(nm));
+    assert!((d - 1.5168).abs() < 1e-12 && ((d - 1.0) / (f - c) - 64.17).abs() < 1e-9);
+    assert_eq!(Dispersion::Cauchy(vec![1.5, 0.01, 0.002]).at(500.0), 1.5 + 0.01 / 0.25 + 0.002 / 0.0625);
+
+    assert_eq!(Dispersion::Sellmeier(vec![[1.0, 0.16]]).curve(), Err(360), "beyond its resonance");
+    assert_eq!(Dispersion::Cauchy(vec![f64::MAX]).curve(), Err(360));
+}
+
 #[test]
 fn named_curves_have_known_values() {
     let at = |name: &str, nm: f32| named(name).unwrap().at(nm);

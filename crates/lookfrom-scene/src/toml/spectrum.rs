@@ -4,7 +4,7 @@ use super::Reader;
 use super::settings::kelvin;
 use super::value::Value;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Color, Ior};
+use crate::material::Color;
 use crate::scene::CurveId;
 use crate::spectrum::{self, Curve};
 
@@ -63,27 +63,6 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// An index of refraction: a number, a curve, or the name of a glass.
-    pub(super) fn ior(&mut self, value: Value<'_>) -> Result<Ior> {
-        let expected = "a number greater than 0, the name of a glass such as \"BK7\", or a curve";
-        if value.is_table() {
-            let table = value.table("a colour by wavelength")?;
-            if !KEYS.iter().any(|key| table.has(key)) {
-                let hint = "of Cauchy's or Sellmeier's formula give values: `{ curve = [[400, 1.531], [550, 1.519], [700, 1.513]] }`";
-                return Err(value.wrong(expected).hint(hint));
-            }
-            let id = self.curve(value, &[])?;
-            return self.optical(value, id).map(Ior::Curve);
-        }
-        if value.as_text().is_some() {
-            let glasses: Vec<(&str, &'static str)> =
-                spectrum::names().filter_map(|name| Some((name.strip_prefix("glass-")?, name))).collect();
-            let name = value.choice(&glasses)?;
-            return Ok(Ior::Curve(self.known_curve(name)));
-        }
-        value.single_where(expected, |eta| eta > 0.0).map(Ior::Value)
-    }
-
     /// η and k of a metal by its name.
     pub(super) fn metal(&mut self, value: Value<'_>) -> Result<[Color; 2]> {
         let symbol = |name: &'static str| name.strip_prefix("metal-")?.strip_suffix("-eta");
@@ -103,7 +82,7 @@ impl Reader<'_, '_> {
     }
 
     /// A spectral index of refraction, which must be positive, extended beyond the ends of its table.
-    fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
+    pub(super) fn optical(&mut self, value: Value<'_>, id: CurveId) -> Result<CurveId> {
         let is_usable = match &self.scene.curves[id.index()] {
             Curve::Tabulated { values, .. } => values.iter().all(|&eta| eta > 0.0),
             Curve::Constant(eta) => *eta > 0.0,
@@ -148,14 +127,14 @@ impl Reader<'_, '_> {
     }
 
     /// One of [`spectrum::names`].
-    fn known_curve(&mut self, name: &str) -> CurveId {
+    pub(super) fn known_curve(&mut self, name: &str) -> CurveId {
         match self.curves.get(name) {
             Some(&id) => id,
             None => self.keep_curve(name.to_owned(), spectrum::named(name).unwrap_or(Curve::Constant(1.0))),
         }
     }
 
-    fn keep_curve(&mut self, name: String, curve: Curve) -> CurveId {
+    pub(super) fn keep_curve(&mut self, name: String, curve: Curve) -> CurveId {
         if let Some(&id) = self.curves.get(&name) {
             return id;
         }

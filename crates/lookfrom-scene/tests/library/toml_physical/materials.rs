@@ -85,6 +85,9 @@ k = [3, 2, 1]
 [materials.prism]
 type = "dielectric"
 ior = "SF11"
+[materials.flint]
+type = "dielectric"
+ior = { n_d = 1.6, abbe = 36 }
 [materials.pane]
 type = "thin_dielectric"
 ior = 1.3
@@ -169,6 +172,11 @@ type = "dots"
     assert_eq!((energy, tint), (Energy::Conserved, Tint::default()));
     assert_eq!(scene.curves[glass.index()], spectrum::named("glass-SF11").expect("a glass"));
     assert_eq!(roughness.u, Scalar::Value(0.0));
+    let MaterialKind::Dielectric { eta: Ior::Curve(flint), .. } = *kind(&scene, "flint") else {
+        panic!("a dielectric")
+    };
+    let [blue, yellow, red] = [486.13, 587.56, 656.27].map(|nm| scene.curves[flint.index()].at(nm));
+    assert!((yellow - 1.6).abs() < 1e-5 && (0.6 / (blue - red) - 36.0).abs() < 0.01);
     let tint = Tint { reflectance: Color::gray(0.5), transmittance: Color::Value([0.2, 0.4, 0.6]) };
     assert_eq!(*kind(&scene, "pane"), MaterialKind::ThinDielectric { eta: Ior::Value(1.3), tint });
     let MaterialKind::CoatedDiffuse { coat, .. } = *kind(&scene, "plastic") else { panic!("coated") };
