@@ -5,7 +5,7 @@
 //! In a leaf the rays are processed in groups of eight, a ray in each lane: those that hit the leaf's box are
 //! tested against one triangle or sphere after the other, by the same tests as single rays (against triangles two groups
 //! at a time, where vectors are as wide). From a common origin most
-//! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes and instances are left to
+//! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes are asked for a group at once; instances are left to
 //! the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
 //!
 //! Trees of very few primitives need no traversal: any rays form packets, which are tested against everything.
@@ -16,6 +16,7 @@ use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::coherence::Coherence;
 use crate::collector::PacketCollector;
+use crate::eight_rays::EightRays;
 use crate::error_bounds::LARGEST_FILTERED;
 use crate::exact::ExactRay;
 use crate::item::{Leaf, ProceduralItem};
@@ -299,7 +300,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
                 for lane in LaneMask(wanted) {
                     let Some(ProceduralHit { t, u, v }) = found[lane] else { continue };
                     let place = index * LANES + lane;
-                    if t > asked[lane].t_min {
+                    if t > asked.t_min[lane] {
                         let mut state = self.state(place);
                         state.collector.commit(Hit { t, u, v, primitive, geometry, instance: NONE });
                         self.update(place, &state.collector);
@@ -322,15 +323,17 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         wanted
     }
 
-    /// The rays of a group, up to where they have met what is nearest so far. Where there are fewer, the last is repeated.
+    /// The rays of a group, up to a little beyond what is nearest so far.
     #[inline(always)]
-    fn asked(&self, index: usize) -> [Ray; LANES] {
-        let last = self.rays.len() - 1;
-        std::array::from_fn(|lane| {
-            // One step beyond the end: a hit at the same t may win the tie.
-            let t_max = self.groups[index].end[lane].next_up();
-            Ray { t_max, ..self.rays[(index * LANES + lane).min(last)] }
-        })
+    fn asked(&self, index: usize) -> EightRays {
+        let Ray8 { origin: [ox, oy, oz], direction: [dx, dy, dz], range: [t_min, _], end, .. } =
+            self.groups[index];
+        EightRays {
+            origin: [ox.into(), oy.into(), oz.into()],
+            t_min: t_min.into(),
+            direction: [dx.into(), dy.into(), dz.into()],
+            t_max: end.into(),
+        }
     }
 
     /// The current state of a ray.

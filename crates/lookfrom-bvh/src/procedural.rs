@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use crate::aabb::Aabb;
 use crate::capsule::Capsule;
+use crate::eight_rays::EightRays;
 use crate::ray::Ray;
 use lookfrom_simd::LaneMask;
 
@@ -59,10 +60,10 @@ pub trait Procedural: Send + Sync + Debug {
 
     /// [`Self::intersect`], with the same bits, for those of eight rays of which bit i of `wanted` is set; what is found for others is
     /// ignored. Unless overridden, one ray after the other.
-    fn intersect_eight(&self, primitive: u32, rays: &[Ray; 8], wanted: u32) -> [Option<ProceduralHit>; 8] {
+    fn intersect_eight(&self, primitive: u32, rays: &EightRays, wanted: u32) -> [Option<ProceduralHit>; 8] {
         let mut found = [None; 8];
         for lane in LaneMask(wanted) {
-            found[lane] = self.intersect(primitive, &rays[lane]);
+            found[lane] = self.intersect(primitive, &rays.ray(lane));
         }
         found
     }

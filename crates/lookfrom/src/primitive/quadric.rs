@@ -418,7 +418,7 @@ impl Quadric {
                 self.frame.place(p.into(), outward(), error(0.0, 0.0, 0.0), f64::INFINITY)
             }
             QuadricKind::Torus(torus) => {
-                let own = 32.0 * UNIT * torus.size();
+                let own = torus.error();
                 self.frame.place(p.into(), outward(), error(own, own, own), torus.radius_of_curvature(p))
             }
         }

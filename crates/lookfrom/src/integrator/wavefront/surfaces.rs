@@ -169,11 +169,8 @@ fn on_others<S: Simd>(
         if quadrics.iter().all(Option::is_some) {
             let quadrics = by_lane!(lane => quadrics[lane].unwrap_or(first));
             let t = f32x8::load_array(simd, by_lane!(lane => hits[lane].t));
-            if let Some((points, ng)) =
-                points_on_quadrics(simd, &quadrics, origin + direction * Real::widen(t))
-            {
-                return (points, ng, ng, None, None);
-            }
+            let (points, ng) = points_on_quadrics(simd, &quadrics, origin + direction * Real::widen(t));
+            return (points, ng, ng, None, None);
         }
     }
     let points = by_lane!(lane => point_of(world, bare, lane, wants_uvs));

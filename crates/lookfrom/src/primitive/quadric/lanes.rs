@@ -1,8 +1,9 @@
-//! Points on quadrics, eight at a time; tori one by one.
+//! Points on quadrics, eight at a time.
 
-use lookfrom_simd::{Float, Simd, f32x8, f64x8, prelude::*};
+use lookfrom_simd::{Float, Mask, Simd, f32x8, f64x8, prelude::*};
 
-use super::{Quadric, QuadricKind, UNIT, gather_frames};
+use super::torus::Tubes;
+use super::{Quadric, QuadricKind, Torus, UNIT, gather_frames};
 use crate::core::lanes::{LANES, by_lane, gather_f64};
 use crate::core::points::Points;
 use crate::core::vector::Vector;
@@ -15,34 +16,39 @@ struct SurfaceLane {
     is_flat: bool,
     /// Whether the distance from the origin matters, not that from the axis.
     is_ball: bool,
-    /// That of the curvature.
+    /// The radius of the circle in the middle of a torus's tube; 0 for others.
+    circle: f64,
+    /// Of a ball, a cylinder or a tube; that of the curvature, but for a torus.
     radius: f64,
     /// Bounds of the distance from the surface in object space.
     error: [f64; 3],
 }
 
 impl SurfaceLane {
-    /// `None` for tori.
     #[inline]
-    fn of(quadric: &Quadric) -> Option<Self> {
+    fn of(quadric: &Quadric) -> Self {
         let flat = |height: f64| Self {
             height,
             is_flat: true,
             is_ball: false,
+            circle: 0.0,
             radius: f64::INFINITY,
             error: [0.0, 0.0, 4.0 * UNIT * height.abs()],
         };
         let round = |radius: f64, is_ball: bool| {
             let own = radius * (16.0 * UNIT);
             let error = [own, own, if is_ball { own } else { 0.0 }];
-            Self { height: 0.0, is_flat: false, is_ball, radius, error }
+            Self { height: 0.0, is_flat: false, is_ball, circle: 0.0, radius, error }
         };
         match quadric.kind {
-            QuadricKind::Sphere { radius, .. } => Some(round(radius, true)),
-            QuadricKind::Cylinder { radius, .. } => Some(round(radius, false)),
-            QuadricKind::Disk { height, .. } => Some(flat(height)),
-            QuadricKind::Rectangle { .. } => Some(flat(0.0)),
-            QuadricKind::Torus(_) => None,
+            QuadricKind::Sphere { radius, .. } => round(radius, true),
+            QuadricKind::Cylinder { radius, .. } => round(radius, false),
+            QuadricKind::Disk { height, .. } => flat(height),
+            QuadricKind::Rectangle { .. } => flat(0.0),
+            QuadricKind::Torus(torus) => {
+                let Torus { radius: circle, tube } = torus;
+                Self { circle, error: [torus.error(); 3], ..round(tube, false) }
+            }
         }
     }
 }
@@ -50,25 +56,20 @@ impl SurfaceLane {
 /// Points, and outward unit normals.
 type PointsAndNormals<S> = (Points<f32x8<S>>, Vector<f64x8<S>>);
 
-/// The points of eight quadrics nearest to some that are on them up to errors, and the outward unit normals there; `None` where any is
-/// a torus.
+/// The points of eight quadrics nearest to some that are on them up to errors, and the outward unit normals there.
 #[inline(always)]
 pub(crate) fn points_on_quadrics<S: Simd>(
     simd: S,
     quadrics: &[&Quadric; LANES],
     near: Vector<f64x8<S>>,
-) -> Option<PointsAndNormals<S>> {
-    let first = SurfaceLane::of(quadrics[0])?;
-    let all = by_lane!(lane => SurfaceLane::of(quadrics[lane]));
-    if all.iter().any(Option::is_none) {
-        return None;
-    }
-    let lanes = by_lane!(lane => all[lane].unwrap_or(first));
+) -> PointsAndNormals<S> {
+    let lanes = by_lane!(lane => SurfaceLane::of(quadrics[lane]));
     let frames = gather_frames(simd, &by_lane!(lane => &quadrics[lane].frame));
     let zero = f64x8::splat(simd, 0.0);
     let is_flat = f64x8::load_array(simd, by_lane!(lane => f64::from(lanes[lane].is_flat))).gt(zero);
     let is_ball = f64x8::load_array(simd, by_lane!(lane => f64::from(lanes[lane].is_ball))).gt(zero);
     let radius = f64x8::load_array(simd, by_lane!(lane => lanes[lane].radius));
+    let circle = f64x8::load_array(simd, by_lane!(lane => lanes[lane].circle));
     let height = f64x8::load_array(simd, by_lane!(lane => lanes[lane].height));
 
     // Bring the points onto the surfaces.
@@ -86,7 +87,18 @@ pub(crate) fn points_on_quadrics<S: Simd>(
     let up = Vector::splat(zero, [0.0, 0.0, 1.0]);
     let outward = Vector::select(is_flat, up, across.normalize());
     let error = gather_f64(simd, &by_lane!(lane => lanes[lane].error));
-    Some(frames.place(position, outward, error, radius))
+    let is_torus = circle.gt(zero);
+    if !is_torus.any() {
+        return frames.place(position, outward, error, radius);
+    }
+    let tubes = Tubes { radius: circle, tube: radius };
+    let refined = tubes.refined(p);
+    frames.place(
+        Vector::select(is_torus, refined, position),
+        Vector::select(is_torus, tubes.outward(refined), outward),
+        error,
+        Float::select(is_torus, tubes.radius_of_curvature(refined), radius),
+    )
 }
 
 #[cfg(test)]
@@ -108,7 +120,7 @@ mod tests {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let Self(quadrics, near) = self;
-            let (points, ng) = points_on_quadrics(simd, &quadrics, gather_f64(simd, &near)).unwrap();
+            let (points, ng) = points_on_quadrics(simd, &quadrics, gather_f64(simd, &near));
             [points.position, points.error, ng].map(scatter_f64)
         }
     }
@@ -120,10 +132,13 @@ mod tests {
             let quadrics: [Quadric; LANES] = std::array::from_fn(|lane| {
                 let own = |k: u64| number(100 * lane as u64 + k);
                 let radius = libm::exp2(20.0 * own(0) - 10.0);
-                let kind = match hash::pair(round, 7 + lane as u64) % 4 {
+                let kind = match hash::pair(round, 7 + lane as u64) % 5 {
                     0 => QuadricKind::Sphere { radius, z: [-radius, 0.4 * radius] },
                     1 => QuadricKind::Cylinder { radius, z: [-1.0, own(1)] },
                     2 => QuadricKind::Disk { height: own(2) - 0.5, radius, inner_radius: 0.0 },
+                    3 => {
+                        QuadricKind::Torus(Torus { radius, tube: radius * libm::exp2(12.0 * own(12) - 10.0) })
+                    }
                     _ => QuadricKind::Rectangle { size: [radius, 2.0] },
                 };
                 let axis = DVec3::new(own(3) - 0.5, own(4) - 0.5, own(5) - 0.5).normalize();

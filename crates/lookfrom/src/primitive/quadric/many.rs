@@ -1,11 +1,12 @@
 //! Quadrics of many shapes as primitives of the kernel.
 
 use glam::DVec3;
-use lookfrom_bvh::{Aabb, Capsule, Procedural, ProceduralHit, Ray};
-use lookfrom_simd::{Kernel, LaneMask, Simd, f32x8, prelude::*};
+use lookfrom_bvh::{Aabb, Capsule, EightRays, Procedural, ProceduralHit, Ray};
+use lookfrom_simd::{Kernel, LaneMask, Simd, f32x8, mask32x8, prelude::*};
 
 use super::{Clip, Meetings, Quadric, TestedRays};
-use crate::core::lanes::{LANES, are_shaded_together, by_lane, gather_rays, shade_together};
+use crate::core::lanes::{LANES, are_shaded_together, shade_together};
+use crate::core::vector::Vector;
 use crate::primitive::{MaterialBinding, SurfacePoint};
 
 /// Quadrics of many shapes: long and thin ones, surfaces of solids, or others.
@@ -42,10 +43,12 @@ impl Quadrics {
 }
 
 /// Finds the first meetings of eight rays with a quadric.
-struct EightRays<'a> {
+struct FirstOfRays<'a> {
     quadric: &'a Quadric,
     clip: Option<&'a Clip>,
-    rays: &'a [Ray; LANES],
+    rays: &'a EightRays,
+    /// Bit i for ray i.
+    wanted: u32,
 }
 
 /// Parameters, and the lanes where they exist, and where they are unclear.
@@ -55,15 +58,18 @@ struct FirstOfEight {
     are_unclear: u32,
 }
 
-impl Kernel for EightRays<'_> {
+impl Kernel for FirstOfRays<'_> {
     type Output = FirstOfEight;
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> FirstOfEight {
-        let Self { quadric, clip, rays } = self;
-        let [origin, direction] = gather_rays(simd, &by_lane!(lane => &rays[lane]));
-        let t_min = f32x8::load_array(simd, by_lane!(lane => rays[lane].t_min));
-        let t_max = f32x8::load_array(simd, by_lane!(lane => rays[lane].t_max));
+        let Self { quadric, clip, rays, wanted } = self;
+        let origin = vectors(simd, &rays.origin);
+        let direction = vectors(simd, &rays.direction);
+        let t_min = f32x8::load_array(simd, rays.t_min);
+        // Those that are not wanted end before they begin.
+        let wanted = mask32x8::from_bitmask(simd, wanted.into());
+        let t_max = wanted.select(f32x8::load_array(simd, rays.t_max), f32x8::splat(simd, f32::NEG_INFINITY));
         let Meetings { t, exist, are_unclear } =
             quadric.first_meetings(clip, &TestedRays { origin, direction, t_min, t_max });
         FirstOfEight {
@@ -72,6 +78,12 @@ impl Kernel for EightRays<'_> {
             are_unclear: are_unclear.to_bitmask() as u32,
         }
     }
+}
+
+/// Vectors by their components.
+#[inline(always)]
+fn vectors<S: Simd>(simd: S, &[x, y, z]: &[[f32; LANES]; 3]) -> Vector<f32x8<S>> {
+    Vector::new(f32x8::load_array(simd, x), f32x8::load_array(simd, y), f32x8::load_array(simd, z))
 }
 
 impl Procedural for Quadrics {
@@ -103,21 +115,22 @@ impl Procedural for Quadrics {
     fn intersect_eight(
         &self,
         primitive: u32,
-        rays: &[Ray; LANES],
+        rays: &EightRays,
         wanted: u32,
     ) -> [Option<ProceduralHit>; LANES] {
         let index = primitive as usize;
         let (quadric, clip) = (&self.quadrics[index], self.clips.get(index));
         let mut found = [None; LANES];
         if !are_shaded_together() {
-            LaneMask(wanted).for_each(|lane| found[lane] = self.intersect(primitive, &rays[lane]));
+            LaneMask(wanted).for_each(|lane| found[lane] = self.intersect(primitive, &rays.ray(lane)));
             return found;
         }
-        let FirstOfEight { t, exist, are_unclear } = shade_together(EightRays { quadric, clip, rays });
+        let FirstOfEight { t, exist, are_unclear } =
+            shade_together(FirstOfRays { quadric, clip, rays, wanted });
         let hit = |t: f32| ProceduralHit { t, u: 0.0, v: 0.0 };
         LaneMask(exist).for_each(|lane| found[lane] = Some(hit(t[lane])));
         LaneMask(are_unclear & wanted)
-            .for_each(|lane| found[lane] = quadric.unclear_meeting(&rays[lane], clip).map(hit));
+            .for_each(|lane| found[lane] = quadric.unclear_meeting(&rays.ray(lane), clip).map(hit));
         found
     }
 }

@@ -88,7 +88,7 @@ fn eight_rays_meet_what_they_meet_one_by_one() {
         });
         let quadrics = alone(quadric);
         let wanted = (index % 256) as u32;
-        let together = quadrics.intersect_eight(0, &rays, wanted);
+        let together = quadrics.intersect_eight(0, &rays.into(), wanted);
         for lane in (0..8).filter(|lane| wanted >> lane & 1 != 0) {
             let one = quadrics.intersect(0, &rays[lane]);
             let bits = |hit: Option<ProceduralHit>| hit.map(|hit| hit.t.to_bits());

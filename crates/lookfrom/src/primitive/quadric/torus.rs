@@ -7,10 +7,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lookfrom_simd::{Float, Mask};
 
+use super::UNIT;
 use crate::core::vector::Vector;
+use tube::Section;
+pub(super) use tube::Tubes;
 
 /// A tube of this part of the size or more is as exactly found by the quartic: that loses as many bits as the tube is thin.
 const THIN: f64 = 1.0 / 16.0;
@@ -27,16 +30,6 @@ pub struct Torus {
     pub radius: f64,
     /// Radius of the tube, positive.
     pub tube: f64,
-}
-
-/// A point in the half plane that it spans with the axis, relative to the middle of the tube.
-struct Section {
-    /// The direction away from the axis.
-    away: DVec2,
-    /// Distance from the axis.
-    ring: f64,
-    /// Along `away`, and along the axis.
-    offset: DVec2,
 }
 
 /// The quartic `s⁴ + 2 p s² + 4 q s + rest`, which is positive outside.
@@ -227,10 +220,14 @@ impl Torus {
         self.radius + self.tube
     }
 
-    fn section(&self, p: DVec3) -> Section {
-        let ring = p.truncate().length();
-        let away = if ring > 0.0 { p.truncate() / ring } else { DVec2::X };
-        Section { away, ring, offset: DVec2::new(ring - self.radius, p.z) }
+    /// A bound of the distance of [refined](Self::refined) points from the surface, along an axis.
+    pub(super) fn error(&self) -> f64 {
+        32.0 * UNIT * self.size()
+    }
+
+    /// Its tube.
+    fn tubes(&self) -> Tubes<f64> {
+        Tubes { radius: self.radius, tube: self.tube }
     }
 
     /// The first meetings with rays from `t_min` on, which are sought where the mask is set.
@@ -321,41 +318,37 @@ impl Torus {
 
     /// The distance of a point from the surface, negative inside, and its gradient.
     fn distance(&self, p: DVec3) -> (f64, DVec3) {
-        let Section { away, offset, .. } = self.section(p);
-        let from_middle = offset.length();
-        let gradient = (away * offset.x).extend(offset.y) / from_middle;
+        let Section { away: [x, y], offset: [across, along], .. } = self.tubes().section(p.into());
+        let from_middle = (across * across + along * along).sqrt();
+        let gradient = DVec3::new(x * across, y * across, along) / from_middle;
         (from_middle - self.tube, gradient)
     }
 
     /// The point of the surface nearest to one that is on it up to errors.
     pub(super) fn refined(&self, p: DVec3) -> DVec3 {
-        let away = self.section(p).away;
-        (away * self.radius).extend(0.0) + self.tube * self.outward(p)
+        self.tubes().refined(p.into()).into()
     }
 
     /// The unit normal at a point of the surface.
     pub(super) fn outward(&self, p: DVec3) -> DVec3 {
-        let Section { away, offset, .. } = self.section(p);
-        (away * offset.x).extend(offset.y).try_normalize().unwrap_or_else(|| away.extend(0.0))
+        self.tubes().outward(p.into()).into()
     }
 
     /// The angle around the middle of the tube, from the outermost circle up: [0, 2π).
     pub(super) fn angle(&self, p: DVec3) -> f64 {
-        let Section { offset, .. } = self.section(p);
-        super::angle(offset.extend(0.0))
+        let Section { offset: [across, along], .. } = self.tubes().section(p.into());
+        super::angle(DVec3::new(across, along, 0.0))
     }
 
     /// The derivative of a point of the surface by the fraction of [`Torus::angle`].
     pub(super) fn along_tube(&self, p: DVec3) -> DVec3 {
-        let Section { away, offset, .. } = self.section(p);
-        TAU * (away * -offset.y).extend(offset.x)
+        let Section { away: [x, y], offset: [across, along], .. } = self.tubes().section(p.into());
+        TAU * DVec3::new(x * -along, y * -along, across)
     }
 
     /// The smaller radius of curvature at a point of the surface; where the tube meets itself on the axis, one that is small.
     pub(super) fn radius_of_curvature(&self, p: DVec3) -> f64 {
-        let Section { ring, offset, .. } = self.section(p);
-        let around_axis = ring * self.tube / offset.x.abs();
-        self.tube.min(around_axis.max(1e-6 * self.tube))
+        self.tubes().radius_of_curvature(p.into())
     }
 
     /// The half of the angle around the middle of the tube that is on the surface: π, but where the tube meets itself.
@@ -387,3 +380,4 @@ impl Torus {
 
 #[cfg(test)]
 mod tests;
+mod tube;

@@ -108,7 +108,7 @@ pub(super) const LADDERS: &[Ladder] = &[
         name: "lookfrom-bvh",
         rungs: &[
             "aabb dispatch error_bounds faces lanes masks observer parallel ray reference testing vector",
-            "affine collector exact nearest origin_primitive ray_f64 unrounded",
+            "affine collector eight_rays exact nearest origin_primitive ray_f64 unrounded",
             "capsule ellipsoid origin prepared sphere triangle",
             "conservative item node procedural",
             "common_origin ray8 stack statistics",
