@@ -8,7 +8,6 @@ use ::image::{
     RgbaImage,
 };
 use lookfrom_scene::image::{self, ExrChannel, ExrHeader, Image, Metadata, Pixels};
-use lookfrom_scene::settings::PixelBounds;
 use lookfrom_scene::{ErrorKind, LoadContext, Memory};
 use proptest::prelude::*;
 use tiff::encoder::TiffEncoder;
@@ -196,7 +195,7 @@ fn a_crop_is_the_data_window() {
     let mut header = ExrHeader {
         width: 40,
         height: 33,
-        crop: Some(PixelBounds { x0: 3, y0: 5, x1: 39, y1: 30 }),
+        crop: Some([3..39, 5..30]),
         channels: ["Y", "Z"].map(|name| (name.to_owned(), ExrChannel::Float)).into(),
         ..ExrHeader::default()
     };
@@ -221,7 +220,7 @@ fn a_crop_is_the_data_window() {
     assert_eq!(read.channel("Z"), Some(cropped.as_slice()));
 
     for (x1, y1) in [(41, 30), (39, 34), (3, 30)] {
-        header.crop = Some(PixelBounds { x0: 3, y0: 5, x1, y1 });
+        header.crop = Some([3..x1, 5..y1]);
         assert!(written(&header).expect_err("no part").message.contains("40 × 33 pixels"));
     }
 }

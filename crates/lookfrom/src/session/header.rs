@@ -1,6 +1,7 @@
 //! The header of an OpenEXR file: everything that determines its light, and nothing else, so that the same picture has
 //! the same bytes whatever the number of threads, the time and the machine.
 
+use std::ops::Range;
 use std::path::Path;
 
 use glam::DVec3;
@@ -123,12 +124,12 @@ pub(super) fn light_path_of(name: &str) -> Option<&str> {
 /// The name of the text with the crop.
 const CROP: &str = "crop";
 
-/// The pixels that were rendered, if not all were, by the texts.
-pub(super) fn crop(texts: &[(String, String)]) -> Option<PixelBounds> {
+/// The columns and the rows that were rendered, if not all were, by the texts.
+pub(super) fn crop(texts: &[(String, String)]) -> Option<[Range<u32>; 2]> {
     let (_, text) = texts.iter().find(|(name, _)| name == CROP)?;
     let numbers: Vec<u32> = text.split(' ').map_while(|number| number.parse().ok()).collect();
     let [x0, y0, x1, y1] = numbers.try_into().ok()?;
-    Some(PixelBounds { x0, y0, x1, y1 })
+    Some([x0..x1, y0..y1])
 }
 
 /// The name of the text with the name of the scene's file.

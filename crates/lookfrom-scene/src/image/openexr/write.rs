@@ -11,7 +11,6 @@ use super::MAGIC;
 use crate::error::{Error, ErrorKind, Location, Result};
 use crate::image::write::check;
 use crate::parallel;
-use crate::settings::PixelBounds;
 
 /// The compression level: of 10, the fastest that searches for repetitions: files are 1 to 5 % larger than at level 4, which takes four times as
 /// long.
@@ -30,8 +29,8 @@ pub struct ExrHeader {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// The pixels that are in the file, a part of the picture that is not empty: the data window. `None` for all.
-    pub crop: Option<PixelBounds>,
+    /// The columns and the rows that are in the file, a part of the picture that is not empty: the data window. `None` for all.
+    pub crop: Option<[Range<u32>; 2]>,
     /// The channels by name, in any order; they are sorted in the file.
     pub channels: Vec<(String, ExrChannel)>,
     /// Texts, under names that the format does not use itself.
@@ -54,9 +53,14 @@ pub enum ExrChannel {
 }
 
 impl ExrHeader {
-    /// The data window.
-    fn held(&self) -> PixelBounds {
-        self.crop.unwrap_or(PixelBounds::of_size(self.width, self.height))
+    /// The columns and the rows of the picture.
+    fn all(&self) -> [Range<u32>; 2] {
+        [0..self.width, 0..self.height]
+    }
+
+    /// The columns and the rows in the file.
+    fn held(&self) -> [Range<u32>; 2] {
+        self.crop.clone().unwrap_or(self.all())
     }
 }
 
@@ -182,15 +186,16 @@ pub fn encode_exr(
 
 /// The rows that are compressed together.
 fn blocks(header: &ExrHeader) -> impl Iterator<Item = Range<u32>> {
-    let (rows, PixelBounds { y0, y1, .. }) = (if header.is_fast { 1 } else { ZIP_ROWS }, header.held());
-    (y0..y1).step_by(rows as usize).map(move |row| row..y1.min(row.saturating_add(rows)))
+    let (rows, [_, held]) = (if header.is_fast { 1 } else { ZIP_ROWS }, header.held());
+    let end = held.end;
+    held.step_by(rows as usize).map(move |row| row..end.min(row.saturating_add(rows)))
 }
 
 /// A block as it is in the file: its first row, its length, its packed bytes.
 fn block(header: &ExrHeader, order: &[usize], rows: Range<u32>, fill: &impl ExrFill) -> Vec<u8> {
     let a_channel = header.width as usize * 4;
-    let PixelBounds { x0, x1, .. } = header.held();
-    let columns = x0 as usize * 4..x1 as usize * 4;
+    let [columns, _] = header.held();
+    let columns = columns.start as usize * 4..columns.end as usize * 4;
     let mut raw = Vec::with_capacity(rows.len() * order.len() * columns.len());
     let mut row_bytes = vec![0; order.len() * a_channel];
     for row in rows.clone() {
@@ -284,9 +289,9 @@ fn check_names(header: &ExrHeader) -> Result<()> {
     if header.width == 0 || header.height == 0 {
         return wrong(format!("a picture of {} × {} has no pixels", header.width, header.height));
     }
-    let PixelBounds { x0, y0, x1, y1 } = header.held();
-    if x0 >= x1 || y0 >= y1 || x1 > header.width || y1 > header.height {
-        let (width, height) = (header.width, header.height);
+    let (width, height) = (header.width, header.height);
+    let [Range { start: x0, end: x1 }, Range { start: y0, end: y1 }] = header.held();
+    if x0 >= x1 || y0 >= y1 || x1 > width || y1 > height {
         return wrong(format!(
             "the crop {x0},{y0},{x1},{y1} is no part of a picture of {width} × {height} pixels"
         ));
@@ -339,8 +344,8 @@ fn head(header: &ExrHeader, order: &[usize]) -> Vec<u8> {
         }
     }
     list.push(0);
-    let window = |PixelBounds { x0, y0, x1, y1 }| {
-        let edges = [x0 as i32, y0 as i32, x1 as i32 - 1, y1 as i32 - 1];
+    let window = |[columns, rows]: [Range<u32>; 2]| {
+        let edges = [columns.start as i32, rows.start as i32, columns.end as i32 - 1, rows.end as i32 - 1];
         edges.iter().flat_map(|edge| edge.to_le_bytes()).collect::<Vec<u8>>()
     };
     let one = 1.0_f32.to_le_bytes();
@@ -350,7 +355,7 @@ fn head(header: &ExrHeader, order: &[usize]) -> Vec<u8> {
     attribute("channels", "chlist", &list);
     attribute("compression", "compression", &compression);
     attribute("dataWindow", "box2i", &window(header.held()));
-    attribute("displayWindow", "box2i", &window(PixelBounds::of_size(header.width, header.height)));
+    attribute("displayWindow", "box2i", &window(header.all()));
     attribute("lineOrder", "lineOrder", &rows_downwards);
     attribute("pixelAspectRatio", "float", &one);
     attribute("screenWindowCenter", "v2f", &[0; 8]);
