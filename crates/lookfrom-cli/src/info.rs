@@ -7,12 +7,13 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
-use lookfrom::session::{Format, Session};
+use lookfrom::session::{Format, Options, Session};
 use lookfrom_scene::Inputs;
 use lookfrom_scene::camera::{Camera, Projection, View};
 use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::settings::PixelBounds;
+use lookfrom_scene::watertight::Watertightness;
 use serde::Serialize;
 
 use self::object::Object;
@@ -58,6 +59,7 @@ fn info(path: &Path, arguments: &InfoArguments) -> Result<(), Failure> {
     }
     let overrides = Overrides { variables: arguments.variables.clone(), ..Overrides::default() };
     let options = overrides.options(&arguments.common, None);
+    let options = Options { keep_scene: true, ..options };
     let session = prepare(path, &arguments.common, &options, &Inputs::default())?;
     if arguments.json {
         return answer(&json::line(&Object::new(path, &session)));
@@ -94,6 +96,9 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
     let mut lines = vec![path.display().to_string()];
     let mut line = |name: &str, text: String| lines.push(format!("  {name:<10} {text}"));
     contents(&info.counts, &mut line);
+    if let Some(found) = session.scene().and_then(Watertightness::of) {
+        line("watertight", watertight(&found));
+    }
     line("names", names(session.world().objects().names()));
     let bounds = info.bounds;
     let size = bounds.max - bounds.min;
@@ -167,6 +172,25 @@ pub(crate) fn for_people(path: &Path, session: &Session) -> String {
         format!("read {:.2} s, build {:.2} s", report::seconds(info.read), report::seconds(info.build)),
     );
     lines.join("\n")
+}
+
+/// Whether the meshes are closed, and their volume, or what is wrong.
+fn watertight(found: &Watertightness) -> String {
+    let &Watertightness { open_edges, turned_edges, volume } = found;
+    let faults = [
+        (open_edges, format!("{} open", counted(open_edges as usize, "edge"))),
+        (
+            turned_edges,
+            format!("{} between faces that look to opposite sides", counted(turned_edges as usize, "edge")),
+        ),
+    ];
+    let faults: Vec<String> =
+        faults.into_iter().filter(|(count, _)| *count > 0).map(|(_, text)| text).collect();
+    match faults.is_empty() {
+        false => format!("no: {}", faults.join(", ")),
+        true if volume < 0.0 => format!("yes, but faces look inwards: volume {}", digits(volume)),
+        true => format!("yes, volume {}", digits(volume)),
+    }
 }
 
 /// How many objects masks tell apart, and the names of the first of them.

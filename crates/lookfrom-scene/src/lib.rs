@@ -76,6 +76,7 @@ pub mod variables;
 pub mod vdb;
 pub mod volume;
 pub mod warning;
+pub mod watertight;
 
 pub use budget::Budget;
 pub use disk::Disk;

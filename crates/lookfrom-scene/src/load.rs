@@ -182,14 +182,48 @@ pub(crate) fn model(path: &Path, context: &mut LoadContext<'_>, scene: &mut Scen
     }
 }
 
+/// Formats that other programs can convert: extensions, and how.
+const CONVERTIBLE: [(&[&str], &str); 4] = [
+    (&["3mf", "amf"], "save it as .stl or .obj in the slicer"),
+    (
+        &["step", "stp", "iges", "igs", "brep", "sldprt", "f3d", "ipt", "3dm"],
+        "export triangles as .stl or .obj from the CAD program, such as FreeCAD",
+    ),
+    (
+        &["scad"],
+        "`openscad -o part.stl part.scad` makes triangles of it; our own solids have the same operations",
+    ),
+    (
+        &[
+            "dae", "fbx", "blend", "usd", "usda", "usdc", "usdz", "abc", "3ds", "x3d", "wrl", "off", "skp",
+            "lwo", "c4d", "max", "ma", "mb",
+        ],
+        "export it as .glb from the program that wrote it, or from Blender",
+    ),
+];
+
 fn unknown_format(path: &Path) -> Error {
-    unsupported(path, "the format is not known, neither by the name nor by the content of the file")
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match CONVERTIBLE.iter().find(|(extensions, _)| extensions.contains(&extension.as_str())) {
+        Some((_, how)) => {
+            let message = format!("there is no reader for .{extension} files");
+            let error = Error::new(ErrorKind::Unsupported, &Location::file(path), message);
+            error.hint(format!("{how}; {}", readable()))
+        }
+        None => {
+            unsupported(path, "the format is not known, neither by the name nor by the content of the file")
+        }
+    }
 }
 
 fn unsupported(path: &Path, message: &str) -> Error {
+    Error::new(ErrorKind::Unsupported, &Location::file(path), message).hint(readable())
+}
+
+/// What can be read, in words.
+fn readable() -> String {
     let known = known_files().map(|(content, extensions)| format!("{content}s ({extensions})"));
-    Error::new(ErrorKind::Unsupported, &Location::file(path), message)
-        .hint(format!("what can be read: {}", known.join(", ")))
+    format!("what can be read: {}", known.join(", "))
 }
 
 /// The refusal of a format whose reader was not compiled.

@@ -178,6 +178,9 @@ pub struct NormalTexture {
     pub scale: f32,
 }
 
+/// The name of the materials that readers make for the colours of vertices.
+pub const VERTEX_COLORS: &str = "vertex colours";
+
 /// An index of refraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ior {

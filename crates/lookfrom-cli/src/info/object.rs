@@ -10,6 +10,7 @@ use lookfrom_scene::contents::{AnimationEntry, CameraEntry, Contents};
 use lookfrom_scene::count::Counts;
 use lookfrom_scene::scene::Bounds;
 use lookfrom_scene::settings::{ImageSettings, RenderSettings};
+use lookfrom_scene::watertight::Watertightness;
 use serde::Serialize;
 
 use super::{Tree, tree};
@@ -24,6 +25,8 @@ pub(super) struct Object<'a> {
     /// Those of Cryptomattes and labels.
     names: Vec<String>,
     bounds: Option<BoundsObject>,
+    /// Of its meshes, if it has any.
+    watertight: Option<WatertightObject>,
     scenes: Vec<SceneObject<'a>>,
     animations: Vec<AnimationObject<'a>>,
     duration: Option<f64>,
@@ -38,6 +41,19 @@ pub(super) struct Object<'a> {
     added: &'a [&'static str],
     warnings: Vec<String>,
     notices: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct WatertightObject {
+    is_closed: bool,
+    #[serde(flatten)]
+    found: Watertightness,
+}
+
+impl WatertightObject {
+    fn new(found: Watertightness) -> Self {
+        Self { is_closed: found.is_closed(), found }
+    }
 }
 
 #[derive(Serialize)]
@@ -149,6 +165,7 @@ impl<'a> Object<'a> {
             counts,
             names: session.world().objects().names().to_vec(),
             bounds: (!bounds.is_empty()).then(|| bounds.into()),
+            watertight: session.scene().and_then(Watertightness::of).map(WatertightObject::new),
             scenes: scenes(contents),
             animations: contents.animations.iter().map(Into::into).collect(),
             duration: contents.duration,

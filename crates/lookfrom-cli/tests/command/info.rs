@@ -42,6 +42,51 @@ fn a_model_says_what_was_added() {
 }
 
 #[test]
+fn a_mesh_is_closed_or_not() {
+    let stage = Stage::new("info-watertight");
+    let corners = "v 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 5\n";
+    let closed = format!("{corners}f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    for (name, text, expected) in [
+        ("closed", closed.clone(), "yes, volume 10"),
+        (
+            "inwards",
+            closed
+                .replace("1 3 2", "1 2 3")
+                .replace("1 2 4", "1 4 2")
+                .replace("2 3 4", "2 4 3")
+                .replace("1 4 3", "1 3 4"),
+            "yes, but faces look inwards: volume -10",
+        ),
+        ("open", closed.replace("f 1 4 3\n", ""), "no: 3 edges open"),
+        ("turned", closed.replace("1 4 3", "1 3 4"), "no: 3 edges between faces that look to opposite sides"),
+    ] {
+        stage.write(&format!("{name}.obj"), &text);
+        let told = String::from_utf8(stage.done(&format!("info {name}.obj")).stdout).unwrap();
+        assert!(told.contains(&format!("  watertight {expected}\n")), "{told}");
+    }
+    let found = &stage.json("info open.obj --json")[0]["watertight"];
+    assert_eq!(
+        (&found["is_closed"], &found["open_edges"], &found["turned_edges"]),
+        (&json!(false), &json!(3), &json!(0))
+    );
+    assert_eq!(stage.json("info scene.toml --json")[0]["watertight"], json!(null));
+}
+
+#[test]
+fn a_file_of_another_program_is_refused_with_a_way() {
+    let stage = Stage::new("info-foreign");
+    for (name, way) in [
+        ("part.3MF", "slicer"),
+        ("part.step", "FreeCAD"),
+        ("part.scad", "openscad -o"),
+        ("part.fbx", "Blender"),
+    ] {
+        stage.write(name, "?");
+        stage.run(&format!("render {name}")).fails(3, &["there is no reader for", way, "what can be read"]);
+    }
+}
+
+#[test]
 fn objects_have_their_names() {
     let stage = Stage::new("info-names");
     let names: Vec<String> = (1..=9).map(|number| format!("Part {number}")).collect();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Location, Result};
 use crate::files::LoadContext;
 use crate::image::{self, Encoding, Image};
-use crate::material::{Color, Material, MaterialKind, Whitted};
+use crate::material::{Color, Material, MaterialKind, VERTEX_COLORS, Whitted};
 use crate::scene::{ImageId, MaterialId, Scene, TextureId};
 use crate::shape::Mesh;
 use crate::texture::{Channel, Mapping, TexelFilter, Texture, TextureKind, Wrap};
@@ -88,7 +88,6 @@ pub(crate) fn unit_of_uv(mesh: &Mesh) -> Option<f32> {
 
 /// Adds a diffuse material with the colours of the mesh's vertices.
 pub(crate) fn push_vertex_colors(scene: &mut Scene, at: &Location) -> MaterialId {
-    let name = "vertex colours";
-    let diffuse = push_texture(scene, name, at, TextureKind::VertexColor { tint: [1.0; 3] });
-    push_material(scene, name, at, Whitted { diffuse, ..Whitted::default() })
+    let diffuse = push_texture(scene, VERTEX_COLORS, at, TextureKind::VertexColor { tint: [1.0; 3] });
+    push_material(scene, VERTEX_COLORS, at, Whitted { diffuse, ..Whitted::default() })
 }

@@ -7,12 +7,13 @@
 use std::collections::HashMap;
 
 use lookfrom_scene::Scene;
+use lookfrom_scene::material::VERTEX_COLORS;
 use lookfrom_scene::shape::{Geometry, Shape};
 
 use crate::world::ShapeLabel;
 
-/// Name of materials that nobody chose.
-const DEFAULT: &str = "default";
+/// Names of materials that nobody chose.
+const UNCHOSEN: [&str; 3] = ["", "default", VERTEX_COLORS];
 
 /// The labels of a scene's shapes.
 pub(in crate::world) struct Labels {
@@ -62,7 +63,7 @@ impl Labels {
 /// The name of a shape's material, if it has one of its own.
 fn material<'a>(scene: &'a Scene, shape: &Shape) -> Option<&'a str> {
     let name = scene.materials.get(shape.material.index())?.name.as_str();
-    (!name.is_empty() && name != DEFAULT).then_some(name)
+    (!UNCHOSEN.contains(&name)).then_some(name)
 }
 
 /// Material and kind.

@@ -136,6 +136,7 @@ pub(super) const LADDERS: &[Ladder] = &[
             "atmosphere lens light settings solid",
             "shape",
             "composite scene text volume",
+            "watertight",
             "builder chain count duplicates model nanovdb openvdb shutter",
             "boolean hair ies npy stl subdivision tessellation validate vdb",
             "level_set obj ply",
