@@ -5,8 +5,8 @@
 //! In a leaf the rays are processed in groups of eight, a ray in each lane: those that hit the leaf's box are
 //! tested against one triangle or sphere after the other, by the same tests as single rays (against triangles two groups
 //! at a time, where vectors are as wide). From a common origin most
-//! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes are asked for a group at once; instances are left to
-//! the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
+//! triangles are excluded for a whole group first (see `common_origin`). Procedural shapes are asked for a group at once; instances
+//! are left to the single-ray code, ray by ray. So the results are those of single rays, bit for bit.
 //!
 //! Trees of very few primitives need no traversal: any rays form packets, which are tested against everything.
 
@@ -323,7 +323,7 @@ impl<'a, S: Simd, C: PacketCollector, V: Visibility<'a>> Packet<'a, '_, S, C, V>
         wanted
     }
 
-    /// The rays of a group, up to a little beyond what is nearest so far.
+    /// The rays of a group, up to a little beyond what is nearest so far: a hit at the same t may win the tie.
     #[inline(always)]
     fn asked(&self, index: usize) -> EightRays {
         let Ray8 { origin: [ox, oy, oz], direction: [dx, dy, dz], range: [t_min, _], end, .. } =

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::{Cursor, Seek, Write};
+use std::ops::Range;
 use std::path::Path;
 
 use lookfrom_scene::image::compare::CHANNELS_ATTRIBUTE;
@@ -281,7 +282,11 @@ pub(super) fn write(
             let channels = channels.map(|(kind, name)| (name, kind)).collect();
             let mut attributes = header.to_vec();
             attributes.extend(layers.attributes());
-            let crop = header::crop(header);
+            // What the header of a file says of it may be wrong.
+            let is_part = |[columns, rows]: &[Range<u32>; 2]| {
+                !columns.is_empty() && !rows.is_empty() && columns.end <= width && rows.end <= height
+            };
+            let crop = header::crop(header).filter(is_part);
             let header = ExrHeader { width, height, crop, channels, attributes, ..ExrHeader::default() };
             write_exr(&header, &mut |row: u32, bytes: &mut [u8]| rows.fill(row, bytes), out)
         }

@@ -99,8 +99,8 @@ impl<F: Fn(u32, &mut [u8]) + Sync> ExrFill for F {
 /// Writes an OpenEXR file: one part of scan lines, whose rows come from `fill`. The same input gives the same bytes.
 ///
 /// # Errors
-/// `Invalid` if a name is empty, too long, duplicate or reserved, the picture has no pixels, or the crop is not a part of it; `Io` where `out` fails; those of
-/// `fill`.
+/// `Invalid` if a name is empty, too long, duplicate or reserved, the picture has no pixels, or the crop is not a part of it; `Io`
+/// where `out` fails; those of `fill`.
 pub fn write_exr(header: &ExrHeader, fill: &mut impl ExrFill, out: &mut (impl Write + Seek)) -> Result<()> {
     check_names(header)?;
     let blocks: Vec<Range<u32>> = blocks(header).collect();
