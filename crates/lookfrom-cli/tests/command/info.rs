@@ -82,7 +82,7 @@ fn a_file_of_another_program_is_refused_with_a_way() {
         ("part.fbx", "Blender"),
     ] {
         stage.write(name, "?");
-        stage.run(&format!("render {name}")).fails(3, &["there is no reader for", way, "what can be read"]);
+        stage.run(&format!("render {name}")).fails(1, &["there is no reader for", way, "what can be read"]);
     }
 }
 
